@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_contact_boundary_h
+#define debond_contact_boundary_h
+
+#include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
+#include <deal.II/base/types.h>
+
+#include <array>
+#include <vector>
+
+namespace Debond
+{
+  /**
+   * The contact boundary Gamma_C as the discrete problem sees it: the nodes
+   * whose normal displacement is unknown, and the faces, on which the normal
+   * displacement is the linear interpolant of its nodal values.
+   */
+  template <int dim>
+  struct ContactBoundary
+  {
+    struct Node
+    {
+      /// The degree of freedom that holds u_nu of this node.
+      dealii::types::global_dof_index dof;
+
+      dealii::Point<dim> position;
+
+      /// Outward unit normal of the body.
+      dealii::Tensor<1, dim> normal;
+
+      /// Integral of the nodal basis function over Gamma_C (area in 3D,
+      /// length in 2D).
+      double measure;
+    };
+
+    struct Face
+    {
+      /// Indices into `nodes`, or dealii::numbers::invalid_unsigned_int for a
+      /// vertex whose normal displacement is fixed to zero.
+      std::array<unsigned int, dim> nodes;
+
+      std::array<dealii::Point<dim>, dim> vertices;
+
+      /// Outward unit normal of the body.
+      dealii::Tensor<1, dim> normal;
+
+      /// Length or area.
+      double measure;
+    };
+
+    /// In lexicographic order of their positions.
+    std::vector<Node> nodes;
+    std::vector<Face> faces;
+  };
+} // namespace Debond
+
+#endif

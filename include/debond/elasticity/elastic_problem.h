@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_elastic_problem_h
+#define debond_elasticity_elastic_problem_h
+
+#include <deal.II/base/function.h>
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/mapping_fe.h>
+
+#include <deal.II/grid/tria.h>
+
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/sparse_matrix.h>
+#include <deal.II/lac/sparsity_pattern.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/contact/boundary.h>
+#include <debond/elasticity/material.h>
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// What is prescribed where.
+  struct BoundaryConditions
+  {
+    std::set<dealii::types::boundary_id> clamped; ///< Gamma_D, u = 0
+    std::set<dealii::types::boundary_id> contact; ///< Gamma_C
+
+    /// The paper's simplification (7), u_tau = 0 on Gamma_C; otherwise
+    /// sigma_tau = 0 there.
+    bool tangential_displacement_fixed = true;
+  };
+
+
+
+  /// f_0 and f_2, in global coordinates. Functions have dim components.
+  template <int dim>
+  struct Loads
+  {
+    std::shared_ptr<const dealii::Function<dim>> body_force; ///< may be null
+    std::map<dealii::types::boundary_id,
+             std::shared_ptr<const dealii::Function<dim>>>
+      tractions;
+  };
+
+
+
+  /**
+   * Linear elasticity on P1 simplices: the operator A and the load f.
+   *
+   * Unknowns: the Cartesian components of the displacement at each vertex,
+   * except at the contact nodes, where they are the components in the node's
+   * own frame: first u_nu (one degree of freedom, so that the unilateral
+   * constraint is a simple bound), then the tangential ones. A vertex where
+   * contact sides of different normals meet has one u_nu for each of them;
+   * if tangential displacements are fixed there, it is clamped. Normals that
+   * differ by less than 30 degrees count as one (their mean), as on a
+   * polygonal approximation of a smooth side.
+   *
+   * All vectors have n_dofs() entries; the constrained ones are zero, and A
+   * has only a diagonal entry there.
+   */
+  template <int dim>
+  class ElasticProblem
+  {
+  public:
+    /// Keeps a reference to the triangulation. Throws std::invalid_argument
+    /// if a boundary is both clamped and contact, or if a rigid motion is
+    /// left free; the message names the motion ("translation in y",
+    /// "rotation about z").
+    ElasticProblem(const dealii::Triangulation<dim> &triangulation,
+                   const BoundaryConditions &        conditions);
+
+    ElasticProblem(const ElasticProblem &) = delete;
+
+    /// Computes A and f. Throws std::invalid_argument, naming the boundary or
+    /// the body force and the point, if a load is not finite somewhere.
+    void
+    assemble(const Material &material, const Loads<dim> &loads);
+
+    const dealii::DoFHandler<dim> &
+    dof_handler() const;
+
+    const dealii::Mapping<dim> &
+    mapping() const;
+
+    const dealii::SparseMatrix<double> &
+    matrix() const;
+
+    const dealii::Vector<double> &
+    load() const;
+
+    const ContactBoundary<dim> &
+    contact_boundary() const;
+
+    unsigned int
+    n_dofs() const;
+
+    /// Unknowns of the discrete problem.
+    unsigned int
+    n_free_dofs() const;
+
+    /// The paper's count, which includes the tangential displacements of the
+    /// contact nodes although they are fixed: 710 on its mesh 40x4.
+    unsigned int
+    n_dofs_paper() const;
+
+    /// The Cartesian components of a vector of unknowns, at every vertex.
+    dealii::Vector<double>
+    cartesian_displacement(const dealii::Vector<double> &u) const;
+
+    /**
+     * A u - f at every degree of freedom, the constrained ones included, by a
+     * loop over the cells that uses neither matrix() nor load(): internal
+     * minus applied forces, in the unknowns' frames. At constrained degrees
+     * of freedom this is the reaction of the support, at u_nu of a contact
+     * node minus the normal force of the foundation.
+     */
+    dealii::Vector<double>
+    residual(const dealii::Vector<double> &u) const;
+
+    /// The forces in the unknowns' frames (such as a residual) as Cartesian
+    /// components.
+    dealii::Vector<double>
+    cartesian_forces(const dealii::Vector<double> &forces) const;
+
+    /// Whether a degree of freedom is fixed to zero (clamped or tangential).
+    bool
+    is_constrained(const dealii::types::global_dof_index dof) const;
+
+    /// The resultant of all applied loads, in Cartesian components.
+    dealii::Tensor<1, dim>
+    total_load() const;
+
+    /// Strain-energy density, stress and displacement gradient are constant
+    /// on each cell: the stress of the active cell, in the units of E.
+    dealii::SymmetricTensor<2, dim>
+    stress(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+           const dealii::Vector<double> &cartesian_displacement) const;
+
+    const Material &
+    material() const;
+  };
+} // namespace Debond
+
+#endif

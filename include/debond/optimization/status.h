@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_status_h
+#define debond_optimization_status_h
+
+#include <string>
+
+namespace Debond
+{
+  /// How a solver ended. Everything but success is reported to the user.
+  enum class SolverStatus
+  {
+    success,         ///< the stop criterion holds
+    iteration_limit, ///< the iteration cap was reached first
+    line_search,     ///< no point with the required subgradient was found
+    quadratic_program, ///< the direction-finding problem could not be solved
+    not_finite,      ///< the objective or a subgradient is NaN or infinite
+    interrupted      ///< stopped from outside, the last iterate is kept
+  };
+
+  /// A short name for files ("success", "iteration limit", ...).
+  std::string
+  to_string(const SolverStatus status);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_output_summary_h
+#define debond_output_summary_h
+
+#include <map>
+#include <string>
+
+namespace Debond
+{
+  /// What a run reports, for the log and for summary.json.
+  struct Summary
+  {
+    std::string  scene;  ///< path of the .prm as given
+    std::string  method; ///< Solver/Method
+    std::string  status; ///< to_string(SolverStatus)
+    std::string  message;
+    unsigned int dimension            = 2;
+    double       functional           = 0.;
+    unsigned int total_iterations     = 0;
+    unsigned int long_steps           = 0;
+    unsigned int short_steps          = 0;
+    unsigned int null_steps           = 0;
+    double       last_v               = 0.; ///< v_k
+    double       largest_qp_residual  = 0.;
+    unsigned int cells                = 0;
+    unsigned int degrees_of_freedom   = 0; ///< free ones
+    unsigned int degrees_of_freedom_paper = 0;
+    unsigned int contact_nodes        = 0;
+    double       law_violation        = 0.;
+    double       penetration          = 0.;
+    double       equilibrium_residual = 0.;
+    double       force_imbalance      = 0.;
+
+    /// contact, bonded, kink, broken: number of contact nodes.
+    std::map<std::string, unsigned int> bond_states;
+
+    /// Wall seconds: mesh, assembly, solve, output, total, and the parts of
+    /// solve under "solve/...".
+    std::map<std::string, double> timings_s;
+
+    std::string revision;
+    std::string deal_ii_version;
+    std::string build_type;
+  };
+
+  /// Writes summary.json. Numbers that are not finite become null. Throws
+  /// std::runtime_error naming the file if it cannot be written.
+  void
+  write_summary(const Summary &summary, const std::string &file_name);
+} // namespace Debond
+
+#endif

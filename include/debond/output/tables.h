@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_output_tables_h
+#define debond_output_tables_h
+
+#include <debond/optimization/proximal_bundle.h>
+#include <debond/output/verification.h>
+
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /**
+   * The paper's Figures 5 and 6 as CSV, one row per contact node: x, y[, z],
+   * u_nu, normal_force, normal_force_density, allowed_lower, allowed_upper,
+   * violation, state, with 16 digits. Throws std::runtime_error naming the
+   * file if it cannot be written.
+   */
+  template <int dim>
+  void
+  write_contact_profile(const ContactBoundary<dim> &boundary,
+                        const Verification<dim> &   verification,
+                        const std::string &         file_name);
+
+  /// The iteration history as CSV: iteration, functional, v, t_L, t_R,
+  /// bundle_size, qp_steps, kind.
+  void
+  write_history(const std::vector<BundleIteration> &history,
+                const std::string &                 file_name);
+} // namespace Debond
+
+#endif

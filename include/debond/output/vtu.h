@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_output_vtu_h
+#define debond_output_vtu_h
+
+#include <debond/output/verification.h>
+
+#include <string>
+
+namespace Debond
+{
+  /**
+   * Writes the body as VTU: displacement (vector, nodal; warp by it), and per
+   * cell, where P1 elements have them, stress components, von Mises stress
+   * and strain-energy density. Throws std::runtime_error naming the file if
+   * it cannot be written.
+   */
+  template <int dim>
+  void
+  write_body_vtu(const ElasticProblem<dim> &   problem,
+                 const dealii::Vector<double> &u,
+                 const std::string &           file_name);
+
+  /**
+   * Writes the contact boundary as VTU: displacement, u_nu, gap (-u_nu),
+   * normal_force_density (nodal force over nodal measure, pressure positive),
+   * bond_state (0 contact, 1 bonded, 2 kink, 3 broken), law_violation.
+   */
+  template <int dim>
+  void
+  write_contact_vtu(const ElasticProblem<dim> &   problem,
+                    const dealii::Vector<double> &u,
+                    const Verification<dim> &     verification,
+                    const std::string &           file_name);
+} // namespace Debond
+
+#endif
