@@ -19,9 +19,9 @@ namespace Debond
   class Functional : public Objective<VectorType>
   {
   public:
-    Functional(const MatrixType &           A,
-               const VectorType &           f,
-               const ContactBoundary<dim> & boundary,
+    Functional(const MatrixType            &A,
+               const VectorType            &f,
+               const ContactBoundary<dim>  &boundary,
                const AdhesionIntegral<dim> &adhesion);
 
     double
@@ -46,9 +46,9 @@ namespace Debond
   private:
     class Line;
 
-    const MatrixType &           A;
-    const VectorType &           f;
-    const ContactBoundary<dim> & boundary;
+    const MatrixType            &A;
+    const VectorType            &f;
+    const ContactBoundary<dim>  &boundary;
     const AdhesionIntegral<dim> &adhesion;
   };
 } // namespace Debond

@@ -2,6 +2,7 @@
 #ifndef debond_optimization_proximal_bundle_h
 #define debond_optimization_proximal_bundle_h
 
+#include <debond/optimization/line_search.h>
 #include <debond/optimization/objective.h>
 #include <debond/optimization/status.h>
 
@@ -50,18 +51,6 @@ namespace Debond
 
 
 
-  enum class StepKind
-  {
-    long_step,
-    short_step,
-    null_step
-  };
-
-  std::string
-  to_string(const StepKind kind);
-
-
-
   /// One iteration, for histories and progress lines.
   struct BundleIteration
   {
@@ -80,9 +69,9 @@ namespace Debond
   template <typename VectorType>
   struct ProximalBundleResult
   {
-    SolverStatus                 status = SolverStatus::iteration_limit;
-    double                       functional = 0.; ///< J(x)
-    double                       v          = 0.; ///< last v_k
+    SolverStatus                 status      = SolverStatus::iteration_limit;
+    double                       functional  = 0.; ///< J(x)
+    double                       v           = 0.; ///< last v_k
     unsigned int                 long_steps  = 0;
     unsigned int                 short_steps = 0;
     unsigned int                 null_steps  = 0;
@@ -94,8 +83,8 @@ namespace Debond
     std::string message;
 
     /// Wall seconds by part.
-    double qp_seconds          = 0.;
-    double objective_seconds   = 0.;
+    double qp_seconds             = 0.;
+    double objective_seconds      = 0.;
     double linear_algebra_seconds = 0.;
 
     unsigned int
@@ -129,9 +118,9 @@ namespace Debond
     /// Improves x, which has to be in K.
     ProximalBundleResult<VectorType>
     minimize(const Objective<VectorType> &objective,
-             const UpperBounds &          bounds,
-             VectorType &                 x,
-             const Monitor &              monitor = {}) const;
+             const UpperBounds           &bounds,
+             VectorType                  &x,
+             const Monitor               &monitor = {}) const;
 
   private:
     ProximalBundleParameters parameters;

@@ -9,12 +9,12 @@ namespace Debond
   /// How a solver ended. Everything but success is reported to the user.
   enum class SolverStatus
   {
-    success,         ///< the stop criterion holds
-    iteration_limit, ///< the iteration cap was reached first
-    line_search,     ///< no point with the required subgradient was found
+    success,           ///< the stop criterion holds
+    iteration_limit,   ///< the iteration cap was reached first
+    line_search,       ///< no point with the required subgradient was found
     quadratic_program, ///< the direction-finding problem could not be solved
-    not_finite,      ///< the objective or a subgradient is NaN or infinite
-    interrupted      ///< stopped from outside, the last iterate is kept
+    not_finite,        ///< the objective or a subgradient is NaN or infinite
+    interrupted        ///< stopped from outside, the last iterate is kept
   };
 
   /// A short name for files ("success", "iteration limit", ...).

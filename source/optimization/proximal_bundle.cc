@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+#include <deal.II/lac/la_parallel_vector.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/optimization/bundle_qp.h>
+#include <debond/optimization/proximal_bundle.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Relative residual of the direction problem above which its solution is
+    /// not used.
+    constexpr double acceptable_qp_residual = 1e-6;
+
+    [[noreturn]] void
+    out_of_range(const std::string &name,
+                 const double       value,
+                 const std::string &range)
+    {
+      std::ostringstream text;
+      text << name << " = " << value << " must be " << range << '.';
+      throw std::invalid_argument(text.str());
+    }
+
+
+
+    std::string
+    failure_message(const SolverStatus              status,
+                    const double                    v,
+                    const BundleQP::Solution       &direction,
+                    const ProximalBundleParameters &parameters)
+    {
+      std::ostringstream text;
+      text.precision(3);
+      switch (status)
+        {
+          case SolverStatus::iteration_limit:
+            text << "proximal bundle method: predicted descent " << v
+                 << " after " << parameters.maximum_iterations
+                 << " iterations, required is at least "
+                 << -parameters.epsilon_s
+                 << ". Try another proximal weight, more iterations or a "
+                    "larger stop tolerance.";
+            break;
+          case SolverStatus::line_search:
+            text << "line search: no subgradient with slope above m_R v_k = "
+                 << parameters.m_R * v << " was found, predicted descent is "
+                 << v << ", required is at least " << -parameters.epsilon_s
+                 << ". Try a larger proximal weight or stop tolerance.";
+            break;
+          case SolverStatus::quadratic_program:
+            text << "bundle QP (" << to_string(direction.status)
+                 << "): relative residual " << direction.residual()
+                 << ", required is at most " << acceptable_qp_residual
+                 << ". Try a smaller bundle size or a larger proximal weight.";
+            break;
+          case SolverStatus::not_finite:
+            text << "objective: the functional or its subgradient is not a "
+                    "finite number. Check the data of the scene.";
+            break;
+          case SolverStatus::interrupted:
+            text << "interrupted: predicted descent " << v
+                 << ", required is at least " << -parameters.epsilon_s << '.';
+            break;
+          case SolverStatus::success:
+            break;
+        }
+      return text.str();
+    }
+
+
+
+    /// The subgradients of the bundle with what the direction problem needs
+    /// of them.
+    template <typename VectorType>
+    class Bundle
+    {
+    public:
+      Bundle(const unsigned int size,
+             const UpperBounds &bounds,
+             const VectorType  &model)
+        : bounds(bounds)
+        , qp(size, bounds.indices.size())
+        , subgradients(size, model)
+        , alpha(size)
+        , distance(size)
+        , b(bounds.indices.size())
+        , bounded(bounds.indices.size())
+      {}
+
+      unsigned int
+      size() const
+      {
+        return qp.n_cuts();
+      }
+
+      bool
+      full() const
+      {
+        return size() == subgradients.size();
+      }
+
+      void
+      clear()
+      {
+        qp.clear();
+      }
+
+      /// Stores @p eta of a point at the given distance and with the given
+      /// linearisation error at x_k.
+      void
+      add(const VectorType &eta,
+          const double      new_alpha,
+          const double      new_distance)
+      {
+        const unsigned int j   = size();
+        VectorType        &cut = subgradients[j];
+        cut                    = eta;
+
+        // The bounded components are kept apart, so that the part of the Gram
+        // matrix that remains when bounds are active is not a difference.
+        for (unsigned int i = 0; i < bounds.indices.size(); ++i)
+          {
+            bounded(i)             = cut(bounds.indices[i]);
+            cut(bounds.indices[i]) = 0.;
+          }
+        products.resize(j + 1);
+        for (unsigned int k = 0; k <= j; ++k)
+          products(k) = subgradients[k] * cut;
+        alpha(j)    = new_alpha;
+        distance(j) = new_distance;
+        qp.add_cut(products, bounded);
+      }
+
+      const BundleQP::Solution &
+      solve(const VectorType &x, const double u, const double gamma)
+      {
+        const unsigned int m = size();
+        for (unsigned int i = 0; i < bounds.indices.size(); ++i)
+          b(i) = bounds.upper[i] - x(bounds.indices[i]);
+        beta = alpha.head(m).cwiseAbs().cwiseMax(gamma *
+                                                 distance.head(m).cwiseAbs2());
+        return qp.solve(beta, b, u);
+      }
+
+      void
+      direction(const BundleQP::Solution &solution,
+                const double              u,
+                VectorType               &d) const
+      {
+        d = 0.;
+        for (unsigned int j = 0; j < size(); ++j)
+          if (solution.lambda(j) > 0.)
+            d.add(-solution.lambda(j) / u, subgradients[j]);
+        for (unsigned int i = 0; i < bounds.indices.size(); ++i)
+          d(bounds.indices[i]) = solution.d(i);
+      }
+
+      /// Accounts for x_{k+1} = x_k + t_L d.
+      void
+      move(const BundleQP::Solution &solution,
+           const LineSearchResult   &step,
+           const double              d_norm)
+      {
+        const unsigned int m = size();
+        alpha.head(m) +=
+          (step.change - step.t_L * solution.slopes.array()).matrix();
+        distance.head(m).array() += step.t_L * d_norm;
+      }
+
+    private:
+      const UpperBounds      &bounds;
+      BundleQP                qp;
+      std::vector<VectorType> subgradients; ///< zero in the bounded components
+      Eigen::VectorXd         alpha;        ///< linearisation errors
+      Eigen::VectorXd         distance;     ///< s_j^k
+      Eigen::VectorXd         b;
+      Eigen::VectorXd         bounded;
+      Eigen::VectorXd         products;
+      Eigen::VectorXd         beta;
+    };
+  } // namespace
+
+
+
+  void
+  ProximalBundleParameters::validate() const
+  {
+    if (!(u > 0.) || !std::isfinite(u))
+      out_of_range("Proximal weight u_k", u, "positive");
+    if (!(gamma >= 0.) || !std::isfinite(gamma))
+      out_of_range("Distance weight gamma", gamma, "nonnegative");
+    if (!(t_bar > 0. && t_bar <= 1.))
+      out_of_range("Long step threshold t_bar", t_bar, "in (0, 1]");
+    if (!(m_L > 0. && m_L < 0.5))
+      out_of_range("Descent fraction m_L", m_L, "in (0, 1/2)");
+    if (!(m_R > m_L && m_R < 1.))
+      out_of_range("Slope fraction m_R", m_R, "in (m_L, 1)");
+    if (!(epsilon_s > 0.) || !std::isfinite(epsilon_s))
+      out_of_range("Stop tolerance epsilon_s", epsilon_s, "positive");
+    if (bundle_size < 2)
+      out_of_range("Bundle size", bundle_size, "at least 2");
+    if (maximum_iterations < 1)
+      out_of_range("Maximum iterations", maximum_iterations, "at least 1");
+  }
+
+
+
+  template <typename VectorType>
+  ProximalBundle<VectorType>::ProximalBundle(
+    const ProximalBundleParameters &parameters)
+    : parameters(parameters)
+  {
+    parameters.validate();
+  }
+
+
+
+  template <typename VectorType>
+  ProximalBundleResult<VectorType>
+  ProximalBundle<VectorType>::minimize(const Objective<VectorType> &objective,
+                                       const UpperBounds           &bounds,
+                                       VectorType                  &x,
+                                       const Monitor &monitor) const
+  {
+    ProximalBundleResult<VectorType> result;
+    const LineSearchParameters       line_search_parameters{parameters.m_L,
+                                                      parameters.m_R,
+                                                      parameters.t_bar,
+                                                      parameters.gamma};
+
+    dealii::Timer qp_timer, objective_timer, algebra_timer;
+    qp_timer.stop();
+    objective_timer.stop();
+    algebra_timer.stop();
+
+    VectorType eta(x), d(x);
+
+    objective_timer.start();
+    result.functional = objective.value(x);
+    objective.subgradient(x, eta);
+    objective_timer.stop();
+
+    Bundle<VectorType> bundle(parameters.bundle_size, bounds, x);
+    bundle.add(eta, 0., 0.);
+
+    const BundleQP::Solution *direction = nullptr;
+    while (true)
+      {
+        qp_timer.start();
+        direction = &bundle.solve(x, parameters.u, parameters.gamma);
+        qp_timer.stop();
+        result.v = direction->v;
+        result.largest_qp_residual =
+          std::max(result.largest_qp_residual, direction->residual());
+
+        if (!std::isfinite(result.functional) || !std::isfinite(result.v))
+          {
+            result.status = SolverStatus::not_finite;
+            break;
+          }
+        if (direction->residual() > acceptable_qp_residual)
+          {
+            result.status = SolverStatus::quadratic_program;
+            break;
+          }
+        if (result.v >= -parameters.epsilon_s)
+          {
+            result.status = SolverStatus::success;
+            break;
+          }
+        if (result.iterations() == parameters.maximum_iterations)
+          {
+            result.status = SolverStatus::iteration_limit;
+            break;
+          }
+
+        algebra_timer.start();
+        bundle.direction(*direction, parameters.u, d);
+        const double d_norm = d.l2_norm();
+        algebra_timer.stop();
+
+        objective_timer.start();
+        const auto             line = objective.along(x, d);
+        const LineSearchResult step =
+          line_search(*line, d, d_norm, result.v, line_search_parameters, eta);
+        objective_timer.stop();
+        if (!step.success)
+          {
+            result.status = SolverStatus::line_search;
+            break;
+          }
+
+        BundleIteration iteration;
+        iteration.iteration   = result.iterations() + 1;
+        iteration.v           = result.v;
+        iteration.t_L         = step.t_L;
+        iteration.t_R         = step.t_R;
+        iteration.bundle_size = bundle.size();
+        iteration.qp_steps    = direction->steps;
+        iteration.kind        = step.kind;
+
+        algebra_timer.start();
+        if (step.t_L > 0.)
+          {
+            x.add(step.t_L, d);
+            for (unsigned int i = 0; i < bounds.indices.size(); ++i)
+              x(bounds.indices[i]) =
+                std::min<double>(x(bounds.indices[i]), bounds.upper[i]);
+            result.functional += step.change;
+            bundle.move(*direction, step, d_norm);
+          }
+
+        if (bundle.full())
+          {
+            bundle.clear();
+            result.functional = objective.value(x);
+            objective.subgradient(x, eta);
+            bundle.add(eta, 0., 0.);
+          }
+        else
+          bundle.add(eta, step.alpha, (step.t_R - step.t_L) * d_norm);
+        algebra_timer.stop();
+
+        switch (step.kind)
+          {
+            case StepKind::long_step:
+              ++result.long_steps;
+              break;
+            case StepKind::short_step:
+              ++result.short_steps;
+              break;
+            case StepKind::null_step:
+              ++result.null_steps;
+              break;
+          }
+        iteration.functional = result.functional;
+        result.history.push_back(iteration);
+        if (monitor && !monitor(iteration))
+          {
+            result.status = SolverStatus::interrupted;
+            break;
+          }
+      }
+
+    result.functional = objective.value(x);
+    if (result.status != SolverStatus::success)
+      result.message =
+        failure_message(result.status, result.v, *direction, parameters);
+    result.qp_seconds             = qp_timer.wall_time();
+    result.objective_seconds      = objective_timer.wall_time();
+    result.linear_algebra_seconds = algebra_timer.wall_time();
+    return result;
+  }
+
+
+
+  template class ProximalBundle<dealii::Vector<double>>;
+  template class ProximalBundle<
+    dealii::LinearAlgebra::distributed::Vector<double>>;
+} // namespace Debond
