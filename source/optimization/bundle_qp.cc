@@ -522,38 +522,48 @@ namespace Debond
   {
     const Eigen::VectorXd &x = solution.lambda;
 
-    solution.stationarity               = std::abs(x.sum() - 1.);
-    const Eigen::VectorXd cut_force     = bounded.leftCols(m) * x;
-    const double          largest_force = std::max(
-      {cut_force.size() > 0 ? (bounded.leftCols(m).cwiseAbs() * x).maxCoeff() :
-                                       0.,
-       solution.mu.size() > 0 ? solution.mu.maxCoeff() : 0.,
-       std::numeric_limits<double>::min()});
-    for (unsigned int i = 0; i < solution.mu.size(); ++i)
-      solution.stationarity =
-        std::max(solution.stationarity,
-                 std::abs(u * solution.d(i) + cut_force(i) + solution.mu(i)) /
-                   largest_force);
+    const Eigen::VectorXd cut_force = bounded.leftCols(m) * x;
+    const Eigen::VectorXd cut_force_terms =
+      bounded.leftCols(m).cwiseAbs() * x.cwiseAbs();
+    double largest_force = std::numeric_limits<double>::min();
+    double d_largest     = std::numeric_limits<double>::min();
+    for (unsigned int i = 0; i < mu.size(); ++i)
+      {
+        largest_force =
+          std::max({largest_force, cut_force_terms(i), std::abs(mu(i))});
+        d_largest = std::max(d_largest, std::abs(solution.d(i)));
+      }
 
-    solution.feasibility = std::max(0., -x.minCoeff());
-    const double d_largest =
-      std::max(mu.size() > 0 ? solution.d.lpNorm<Eigen::Infinity>() : 0.,
-               std::numeric_limits<double>::min());
-    for (unsigned int i = 0; i < solution.mu.size(); ++i)
-      solution.feasibility = std::max({solution.feasibility,
-                                       (solution.d(i) - b(i)) / d_largest,
-                                       -solution.mu(i) / largest_force});
+    solution.stationarity = std::abs(x.sum() - 1.);
+    solution.feasibility  = std::max(0., -x.minCoeff());
+    for (unsigned int i = 0; i < mu.size(); ++i)
+      {
+        solution.stationarity =
+          std::max(solution.stationarity,
+                   std::abs(u * solution.d(i) + cut_force(i) + mu(i)) /
+                     largest_force);
+        solution.feasibility = std::max(
+          {solution.feasibility,
+           (solution.d(i) - b(i)) / std::max(d_largest, cut_force_terms(i) / u),
+           -mu(i) / largest_force});
+      }
 
     // sum_j lambda_j (v + beta_j - eta_j'd) + sum_i mu_i (b_i - d_i) is the
     // duality gap.
     double gap = 0.;
     for (unsigned int j = 0; j < m; ++j)
       gap += x(j) * (solution.v + beta(j) - solution.slopes(j));
-    for (unsigned int i = 0; i < solution.mu.size(); ++i)
-      gap += solution.mu(i) * std::abs(b(i) - solution.d(i));
+    for (unsigned int i = 0; i < mu.size(); ++i)
+      gap += mu(i) * std::abs(b(i) - solution.d(i));
     double magnitude = std::abs(solution.v);
-    for (unsigned int j = 0; j < m; ++j)
-      magnitude += x(j) * (beta(j) + std::abs(solution.slopes(j)));
+    for (const unsigned int j : cuts)
+      {
+        double slope_terms =
+          bounded.col(j).cwiseAbs().dot(solution.d.cwiseAbs());
+        for (const unsigned int k : cuts)
+          slope_terms += x(k) * std::abs(gram(k, j)) / u;
+        magnitude += x(j) * (beta(j) + slope_terms);
+      }
     solution.complementarity =
       gap / std::max(magnitude, std::numeric_limits<double>::min());
   }

@@ -17,7 +17,7 @@ namespace Debond
   {
     /// Relative residual of the direction problem above which its solution is
     /// not used.
-    constexpr double acceptable_qp_residual = 1e-6;
+    constexpr double acceptable_qp_residual = 1e-9;
 
     [[noreturn]] void
     out_of_range(const std::string &name,
