@@ -27,6 +27,9 @@ namespace Debond
     /// Residual of the linear system above which it is refined.
     constexpr double refinement_tolerance = 1e-14;
 
+    /// Residual of a solution above which the factor is made anew, once.
+    constexpr double repair_tolerance = 1e-10;
+
     /// Range of kappa over the mean diagonal of H in which the factor is kept.
     constexpr double kappa_range = 1e2;
   } // namespace
@@ -564,25 +567,20 @@ namespace Debond
           slope_terms += x(k) * std::abs(gram(k, j)) / u;
         magnitude += x(j) * (beta(j) + slope_terms);
       }
+    solution.duality_gap = gap;
     solution.complementarity =
-      gap / std::max(magnitude, std::numeric_limits<double>::min());
+      std::abs(gap) / std::max(magnitude, std::numeric_limits<double>::min());
   }
 
 
 
-  const BundleQP::Solution &
-  BundleQP::solve(const Eigen::Ref<const Eigen::VectorXd> &new_beta,
-                  const Eigen::Ref<const Eigen::VectorXd> &new_b,
-                  const double                             new_u)
+  void
+  BundleQP::run_active_set()
   {
-    beta            = new_beta;
-    b               = new_b;
-    u               = new_u;
     solution.status = Status::iteration_limit;
-    solution.steps  = 0;
     start();
 
-    const unsigned int limit = 100 + 20 * (m + mu.size());
+    const unsigned int limit = solution.steps + 100 + 20 * (m + mu.size());
     while (solution.steps <= limit)
       {
         if (move_towards(maximum_on_working_set(), false))
@@ -602,6 +600,28 @@ namespace Debond
     if (solution.status != Status::optimal)
       evaluate();
     compute_residuals();
+  }
+
+
+
+  const BundleQP::Solution &
+  BundleQP::solve(const Eigen::Ref<const Eigen::VectorXd> &new_beta,
+                  const Eigen::Ref<const Eigen::VectorXd> &new_b,
+                  const double                             new_u)
+  {
+    beta           = new_beta;
+    b              = new_b;
+    u              = new_u;
+    solution.steps = 0;
+    run_active_set();
+
+    // Errors that the factor has gathered over many updates go with it.
+    if (solution.status != Status::optimal ||
+        !(solution.residual() < repair_tolerance))
+      {
+        factor_valid = false;
+        run_active_set();
+      }
     return solution;
   }
 } // namespace Debond

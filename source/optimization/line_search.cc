@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace Debond
 {
@@ -36,17 +37,17 @@ namespace Debond
 
 
 
-    /// t_L and J(x_k + t_L d_k) - J(x_k), see the documentation of
-    /// line_search().
+    /// t_L and J(x_k + t_L d_k) - J(x_k) by the given rule; zero if there is
+    /// no descent.
     template <typename VectorType>
     void
     find_descent(const LineRestriction<VectorType> &line,
                  const double                       v,
-                 const double                       m_L,
+                 const LineSearchParameters        &parameters,
                  LineSearchResult                  &result)
     {
       const auto descends = [&](const double t, const double change) {
-        return change <= m_L * t * v;
+        return change <= parameters.m_L * t * v;
       };
 
       double t = 1., change = line.change(t), change_at_twice_t = change;
@@ -58,20 +59,24 @@ namespace Debond
           change_at_twice_t = change;
           change            = line.change(t);
         }
-      for (double half = line.change(0.5 * t);
-           half < change && descends(0.5 * t, half) && t > smallest_step;
-           half = line.change(0.5 * t))
-        {
-          t *= 0.5;
-          change_at_twice_t = change;
-          change            = half;
-        }
+
+      if (parameters.rule == DescentRule::minimum)
+        for (double half = line.change(0.5 * t);
+             half < change && descends(0.5 * t, half) && t > smallest_step;
+             half = line.change(0.5 * t))
+          {
+            t *= 0.5;
+            change_at_twice_t = change;
+            change            = half;
+          }
       result.t_L    = t;
       result.change = change;
+      if (t == 1.)
+        return;
 
-      // Minimum of the parabola through t = 0, t and 2 t.
-      if (t < 1.)
+      if (parameters.rule == DescentRule::minimum)
         {
+          // The parabola through t = 0, t and 2 t.
           const double curvature = (change_at_twice_t - 2. * change) / (t * t);
           const double slope     = (4. * change - change_at_twice_t) / (2. * t);
           if (curvature > 0. && slope < 0.)
@@ -85,8 +90,39 @@ namespace Debond
                 }
             }
         }
+      else if (parameters.rule == DescentRule::largest)
+        {
+          double upper = 2. * t;
+          for (unsigned int i = 0; i < maximum_bisections; ++i)
+            {
+              const double middle           = 0.5 * (result.t_L + upper);
+              const double change_at_middle = line.change(middle);
+              if (descends(middle, change_at_middle))
+                {
+                  result.t_L    = middle;
+                  result.change = change_at_middle;
+                }
+              else
+                upper = middle;
+            }
+        }
     }
   } // namespace
+
+
+
+  DescentRule
+  parse_descent_rule(const std::string &name)
+  {
+    if (name == "largest")
+      return DescentRule::largest;
+    if (name == "halving")
+      return DescentRule::halving;
+    if (name == "minimum")
+      return DescentRule::minimum;
+    throw std::invalid_argument("Line search '" + name +
+                                "' must be largest, halving or minimum.");
+  }
 
 
 
@@ -100,7 +136,7 @@ namespace Debond
               VectorType                        &eta)
   {
     LineSearchResult result;
-    find_descent(line, v, parameters.m_L, result);
+    find_descent(line, v, parameters, result);
 
     const auto evaluate = [&](const double t_R, const double change) {
       result.t_R = t_R;

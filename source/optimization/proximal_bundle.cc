@@ -230,8 +230,14 @@ namespace Debond
                                        VectorType                  &x,
                                        const Monitor &monitor) const
   {
+    for (unsigned int i = 0; i < bounds.indices.size(); ++i)
+      if (!(x(bounds.indices[i]) <= bounds.upper[i]))
+        throw std::invalid_argument(
+          "The start of the bundle method must satisfy the bounds.");
+
     ProximalBundleResult<VectorType> result;
-    const LineSearchParameters       line_search_parameters{parameters.m_L,
+    const LineSearchParameters line_search_parameters{parameters.line_search,
+                                                      parameters.m_L,
                                                       parameters.m_R,
                                                       parameters.t_bar,
                                                       parameters.gamma};
@@ -243,13 +249,14 @@ namespace Debond
 
     VectorType eta(x), d(x);
 
-    objective_timer.start();
-    result.functional = objective.value(x);
-    objective.subgradient(x, eta);
-    objective_timer.stop();
-
     Bundle<VectorType> bundle(parameters.bundle_size, bounds, x);
-    bundle.add(eta, 0., 0.);
+    const auto         restart = [&]() {
+      bundle.clear();
+      result.functional = objective.value(x);
+      objective.subgradient(x, eta);
+      bundle.add(eta, 0., 0.);
+    };
+    restart();
 
     const BundleQP::Solution *direction = nullptr;
     while (true)
@@ -258,12 +265,15 @@ namespace Debond
         direction = &bundle.solve(x, parameters.u, parameters.gamma);
         qp_timer.stop();
         result.v = direction->v;
-        result.largest_qp_residual =
-          std::max(result.largest_qp_residual, direction->residual());
 
         if (!std::isfinite(result.functional) || !std::isfinite(result.v))
           {
             result.status = SolverStatus::not_finite;
+            break;
+          }
+        if (result.v - direction->duality_gap >= -parameters.epsilon_s)
+          {
+            result.status = SolverStatus::success;
             break;
           }
         if (direction->residual() > acceptable_qp_residual)
@@ -271,11 +281,8 @@ namespace Debond
             result.status = SolverStatus::quadratic_program;
             break;
           }
-        if (result.v >= -parameters.epsilon_s)
-          {
-            result.status = SolverStatus::success;
-            break;
-          }
+        result.largest_qp_residual =
+          std::max(result.largest_qp_residual, direction->residual());
         if (result.iterations() == parameters.maximum_iterations)
           {
             result.status = SolverStatus::iteration_limit;
@@ -294,6 +301,12 @@ namespace Debond
         objective_timer.stop();
         if (!step.success)
           {
+            // Old subgradients may be to blame: once more without them.
+            if (bundle.size() > 1)
+              {
+                restart();
+                continue;
+              }
             result.status = SolverStatus::line_search;
             break;
           }
@@ -319,12 +332,7 @@ namespace Debond
           }
 
         if (bundle.full())
-          {
-            bundle.clear();
-            result.functional = objective.value(x);
-            objective.subgradient(x, eta);
-            bundle.add(eta, 0., 0.);
-          }
+          restart();
         else
           bundle.add(eta, step.alpha, (step.t_R - step.t_L) * d_norm);
         algebra_timer.stop();

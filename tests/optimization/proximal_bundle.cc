@@ -10,6 +10,7 @@
 
 #include <debond/optimization/proximal_bundle.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <iostream>
@@ -295,6 +296,9 @@ namespace
     VectorType x(test.start.size());
     for (unsigned int i = 0; i < test.start.size(); ++i)
       x(i) = test.start[i];
+    for (unsigned int i = 0; i < test.bounds.indices.size(); ++i)
+      x(test.bounds.indices[i]) =
+        std::min(x(test.bounds.indices[i]), test.bounds.upper[i]);
 
     const TestObjective<VectorType> objective(test.f);
     const auto result = ProximalBundle<VectorType>(parameters)
@@ -343,9 +347,9 @@ main()
     {"QL", ql, {-1., 5.}, 7.2, 0., 60},
     {"Mifflin 1", mifflin1, {0.8, 0.6}, -1., 0., 300},
     {"Rosen-Suzuki", rosen_suzuki, {0., 0., 0., 0.}, -44., 0., 150},
-    {"MAXQ", maxq, maxq_start, 0., 0., 500},
-    {"MAXL", maxl, maxq_start, 0., 0., 200},
-    {"Goffin", goffin, goffin_start, 0., 0., 200},
+    {"MAXQ", maxq, maxq_start, 0., 0., 400},
+    {"MAXL", maxl, maxq_start, 0., 0., 400},
+    {"Goffin", goffin, goffin_start, 0., 0., 400},
     {"Crescent (nonconvex)", crescent, {-1.5, 2.}, 0., 0.5, 200},
     {"Mifflin 2 (nonconvex)", mifflin2, {-1., -1.}, -1., 0.5, 200},
     // MAXQ pushed away from its minimum by x_1 <= -2, x_20 <= -3.

@@ -62,6 +62,10 @@ namespace Debond
       /// max_j (eta_j'd - beta_j), the predicted descent v_k.
       double v = 0.;
 
+      /// By how much the primal exceeds the dual objective, so that the exact
+      /// predicted descent is not below v - duality_gap.
+      double duality_gap = 0.;
+
       /// @name Residuals from the original data
       /// Relative to the largest of the terms that they are the sum of.
       /// @{
@@ -114,6 +118,8 @@ namespace Debond
       bound
     };
 
+    void
+    run_active_set();
     void
     start();
     void

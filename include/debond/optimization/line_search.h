@@ -20,13 +20,29 @@ namespace Debond
 
 
 
+  /// Which of the steps with (14) is taken; the paper leaves it open.
+  enum class DescentRule
+  {
+    largest, ///< the largest in [0, 1], by bisection: the paper's words
+    halving, ///< the first of 1, 1/2, 1/4, ...
+    minimum  ///< on along that sequence while J falls, then a parabola
+  };
+
+  /// Throws std::invalid_argument if the name is none of "largest",
+  /// "halving", "minimum".
+  DescentRule
+  parse_descent_rule(const std::string &name);
+
+
+
   /// The constants of the line search, with the paper's symbols.
   struct LineSearchParameters
   {
-    double m_L;   ///< eq. (14)
-    double m_R;   ///< eq. (15)
-    double t_bar; ///< smallest long step
-    double gamma; ///< weight of the distance in beta, eq. (15)
+    DescentRule rule;
+    double      m_L;   ///< eq. (14)
+    double      m_R;   ///< eq. (15)
+    double      t_bar; ///< smallest long step
+    double      gamma; ///< weight of the distance in beta, eq. (15)
   };
 
 
@@ -54,11 +70,12 @@ namespace Debond
    *
    * The paper asks for the largest t_L with (14) and the largest t_R > t_L
    * with (15), by bisection, and leaves the rest open. The largest t_L has
-   * J(x_k + t_L d_k) close to J(x_k), and the iteration stalls. Here the
-   * search goes through 1, 1/2, 1/4, ... to the first t with (14), on as long
-   * as J falls, and ends with the minimum of the parabola through 0, t and
-   * 2t if that is lower still. t_R is found by bisection between t_L and
-   * 2 t_L (0 and 1 for a null step). doc/line-search.md compares variants.
+   * J(x_k + t_L d_k) close to J(x_k), and the iteration stalls.
+   * DescentRule::minimum goes through 1, 1/2, 1/4, ... to the first t with
+   * (14), on as long as J falls, and ends with the minimum of the parabola
+   * through 0, t and 2t if that is lower still. t_R is found by bisection
+   * between t_L and 2 t_L (0 and 1 for a null step). doc/line-search.md
+   * compares the rules.
    *
    * A short step for which no t_R has (15) takes y_{k+1} = x_{k+1}.
    *

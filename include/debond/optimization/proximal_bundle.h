@@ -34,6 +34,9 @@ namespace Debond
     /// eq. (15); in (m_L, 1).
     double m_R = 0.5;
 
+    /// Which step with (14) the line search takes.
+    DescentRule line_search = DescentRule::minimum;
+
     /// epsilon_s: stop if v_k >= -epsilon_s; in units of the objective.
     double epsilon_s = 1e-13;
 
@@ -115,7 +118,7 @@ namespace Debond
     /// Throws std::invalid_argument for parameters out of range.
     explicit ProximalBundle(const ProximalBundleParameters &parameters);
 
-    /// Improves x, which has to be in K.
+    /// Improves x. Throws std::invalid_argument if x is not in K.
     ProximalBundleResult<VectorType>
     minimize(const Objective<VectorType> &objective,
              const UpperBounds           &bounds,
