@@ -8,6 +8,7 @@
 #include <debond/contact/law.h>
 #include <debond/contact/quadrature.h>
 
+#include <array>
 #include <vector>
 
 namespace Debond
@@ -17,15 +18,15 @@ namespace Debond
    * by quadrature on the contact boundary. The vector s is ordered as
    * ContactBoundary::nodes; fixed vertices count as s = 0.
    *
-   * Keeps references to its arguments.
+   * Keeps references to its arguments. Use from one thread at a time.
    */
   template <int dim>
   class AdhesionIntegral
   {
   public:
-    AdhesionIntegral(const ContactBoundary<dim> &  boundary,
-                     const AdhesiveLaw &           law,
-                     const ContactQuadrature<dim> &quadrature);
+    AdhesionIntegral(const ContactBoundary<dim>   &contact_boundary,
+                     const AdhesiveLaw            &adhesive_law,
+                     const ContactQuadrature<dim> &quadrature_rule);
 
     /// Phi(s), an energy.
     double
@@ -35,7 +36,7 @@ namespace Debond
     /// the law's interval at each kink), a force for each node.
     void
     subgradient(const dealii::Vector<double> &s,
-                dealii::Vector<double> &      xi) const;
+                dealii::Vector<double>       &xi) const;
 
     /// For each node the forces that the law allows: the quadrature of the
     /// Goldstein intervals of j_1 over s +- delta. With delta = 0 this is
@@ -43,15 +44,45 @@ namespace Debond
     std::vector<Interval>
     force_intervals(const dealii::Vector<double> &s, const double delta) const;
 
-  private:
-    template <typename Integrand>
-    void
-    for_each_point(const dealii::Vector<double> &s,
-                   const Integrand &             integrand) const;
+    /// The same with a radius of its own for each node, delta[i] for the
+    /// force on node i.
+    std::vector<Interval>
+    force_intervals(const dealii::Vector<double> &s,
+                    const std::vector<double>    &delta) const;
 
-    const ContactBoundary<dim> &  boundary;
-    const AdhesiveLaw &           law;
+  private:
+    /// A quadrature point on Gamma_C: the trace there is the sum of shape[k]
+    /// s[nodes[k]], k < n_nodes.
+    struct Point
+    {
+      unsigned int                  n_nodes;
+      std::array<unsigned int, dim> nodes;
+      std::array<double, dim>       shape;
+      double                        weight; ///< length or area
+
+      double
+      trace(const dealii::Vector<double> &s) const;
+    };
+
+    /// The quadrature points for the trace s.
+    const std::vector<Point> &
+    points(const dealii::Vector<double> &s) const;
+
+    /// Writes the points of all faces to point_list.
+    void
+    collect_points(const dealii::Vector<double> &s) const;
+
+    /// Replaces the points of point_list that are on a node by one for each
+    /// node.
+    void
+    lump_nodal_points();
+
+    const ContactBoundary<dim>   &boundary;
+    const AdhesiveLaw            &law;
     const ContactQuadrature<dim> &quadrature;
+
+    /// Made once unless the rule depends on the trace.
+    mutable std::vector<Point> point_list;
   };
 } // namespace Debond
 

@@ -15,12 +15,13 @@ namespace Debond
     {
       nodal,    ///< the vertices (trapezoidal rule in 2D)
       midpoint, ///< the barycentre
-      gauss,    ///< Gauss' rule with gauss_points points per direction
+      gauss,    ///< exact to degree 2 gauss_points - 1
       exact     ///< split at the kinks of the law, exact for the P1 trace
     };
 
-    Rule         rule         = Rule::nodal;
-    unsigned int gauss_points = 2; ///< only for Rule::gauss
+    Rule rule = Rule::nodal;
+    /// Only for Rule::gauss: 1 or more, in 3D at most 7.
+    unsigned int gauss_points = 2;
 
     /// Reads "nodal", "midpoint", "gauss N" or "exact". Throws
     /// std::invalid_argument for anything else.
@@ -46,18 +47,38 @@ namespace Debond
       double                  weight; ///< the weights of a face sum to 1
     };
 
-    /// @p kinks are those of the law, used by Rule::exact only.
+    /// @p law_kinks are those of the law, used by Rule::exact only. Throws
+    /// std::invalid_argument if there is no rule of that many Gauss points.
     ContactQuadrature(const ContactQuadratureParameters &parameters,
-                      const std::vector<double> &        kinks);
+                      const std::vector<double>         &law_kinks);
+
+    /// Whether points() gives different points for different traces.
+    bool
+    depends_on_trace() const;
 
     /// The points on a face on which the trace has the given nodal values.
-    /// The reference is valid until the next call.
+    /// The reference is valid until the next call (one thread at a time).
     const std::vector<QuadraturePoint> &
     points(const std::array<double, dim> &trace) const;
 
   private:
-    bool                                 split_at_kinks;
-    std::vector<double>                  kinks;
+    /// A piece of a face: barycentric coordinates of its vertices and the
+    /// trace there.
+    struct Piece
+    {
+      std::array<std::array<double, dim>, dim> vertices;
+      std::array<double, dim>                  trace;
+    };
+
+    /// Appends to `split` the points of a piece of the given part of the
+    /// face's measure, cut where the trace crosses a kink.
+    void
+    append(const Piece &piece, const double measure) const;
+
+    bool                split_at_kinks;
+    std::vector<double> kinks;
+
+    /// The rule on a face, or on each piece of it if split_at_kinks.
     std::vector<QuadraturePoint>         fixed;
     mutable std::vector<QuadraturePoint> split;
   };

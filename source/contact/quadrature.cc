@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+
+#include <debond/contact/quadrature.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace Debond
+{
+  namespace
+  {
+    /// More is of no use for a function with kinks.
+    constexpr unsigned int max_gauss_points_2d = 99;
+
+    /// What deal.II has for triangles.
+    constexpr unsigned int max_gauss_points_3d = 7;
+
+
+
+    /// A rule on the reference simplex in barycentric coordinates, its weights
+    /// relative to their sum.
+    template <int dim>
+    std::vector<typename ContactQuadrature<dim>::QuadraturePoint>
+    in_barycentric_coordinates(const dealii::Quadrature<dim - 1> &rule)
+    {
+      double sum = 0.;
+      for (const double weight : rule.get_weights())
+        sum += weight;
+
+      std::vector<typename ContactQuadrature<dim>::QuadraturePoint> points(
+        rule.size());
+      for (unsigned int q = 0; q < rule.size(); ++q)
+        {
+          points[q].weight         = rule.weight(q) / sum;
+          points[q].barycentric[0] = 1.;
+          for (unsigned int k = 1; k < dim; ++k)
+            {
+              points[q].barycentric[k] = rule.point(q)[k - 1];
+              points[q].barycentric[0] -= rule.point(q)[k - 1];
+            }
+        }
+      return points;
+    }
+
+
+
+    template <int dim>
+    dealii::Quadrature<dim - 1>
+    gauss_rule(const unsigned int n)
+    {
+      const unsigned int largest =
+        dim == 2 ? max_gauss_points_2d : max_gauss_points_3d;
+      if (n < 1 || n > largest)
+        throw std::invalid_argument(
+          "The contact quadrature \"gauss " + std::to_string(n) +
+          "\" does not exist in " + std::to_string(dim) +
+          "D; allowed are \"gauss 1\" to \"gauss " + std::to_string(largest) +
+          "\"");
+
+      // Unlike QGaussSimplex, these rules do not depend on the numbering of
+      // the vertices, so that a symmetric problem stays symmetric.
+      return dealii::QWitherdenVincentSimplex<dim - 1>(n);
+    }
+
+
+
+    /// Points strictly inside, exact to degree 2: what the derivative of a
+    /// quadratic, or the quadratic itself, of a P1 trace needs, with a P1
+    /// basis function as factor of the former.
+    template <int dim>
+    dealii::Quadrature<dim - 1>
+    quadratic_rule()
+    {
+      if constexpr (dim == 2)
+        return dealii::QGauss<1>(2);
+      else
+        return dealii::QWitherdenVincentSimplex<2>(1, false);
+    }
+
+
+
+    template <int dim>
+    std::vector<typename ContactQuadrature<dim>::QuadraturePoint>
+    rule_on_face(const ContactQuadratureParameters &parameters)
+    {
+      using Rule            = ContactQuadratureParameters::Rule;
+      using QuadraturePoint = typename ContactQuadrature<dim>::QuadraturePoint;
+
+      std::vector<QuadraturePoint> points;
+      switch (parameters.rule)
+        {
+          case Rule::nodal:
+            points.resize(dim);
+            for (unsigned int k = 0; k < dim; ++k)
+              {
+                points[k].weight = 1. / dim;
+                points[k].barycentric.fill(0.);
+                points[k].barycentric[k] = 1.;
+              }
+            break;
+          case Rule::midpoint:
+            points.resize(1);
+            points[0].weight = 1.;
+            points[0].barycentric.fill(1. / dim);
+            break;
+          case Rule::gauss:
+            points = in_barycentric_coordinates<dim>(
+              gauss_rule<dim>(parameters.gauss_points));
+            break;
+          case Rule::exact:
+            points = in_barycentric_coordinates<dim>(quadratic_rule<dim>());
+            break;
+        }
+      return points;
+    }
+  } // namespace
+
+
+
+  ContactQuadratureParameters
+  ContactQuadratureParameters::parse(const std::string &text)
+  {
+    const std::string gauss_prefix = "gauss ";
+
+    ContactQuadratureParameters parameters;
+    if (text == "nodal")
+      parameters.rule = Rule::nodal;
+    else if (text == "midpoint")
+      parameters.rule = Rule::midpoint;
+    else if (text == "exact")
+      parameters.rule = Rule::exact;
+    else
+      {
+        const std::string number =
+          text.compare(0, gauss_prefix.size(), gauss_prefix) == 0 ?
+            text.substr(gauss_prefix.size()) :
+            "";
+        const bool valid =
+          (number.size() == 1 || number.size() == 2) && number[0] != '0' &&
+          number.find_first_not_of("0123456789") == std::string::npos;
+        if (!valid)
+          throw std::invalid_argument(
+            "The contact quadrature \"" + text +
+            "\" is unknown; allowed are: nodal, midpoint, gauss N (N >= 1, in "
+            "2D at most " +
+            std::to_string(max_gauss_points_2d) + ", in 3D at most " +
+            std::to_string(max_gauss_points_3d) + "), exact");
+        parameters.rule         = Rule::gauss;
+        parameters.gauss_points = std::stoul(number);
+      }
+    return parameters;
+  }
+
+
+
+  template <int dim>
+  ContactQuadrature<dim>::ContactQuadrature(
+    const ContactQuadratureParameters &parameters,
+    const std::vector<double>         &law_kinks)
+    : split_at_kinks(parameters.rule ==
+                     ContactQuadratureParameters::Rule::exact)
+    , kinks(law_kinks)
+    , fixed(rule_on_face<dim>(parameters))
+  {}
+
+
+
+  template <int dim>
+  bool
+  ContactQuadrature<dim>::depends_on_trace() const
+  {
+    return split_at_kinks;
+  }
+
+
+
+  template <int dim>
+  const std::vector<typename ContactQuadrature<dim>::QuadraturePoint> &
+  ContactQuadrature<dim>::points(const std::array<double, dim> &trace) const
+  {
+    if (!split_at_kinks)
+      return fixed;
+
+    Piece face;
+    face.trace = trace;
+    for (unsigned int k = 0; k < dim; ++k)
+      {
+        face.vertices[k].fill(0.);
+        face.vertices[k][k] = 1.;
+      }
+
+    split.clear();
+    append(face, 1.);
+    return split;
+  }
+
+
+
+  template <int dim>
+  void
+  ContactQuadrature<dim>::append(const Piece &piece, const double measure) const
+  {
+    // Bisect an edge where it crosses a kink. Both halves get a vertex that is
+    // on the kink exactly, so this ends: a half has fewer crossings.
+    for (const double kink : kinks)
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          if (piece.trace[i] < kink && kink < piece.trace[j])
+            {
+              const double t =
+                (kink - piece.trace[i]) / (piece.trace[j] - piece.trace[i]);
+              std::array<double, dim> crossing;
+              for (unsigned int k = 0; k < dim; ++k)
+                crossing[k] =
+                  (1. - t) * piece.vertices[i][k] + t * piece.vertices[j][k];
+
+              Piece below       = piece;
+              below.vertices[j] = crossing;
+              below.trace[j]    = kink;
+              append(below, t * measure);
+
+              Piece above       = piece;
+              above.vertices[i] = crossing;
+              above.trace[i]    = kink;
+              append(above, (1. - t) * measure);
+              return;
+            }
+
+    for (const QuadraturePoint &point : fixed)
+      {
+        QuadraturePoint image;
+        image.weight = point.weight * measure;
+        image.barycentric.fill(0.);
+        for (unsigned int v = 0; v < dim; ++v)
+          for (unsigned int k = 0; k < dim; ++k)
+            image.barycentric[k] += point.barycentric[v] * piece.vertices[v][k];
+        split.push_back(image);
+      }
+  }
+
+
+
+  template class ContactQuadrature<2>;
+  template class ContactQuadrature<3>;
+} // namespace Debond
