@@ -14,16 +14,21 @@ namespace Debond
    * The crossed subdivision. In 2D each quadrilateral is cut along both
    * diagonals into 4 triangles that meet in its centre (paper's Fig. 3), in
    * 3D each hexahedron into 24 tetrahedra spanned by its centre, the centre of
-   * a face and an edge of that face. Boundary, manifold and material ids are
-   * kept; a curved boundary is sampled at the vertices only.
+   * a face and an edge of that face. Centres are means of the corners.
    *
-   * @p coarse must be an unrefined mesh of quadrilaterals (hexahedra);
-   * @p crossed must be empty. Throws std::invalid_argument otherwise.
+   * The material and manifold ids of cells and the boundary and manifold ids
+   * of faces are kept; manifold objects are not, so that a curved boundary is
+   * sampled at the vertices only. Inside of a coarse cell faces are flat.
+   *
+   * @p coarse must be a mesh of quadrilaterals (hexahedra) without hanging
+   * nodes, all active cells on one level, and each cell's centre must see all
+   * of its faces; @p crossed must be empty. Throws std::invalid_argument
+   * otherwise.
    */
   template <int dim>
   void
   crossed_subdivision(const dealii::Triangulation<dim> &coarse,
-                      dealii::Triangulation<dim> &      crossed);
+                      dealii::Triangulation<dim>       &crossed);
 
 
 
@@ -36,9 +41,11 @@ namespace Debond
   };
 
   /// The crossed mesh of a box with the boundary ids of boundary_names().
+  /// Throws std::invalid_argument if a length is not positive or there are no
+  /// cells in a direction.
   template <int dim>
   void
-  make_box(const BoxParameters &       parameters,
+  make_box(const BoxParameters        &parameters,
            dealii::Triangulation<dim> &crossed);
 
   /**
@@ -48,6 +55,12 @@ namespace Debond
   template <int dim>
   const std::map<std::string, dealii::types::boundary_id> &
   boundary_names();
+
+  /// The name of a boundary for messages: "bottom", or "boundary 7" if that is
+  /// not a side of the box.
+  template <int dim>
+  std::string
+  boundary_name(const dealii::types::boundary_id id);
 } // namespace Debond
 
 #endif

@@ -2,27 +2,24 @@
 #ifndef debond_elasticity_elastic_problem_h
 #define debond_elasticity_elastic_problem_h
 
-#include <deal.II/base/function.h>
-
+#include <deal.II/base/symmetric_tensor.h>
+#include <deal.II/base/tensor.h>
 #include <deal.II/dofs/dof_handler.h>
-
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping_fe.h>
-
 #include <deal.II/grid/tria.h>
-
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/sparsity_pattern.h>
 #include <deal.II/lac/vector.h>
 
 #include <debond/contact/boundary.h>
+#include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/material.h>
+#include <debond/elasticity/rigid_motions.h>
 
-#include <map>
-#include <memory>
+#include <array>
 #include <set>
-#include <string>
 #include <vector>
 
 namespace Debond
@@ -40,18 +37,6 @@ namespace Debond
 
 
 
-  /// f_0 and f_2, in global coordinates. Functions have dim components.
-  template <int dim>
-  struct Loads
-  {
-    std::shared_ptr<const dealii::Function<dim>> body_force; ///< may be null
-    std::map<dealii::types::boundary_id,
-             std::shared_ptr<const dealii::Function<dim>>>
-      tractions;
-  };
-
-
-
   /**
    * Linear elasticity on P1 simplices: the operator A and the load f.
    *
@@ -65,23 +50,26 @@ namespace Debond
    * polygonal approximation of a smooth side.
    *
    * All vectors have n_dofs() entries; the constrained ones are zero, and A
-   * has only a diagonal entry there.
+   * has only a diagonal entry there: a positive number of the size of the
+   * cells' own diagonal entries, without a meaning.
    */
   template <int dim>
   class ElasticProblem
   {
   public:
-    /// Keeps a reference to the triangulation. Throws std::invalid_argument
-    /// if a boundary is both clamped and contact, or if a rigid motion is
-    /// left free; the message names the motion ("translation in y",
-    /// "rotation about z").
+    /// Keeps a reference to the triangulation, a connected mesh of simplices.
+    /// Throws std::invalid_argument if a boundary is both clamped and contact
+    /// or is not in the mesh, if contact_frame() does, or if a rigid motion is
+    /// left free; the message names the motion ("translation in y", "rotation
+    /// about z"). The unilateral condition on u_nu does not count as a
+    /// support.
     ElasticProblem(const dealii::Triangulation<dim> &triangulation,
-                   const BoundaryConditions &        conditions);
+                   const BoundaryConditions         &conditions);
 
     ElasticProblem(const ElasticProblem &) = delete;
 
-    /// Computes A and f. Throws std::invalid_argument, naming the boundary or
-    /// the body force and the point, if a load is not finite somewhere.
+    /// Computes A and f. Throws std::invalid_argument if the material is not
+    /// valid or a load is not, see load_vector(). May be called again.
     void
     assemble(const Material &material, const Loads<dim> &loads);
 
@@ -119,7 +107,8 @@ namespace Debond
     /**
      * A u - f at every degree of freedom, the constrained ones included, by a
      * loop over the cells that uses neither matrix() nor load(): internal
-     * minus applied forces, in the unknowns' frames. At constrained degrees
+     * forces, from the cells' stresses, minus the applied nodal forces, kept
+     * from the last assemble(), in the unknowns' frames. At constrained degrees
      * of freedom this is the reaction of the support, at u_nu of a contact
      * node minus the normal force of the foundation.
      */
@@ -147,6 +136,57 @@ namespace Debond
 
     const Material &
     material() const;
+
+  private:
+    /// The unknowns of a vertex on the contact boundary: x = to_frame u, where
+    /// u are the Cartesian components, and u = to_cartesian x.
+    struct Frame
+    {
+      std::array<dealii::types::global_dof_index, dim> dofs;
+      dealii::Tensor<2, dim>                           to_frame;
+      dealii::Tensor<2, dim>                           to_cartesian;
+    };
+
+    void
+    clamp(const std::set<dealii::types::boundary_id> &boundaries,
+          std::vector<Support<dim>>                  &supports);
+
+    void
+    clamp_vertex(
+      const std::array<dealii::types::global_dof_index, dim> &vertex_dofs,
+      const dealii::Point<dim>                               &position,
+      std::vector<Support<dim>>                              &supports);
+
+    void
+    make_contact_boundary(const BoundaryConditions  &conditions,
+                          const double               diameter,
+                          std::vector<Support<dim>> &supports);
+
+    /// Cartesian forces as forces in the unknowns' frames.
+    dealii::Vector<double>
+    in_frames(const dealii::Vector<double> &forces) const;
+
+    const dealii::MappingFE<dim> mapping_p1;
+    const dealii::FESystem<dim>  fe;
+    dealii::DoFHandler<dim>      dofs;
+
+    /// By vertex index, invalid_unsigned_int where the unknowns are Cartesian.
+    std::vector<unsigned int> frame_of_vertex;
+    std::vector<Frame>        frames;
+
+    dealii::AffineConstraints<double> constraints;
+    unsigned int                      n_fixed_tangential_dofs = 0;
+    ContactBoundary<dim>              contact;
+
+    Material                        elastic_material;
+    dealii::SymmetricTensor<4, dim> stiffness;
+
+    dealii::SparsityPattern      sparsity;
+    dealii::SparseMatrix<double> system_matrix;
+    dealii::Vector<double>       system_load;
+
+    /// Cartesian, at every degree of freedom, the constrained ones included.
+    dealii::Vector<double> applied_forces;
   };
 } // namespace Debond
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_load_vector_h
+#define debond_elasticity_load_vector_h
+
+#include <deal.II/base/function.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/lac/vector.h>
+
+#include <map>
+#include <memory>
+
+namespace Debond
+{
+  /// f_0 and f_2, in global coordinates. Functions have dim components.
+  template <int dim>
+  struct Loads
+  {
+    /// Force per volume (per area of the plane in 2D); may be null.
+    std::shared_ptr<const dealii::Function<dim>> body_force;
+
+    /// Force per area (per length in 2D).
+    std::map<dealii::types::boundary_id,
+             std::shared_ptr<const dealii::Function<dim>>>
+      tractions;
+  };
+
+
+
+  /**
+   * The nodal forces int f_0 phi + int f_2 phi, as Cartesian components at
+   * every degree of freedom of the P1 vector space of @p dof_handler.
+   *
+   * The body force is integrated by a rule of degree 2 on each cell.
+   *
+   * Tractions are integrated adaptively on each face: the Gauss-Lobatto rule
+   * of degree 5 on intervals that are halved until that changes the integral
+   * by less than 1e-13 (1e-11 in 3D, where the rule is applied in both
+   * directions) of the face's measure times its largest traction. So a
+   * traction may jump anywhere inside of a face. At the edge of a face it is
+   * the limit from within that counts. A patch of load inside of a face can be
+   * missed if it is narrower than the distance of the first sample points,
+   * 0.14 of the face. In 3D a smooth traction takes 144 evaluations a face, one
+   * that jumps along a line in the order of 1e5 on each face the line crosses.
+   *
+   * Throws std::invalid_argument, naming the boundary or the body force, the
+   * point and the component, if a load cannot be evaluated or is not finite;
+   * and if it has not dim components or acts on a boundary the mesh has not.
+   */
+  template <int dim>
+  dealii::Vector<double>
+  load_vector(const dealii::DoFHandler<dim> &dof_handler,
+              const Loads<dim>              &loads);
+} // namespace Debond
+
+#endif

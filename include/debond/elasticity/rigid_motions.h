@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_rigid_motions_h
+#define debond_elasticity_rigid_motions_h
+
+#include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
+
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// The component of the displacement along `direction` is zero at
+  /// `position`. The direction has length of order one.
+  template <int dim>
+  struct Support
+  {
+    dealii::Point<dim>     position;
+    dealii::Tensor<1, dim> direction;
+  };
+
+
+
+  /**
+   * The rigid motions that the supports leave free, by name: "translation in
+   * y", "rotation about z" (about the supports' centre), or, if none of these
+   * is free by itself, the ones that a free motion is composed of. Empty if
+   * the body is held. Lengths are measured in units of @p diameter, the
+   * body's size; motions that the supports resist by less than 1e-6 of
+   * full clamping count as free.
+   */
+  template <int dim>
+  std::vector<std::string>
+  free_rigid_motions(const std::vector<Support<dim>> &supports,
+                     const double                     diameter);
+} // namespace Debond
+
+#endif

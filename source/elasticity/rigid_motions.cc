@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/elasticity/rigid_motions.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+
+namespace Debond
+{
+  template <int dim>
+  std::vector<std::string>
+  free_rigid_motions(const std::vector<Support<dim>> &supports,
+                     const double                     diameter)
+  {
+    constexpr unsigned int n_motions = dim * (dim + 1) / 2;
+    using Motions                    = Eigen::Matrix<double, n_motions, 1>;
+    using Gram = Eigen::Matrix<double, n_motions, n_motions>;
+
+    const char *const axes[] = {"x", "y", "z"};
+
+    dealii::Tensor<1, dim> centre;
+    for (const Support<dim> &support : supports)
+      centre += support.position / double(supports.size());
+
+    // Gram matrix of the supports' displacements under unit motions; its null
+    // space holds the free motions.
+    Gram gram = Gram::Zero();
+    for (const Support<dim> &support : supports)
+      {
+        const dealii::Tensor<1, dim> x = (support.position - centre) / diameter;
+        const dealii::Tensor<1, dim> &d = support.direction;
+
+        Motions row;
+        for (unsigned int i = 0; i < dim; ++i)
+          row[i] = d[i];
+        if constexpr (dim == 2)
+          row[2] = d[1] * x[0] - d[0] * x[1];
+        else
+          {
+            const dealii::Tensor<1, 3> moment = dealii::cross_product_3d(x, d);
+            for (unsigned int i = 0; i < 3; ++i)
+              row[3 + i] = moment[i];
+          }
+        gram += row * row.transpose();
+      }
+
+    const Eigen::SelfAdjointEigenSolver<Gram> eigen(gram);
+    const double threshold = 1e-12 * supports.size();
+
+    Gram    null_projector = Gram::Zero();
+    Motions null_vector    = Motions::Zero();
+    for (unsigned int k = 0; k < n_motions; ++k)
+      if (eigen.eigenvalues()[k] <= threshold)
+        {
+          null_vector = eigen.eigenvectors().col(k);
+          null_projector += null_vector * null_vector.transpose();
+        }
+
+    std::vector<std::string> pure;
+    std::vector<std::string> components;
+    for (unsigned int k = 0; k < n_motions; ++k)
+      {
+        const std::string name =
+          k < dim ?
+            std::string("translation in ") + axes[k] :
+            std::string("rotation about ") + axes[dim == 2 ? 2 : k - dim];
+        if (null_projector(k, k) > 1. - 1e-6)
+          pure.push_back(name);
+        if (std::abs(null_vector[k]) > 0.1)
+          components.push_back(name);
+      }
+    return pure.empty() ? components : pure;
+  }
+
+
+
+  template std::vector<std::string>
+  free_rigid_motions(const std::vector<Support<2>> &, const double);
+  template std::vector<std::string>
+  free_rigid_motions(const std::vector<Support<3>> &, const double);
+} // namespace Debond
