@@ -11,25 +11,27 @@ namespace Debond
   /**
    * Prints iterations: on a terminal one line that is rewritten a few times a
    * second, in a log a line at iterations 1, 2, 5, 10, 20, 50, 100, 200, 500,
-   * ... A line has iteration, J, v_k, bundle size and step kind.
+   * ... A line has iteration, J, v_k, bundle size and step kind; a line with
+   * these titles comes first.
    */
   class Progress
   {
   public:
-    /// @p terminal: whether @p out is a terminal.
-    Progress(std::ostream &out, const bool terminal);
+    /// Keeps a reference to the stream.
+    Progress(std::ostream &stream, const bool is_terminal);
 
     void
     report(const BundleIteration &iteration);
 
-    /// Ends the line of a terminal and prints the last iteration in a log.
+    /// Prints the last iteration, if that was not done yet, and ends the line.
     void
     finish();
 
   private:
-    std::ostream &  out;
+    std::ostream   &out;
     bool            terminal;
-    bool            pending = false;
+    bool            header_printed = false;
+    bool            pending        = false; ///< last is not a finished line
     double          last_print_seconds;
     unsigned int    next_logged = 1;
     BundleIteration last        = {};

@@ -14,22 +14,22 @@ namespace Debond
     std::string  method; ///< Solver/Method
     std::string  status; ///< to_string(SolverStatus)
     std::string  message;
-    unsigned int dimension            = 2;
-    double       functional           = 0.;
-    unsigned int total_iterations     = 0;
-    unsigned int long_steps           = 0;
-    unsigned int short_steps          = 0;
-    unsigned int null_steps           = 0;
-    double       last_v               = 0.; ///< v_k
-    double       largest_qp_residual  = 0.;
-    unsigned int cells                = 0;
-    unsigned int degrees_of_freedom   = 0; ///< free ones
+    unsigned int dimension                = 2;
+    double       functional               = 0.;
+    unsigned int total_iterations         = 0;
+    unsigned int long_steps               = 0;
+    unsigned int short_steps              = 0;
+    unsigned int null_steps               = 0;
+    double       last_v                   = 0.; ///< v_k
+    double       largest_qp_residual      = 0.;
+    unsigned int cells                    = 0;
+    unsigned int degrees_of_freedom       = 0; ///< free ones
     unsigned int degrees_of_freedom_paper = 0;
-    unsigned int contact_nodes        = 0;
-    double       law_violation        = 0.;
-    double       penetration          = 0.;
-    double       equilibrium_residual = 0.;
-    double       force_imbalance      = 0.;
+    unsigned int contact_nodes            = 0;
+    double       law_violation            = 0.;
+    double       penetration              = 0.;
+    double       equilibrium_residual     = 0.;
+    double       force_imbalance          = 0.;
 
     /// contact, bonded, kink, broken: number of contact nodes.
     std::map<std::string, unsigned int> bond_states;

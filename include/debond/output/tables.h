@@ -19,14 +19,14 @@ namespace Debond
   template <int dim>
   void
   write_contact_profile(const ContactBoundary<dim> &boundary,
-                        const Verification<dim> &   verification,
-                        const std::string &         file_name);
+                        const Verification<dim>    &verification,
+                        const std::string          &file_name);
 
   /// The iteration history as CSV: iteration, functional, v, t_L, t_R,
   /// bundle_size, qp_steps, kind.
   void
   write_history(const std::vector<BundleIteration> &history,
-                const std::string &                 file_name);
+                const std::string                  &file_name);
 } // namespace Debond
 
 #endif

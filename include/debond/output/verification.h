@@ -3,7 +3,6 @@
 #define debond_output_verification_h
 
 #include <deal.II/base/tensor.h>
-
 #include <deal.II/lac/vector.h>
 
 #include <debond/contact/adhesion_integral.h>
@@ -90,9 +89,9 @@ namespace Debond
   /// contact and kink for ContactNodeState::state (and for nothing else).
   template <int dim>
   Verification<dim>
-  verify(const ElasticProblem<dim> &   problem,
-         const AdhesionIntegral<dim> & adhesion,
-         const AdhesiveLaw &           law,
+  verify(const ElasticProblem<dim>    &problem,
+         const AdhesionIntegral<dim>  &adhesion,
+         const AdhesiveLaw            &law,
          const dealii::Vector<double> &u,
          const double                  tolerance = 1e-6);
 } // namespace Debond

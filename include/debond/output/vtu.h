@@ -16,9 +16,9 @@ namespace Debond
    */
   template <int dim>
   void
-  write_body_vtu(const ElasticProblem<dim> &   problem,
+  write_body_vtu(const ElasticProblem<dim>    &problem,
                  const dealii::Vector<double> &u,
-                 const std::string &           file_name);
+                 const std::string            &file_name);
 
   /**
    * Writes the contact boundary as VTU: displacement, u_nu, gap (-u_nu),
@@ -27,10 +27,10 @@ namespace Debond
    */
   template <int dim>
   void
-  write_contact_vtu(const ElasticProblem<dim> &   problem,
+  write_contact_vtu(const ElasticProblem<dim>    &problem,
                     const dealii::Vector<double> &u,
-                    const Verification<dim> &     verification,
-                    const std::string &           file_name);
+                    const Verification<dim>      &verification,
+                    const std::string            &file_name);
 } // namespace Debond
 
 #endif

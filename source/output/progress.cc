@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/output/progress.h>
+
+#include <chrono>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Between two versions of the line on a terminal.
+    constexpr double seconds_between_prints = 0.2;
+
+
+
+    double
+    now_in_seconds()
+    {
+      return std::chrono::duration<double>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+    }
+
+
+
+    std::string
+    header()
+    {
+      std::ostringstream text;
+      text << std::setw(11) << "iteration" << std::setw(17) << "J"
+           << std::setw(12) << "v" << std::setw(9) << "bundle"
+           << "  step";
+      return text.str();
+    }
+
+
+
+    std::string
+    row(const BundleIteration &iteration)
+    {
+      std::ostringstream text;
+      text << std::setw(11) << iteration.iteration << std::scientific
+           << std::setprecision(8) << std::setw(17) << iteration.functional
+           << std::setprecision(2) << std::setw(12) << iteration.v
+           << std::setw(9) << iteration.bundle_size << "  "
+           << to_string(iteration.kind);
+      return text.str();
+    }
+
+
+
+    /// A line that covers the longest of its predecessors on a terminal.
+    std::string
+    padded(const std::string &line)
+    {
+      constexpr unsigned int longest = 60;
+      return line.size() < longest ?
+               line + std::string(longest - line.size(), ' ') :
+               line;
+    }
+
+
+
+    /// The next of 1, 2, 5, 10, 20, 50, ...
+    unsigned int
+    following(const unsigned int number)
+    {
+      unsigned int leading_digit = number;
+      while (leading_digit >= 10)
+        leading_digit /= 10;
+      return leading_digit == 2 ? number / 2 * 5 : number * 2;
+    }
+  } // namespace
+
+
+
+  Progress::Progress(std::ostream &stream, const bool is_terminal)
+    : out(stream)
+    , terminal(is_terminal)
+    , last_print_seconds(-std::numeric_limits<double>::infinity())
+  {}
+
+
+
+  void
+  Progress::report(const BundleIteration &iteration)
+  {
+    if (!header_printed)
+      out << header() << std::endl;
+    header_printed = true;
+
+    last    = iteration;
+    pending = true;
+    if (terminal)
+      {
+        const double now = now_in_seconds();
+        if (now - last_print_seconds < seconds_between_prints)
+          return;
+        last_print_seconds = now;
+        out << '\r' << padded(row(iteration)) << std::flush;
+      }
+    else if (iteration.iteration >= next_logged)
+      {
+        while (next_logged <= iteration.iteration)
+          next_logged = following(next_logged);
+        out << row(iteration) << std::endl;
+        pending = false;
+      }
+  }
+
+
+
+  void
+  Progress::finish()
+  {
+    if (pending)
+      out << (terminal ? '\r' + padded(row(last)) : row(last)) << std::endl;
+    pending = false;
+  }
+} // namespace Debond

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/output/atomic_file.h>
+#include <debond/output/summary.h>
+
+#include <nlohmann/json.hpp>
+
+namespace Debond
+{
+  namespace
+  {
+    using Json = nlohmann::ordered_json;
+
+
+
+    /// The times in the order in which a run spends them.
+    Json
+    timings_as_json(const std::map<std::string, double> &timings)
+    {
+      const std::string parts_prefix = "solve/";
+
+      Json result = Json::object();
+      for (const char *name : {"mesh", "assembly", "solve", "output", "total"})
+        if (const auto timing = timings.find(name); timing != timings.end())
+          result[name] = timing->second;
+
+      Json parts = Json::object();
+      for (const auto &[name, seconds] : timings)
+        if (name.compare(0, parts_prefix.size(), parts_prefix) == 0)
+          parts[name.substr(parts_prefix.size())] = seconds;
+        else
+          result[name] = seconds;
+      result["solve_parts"] = parts;
+      return result;
+    }
+  } // namespace
+
+
+
+  void
+  write_summary(const Summary &summary, const std::string &file_name)
+  {
+    Json json;
+    json["scene"]                    = summary.scene;
+    json["method"]                   = summary.method;
+    json["status"]                   = summary.status;
+    json["message"]                  = summary.message;
+    json["dimension"]                = summary.dimension;
+    json["functional"]               = summary.functional;
+    json["iterations"]               = {{"total", summary.total_iterations},
+                                        {"long", summary.long_steps},
+                                        {"short", summary.short_steps},
+                                        {"null", summary.null_steps}};
+    json["last_v"]                   = summary.last_v;
+    json["largest_qp_residual"]      = summary.largest_qp_residual;
+    json["cells"]                    = summary.cells;
+    json["degrees_of_freedom"]       = summary.degrees_of_freedom;
+    json["degrees_of_freedom_paper"] = summary.degrees_of_freedom_paper;
+    json["contact_nodes"]            = summary.contact_nodes;
+    json["law_violation"]            = summary.law_violation;
+    json["penetration"]              = summary.penetration;
+    json["equilibrium_residual"]     = summary.equilibrium_residual;
+    json["force_imbalance"]          = summary.force_imbalance;
+    json["bond_states"]              = summary.bond_states;
+    json["timings_s"]                = timings_as_json(summary.timings_s);
+    json["revision"]                 = summary.revision;
+    json["deal_ii_version"]          = summary.deal_ii_version;
+    json["build_type"]               = summary.build_type;
+
+    // A path need not be valid UTF-8; that is no reason to lose the summary.
+    const std::string text =
+      json.dump(2, ' ', false, Json::error_handler_t::replace);
+    write_atomically(file_name,
+                     [&](std::ostream &out) { out << text << '\n'; });
+  }
+} // namespace Debond

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/output/atomic_file.h>
+#include <debond/output/tables.h>
+
+#include <iomanip>
+#include <limits>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Enough digits to read the same number back.
+    void
+    set_full_precision(std::ostream &out)
+    {
+      out << std::scientific
+          << std::setprecision(std::numeric_limits<double>::max_digits10 - 1);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  write_contact_profile(const ContactBoundary<dim> &boundary,
+                        const Verification<dim>    &verification,
+                        const std::string          &file_name)
+  {
+    AssertDimension(boundary.nodes.size(), verification.nodes.size());
+
+    write_atomically(file_name, [&](std::ostream &out) {
+      set_full_precision(out);
+      out << (dim == 2 ? "x,y," : "x,y,z,")
+          << "u_nu,normal_force,normal_force_density,allowed_lower,"
+             "allowed_upper,violation,state\n";
+
+      for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
+        {
+          const auto             &node  = boundary.nodes[i];
+          const ContactNodeState &state = verification.nodes[i];
+          for (unsigned int d = 0; d < dim; ++d)
+            out << node.position[d] << ',';
+          out << state.u_nu << ',' << state.normal_force << ','
+              << state.normal_force / node.measure << ','
+              << state.allowed_force.lower << ',' << state.allowed_force.upper
+              << ',' << state.violation << ',' << to_string(state.state)
+              << '\n';
+        }
+    });
+  }
+
+
+
+  void
+  write_history(const std::vector<BundleIteration> &history,
+                const std::string                  &file_name)
+  {
+    write_atomically(file_name, [&](std::ostream &out) {
+      set_full_precision(out);
+      out << "iteration,functional,v,t_L,t_R,bundle_size,qp_steps,kind\n";
+      for (const BundleIteration &step : history)
+        out << step.iteration << ',' << step.functional << ',' << step.v << ','
+            << step.t_L << ',' << step.t_R << ',' << step.bundle_size << ','
+            << step.qp_steps << ',' << to_string(step.kind) << '\n';
+    });
+  }
+
+
+
+  template void
+  write_contact_profile(const ContactBoundary<2> &,
+                        const Verification<2> &,
+                        const std::string &);
+  template void
+  write_contact_profile(const ContactBoundary<3> &,
+                        const Verification<3> &,
+                        const std::string &);
+} // namespace Debond

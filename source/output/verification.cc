@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/output/verification.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace Debond
+{
+  std::string
+  to_string(const BondState state)
+  {
+    switch (state)
+      {
+        case BondState::contact:
+          return "contact";
+        case BondState::bonded:
+          return "bonded";
+        case BondState::kink:
+          return "kink";
+        case BondState::broken:
+          return "broken";
+      }
+    throw std::invalid_argument("This is not a bond state");
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  Verification<dim>::count(const BondState state) const
+  {
+    return std::count_if(nodes.begin(),
+                         nodes.end(),
+                         [&](const ContactNodeState &node) {
+                           return node.state == state;
+                         });
+  }
+
+
+
+  namespace
+  {
+    /// What displacements and tractions are compared with.
+    struct LawScales
+    {
+      double length;
+      double traction;
+    };
+
+
+
+    template <int dim>
+    LawScales
+    law_scales(const AdhesiveLaw                   &law,
+               const ContactBoundary<dim>          &boundary,
+               const std::vector<ContactNodeState> &nodes)
+    {
+      if (law.bond_threshold() > 0. && law.bond_strength() > 0.)
+        return {law.bond_threshold(), law.bond_strength()};
+
+      LawScales scales = {0., 0.};
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        {
+          scales.length   = std::max(scales.length, std::abs(nodes[i].u_nu));
+          scales.traction = std::max(scales.traction,
+                                     std::abs(nodes[i].normal_force) /
+                                       boundary.nodes[i].measure);
+        }
+      return scales;
+    }
+
+
+
+    BondState
+    bond_state(const double       u_nu,
+               const AdhesiveLaw &law,
+               const double       length_tolerance)
+    {
+      if (u_nu >= -length_tolerance)
+        return BondState::contact;
+      if (!(law.bond_strength() > 0.))
+        return BondState::bonded;
+      if (std::abs(u_nu + law.bond_threshold()) <= length_tolerance)
+        return BondState::kink;
+      return u_nu < -law.bond_threshold() ? BondState::broken :
+                                            BondState::bonded;
+    }
+
+
+
+    /// The distance of a force to the allowed ones.
+    double
+    distance(const double force, const Interval &allowed)
+    {
+      return std::max({0., allowed.lower - force, force - allowed.upper});
+    }
+
+
+
+    Interval
+    unbounded_above_if(const bool contact, const Interval &interval)
+    {
+      return {interval.lower,
+              contact ? std::numeric_limits<double>::infinity() :
+                        interval.upper};
+    }
+
+
+
+    /**
+     * The distances of Verification::law_violation, one for each node. A
+     * larger delta allows more, so that bisection finds the least one. It
+     * bisects the exponent, because a node next to a jump of the law is close
+     * to the graph, however far its force is from what is allowed at its
+     * very displacement.
+     */
+    template <int dim>
+    void
+    compute_violations(const ContactBoundary<dim>    &boundary,
+                       const AdhesionIntegral<dim>   &adhesion,
+                       const dealii::Vector<double>  &s,
+                       const LawScales               &scales,
+                       std::vector<ContactNodeState> &nodes)
+    {
+      const unsigned int n = nodes.size();
+
+      // What is needed at fixed displacements is enough. It is exactly zero
+      // for a node on the graph.
+      std::vector<double> lower(n, 0.);
+      std::vector<double> upper(n, 0.);
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          const double force_distance =
+            distance(nodes[i].normal_force, nodes[i].allowed_force);
+          if (force_distance > 0.)
+            upper[i] =
+              force_distance / (scales.traction * boundary.nodes[i].measure);
+          if (s(i) > 0.)
+            upper[i] = std::max(upper[i], s(i) / scales.length);
+          if (upper[i] > 0.)
+            lower[i] = std::numeric_limits<double>::min();
+        }
+
+      // The exponents of double are 2^11, its mantissa has 2^53 values.
+      std::vector<double> delta(n);
+      std::vector<double> radius(n);
+      for (unsigned int step = 0; step < 11 + 53; ++step)
+        {
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              delta[i]  = std::sqrt(lower[i]) * std::sqrt(upper[i]);
+              radius[i] = delta[i] * scales.length;
+            }
+          const std::vector<Interval> intervals =
+            adhesion.force_intervals(s, radius);
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              const Interval allowed =
+                unbounded_above_if(s(i) >= -radius[i], intervals[i]);
+              const bool enough =
+                s(i) <= radius[i] &&
+                distance(nodes[i].normal_force, allowed) <=
+                  delta[i] * scales.traction * boundary.nodes[i].measure;
+              (enough ? upper : lower)[i] = delta[i];
+            }
+        }
+
+      for (unsigned int i = 0; i < n; ++i)
+        nodes[i].violation = upper[i];
+    }
+
+
+
+    template <int dim>
+    double
+    equilibrium_residual(const ElasticProblem<dim>    &problem,
+                         const dealii::Vector<double> &residual)
+    {
+      std::vector<bool> supported(problem.n_dofs(), false);
+      for (const auto &node : problem.contact_boundary().nodes)
+        supported[node.dof] = true;
+
+      double largest_free      = 0.;
+      double largest_supported = 0.;
+      for (unsigned int i = 0; i < problem.n_dofs(); ++i)
+        {
+          double &largest = supported[i] || problem.is_constrained(i) ?
+                              largest_supported :
+                              largest_free;
+          largest         = std::max(largest, std::abs(residual(i)));
+        }
+      return largest_free > 0. ? largest_free / largest_supported : 0.;
+    }
+
+
+
+    template <int dim>
+    void
+    compute_force_balance(const ElasticProblem<dim>    &problem,
+                          const dealii::Vector<double> &residual,
+                          Verification<dim>            &result)
+    {
+      std::vector<bool> is_normal(problem.n_dofs(), false);
+      for (const auto &node : problem.contact_boundary().nodes)
+        is_normal[node.dof] = true;
+
+      // What the supports and the foundation exert is the residual at their
+      // degrees of freedom; all of it at a vertex with a contact node comes
+      // from the foundation.
+      dealii::Vector<double>    clamped(problem.n_dofs());
+      dealii::Vector<double>    contact(problem.n_dofs());
+      std::vector<unsigned int> component(problem.n_dofs());
+      for (const auto &cell : problem.dof_handler().active_cell_iterators())
+        for (const unsigned int v : cell->vertex_indices())
+          {
+            bool has_contact_node = false;
+            for (unsigned int d = 0; d < dim; ++d)
+              has_contact_node |= is_normal[cell->vertex_dof_index(v, d)];
+
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const auto dof = cell->vertex_dof_index(v, d);
+                component[dof] = d;
+                if (is_normal[dof] || problem.is_constrained(dof))
+                  (has_contact_node ? contact : clamped)(dof) = residual(dof);
+              }
+          }
+
+      const auto resultant = [&](const dealii::Vector<double> &forces) {
+        const dealii::Vector<double> cartesian =
+          problem.cartesian_forces(forces);
+        dealii::Tensor<1, dim> sum;
+        for (unsigned int i = 0; i < cartesian.size(); ++i)
+          sum[component[i]] += cartesian(i);
+        return sum;
+      };
+
+      result.applied_force    = problem.total_load();
+      result.clamped_reaction = resultant(clamped);
+      result.contact_reaction = resultant(contact);
+
+      const double sum_of_norms = result.applied_force.norm() +
+                                  result.clamped_reaction.norm() +
+                                  result.contact_reaction.norm();
+      const double norm_of_sum =
+        (result.applied_force + result.clamped_reaction +
+         result.contact_reaction)
+          .norm();
+      result.force_imbalance =
+        norm_of_sum > 0. ? norm_of_sum / sum_of_norms : 0.;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Verification<dim>
+  verify(const ElasticProblem<dim>    &problem,
+         const AdhesionIntegral<dim>  &adhesion,
+         const AdhesiveLaw            &law,
+         const dealii::Vector<double> &u,
+         const double                  tolerance)
+  {
+    if (!std::all_of(u.begin(), u.end(), [](const double x) {
+          return std::isfinite(x);
+        }))
+      throw std::invalid_argument(
+        "A displacement that is not finite cannot be verified");
+
+    const ContactBoundary<dim>  &boundary = problem.contact_boundary();
+    const dealii::Vector<double> residual = problem.residual(u);
+
+    dealii::Vector<double> s(boundary.nodes.size());
+    for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
+      s(i) = u(boundary.nodes[i].dof);
+    const std::vector<Interval> forces = adhesion.force_intervals(s, 0.);
+
+    Verification<dim> result;
+    result.penetration = 0.;
+    for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
+      {
+        ContactNodeState node;
+        node.u_nu          = s(i);
+        node.normal_force  = -residual(boundary.nodes[i].dof);
+        node.allowed_force = unbounded_above_if(s(i) >= 0., forces[i]);
+        result.nodes.push_back(node);
+        result.penetration = std::max(result.penetration, s(i));
+      }
+
+    const LawScales scales = law_scales(law, boundary, result.nodes);
+    compute_violations(boundary, adhesion, s, scales, result.nodes);
+
+    result.law_violation = 0.;
+    for (ContactNodeState &node : result.nodes)
+      {
+        node.state = bond_state(node.u_nu, law, tolerance * scales.length);
+        result.law_violation = std::max(result.law_violation, node.violation);
+      }
+
+    result.equilibrium_residual = equilibrium_residual(problem, residual);
+    compute_force_balance(problem, residual, result);
+    return result;
+  }
+
+
+
+  template struct Verification<2>;
+  template struct Verification<3>;
+  template Verification<2>
+  verify(const ElasticProblem<2> &,
+         const AdhesionIntegral<2> &,
+         const AdhesiveLaw &,
+         const dealii::Vector<double> &,
+         const double);
+  template Verification<3>
+  verify(const ElasticProblem<3> &,
+         const AdhesionIntegral<3> &,
+         const AdhesiveLaw &,
+         const dealii::Vector<double> &,
+         const double);
+} // namespace Debond
