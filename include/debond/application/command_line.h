@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_application_command_line_h
+#define debond_application_command_line_h
+
+#include <debond/application/exit_code.h>
+
+namespace Debond
+{
+  /// Does what the command line asks for. Bad input is reported on std::cerr,
+  /// a line for each error; faults of the program are thrown.
+  ExitCode
+  execute_command_line(const int argc, const char *const argv[]);
+} // namespace Debond
+
+#endif

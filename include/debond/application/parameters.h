@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_application_parameters_h
+#define debond_application_parameters_h
+
+#include <debond/application/parameter_table.h>
+#include <debond/contact/law.h>
+#include <debond/contact/quadrature.h>
+#include <debond/elasticity/crossed_mesh.h>
+#include <debond/elasticity/material.h>
+#include <debond/optimization/proximal_bundle.h>
+
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// A command line or a scene that cannot be used: one line an error.
+  class BadInput : public std::invalid_argument
+  {
+  public:
+    explicit BadInput(const std::vector<std::string> &errors);
+
+    const std::vector<std::string> lines;
+  };
+
+
+
+  /// f_0 and f_2 as expressions in x, y[, z], components separated by ';'.
+  struct LoadParameters
+  {
+    std::string body_force; ///< empty for none
+
+    /// By the name of the side; sides without traction are left out.
+    std::map<std::string, std::string> tractions;
+
+    /// Names that the expressions may use.
+    std::map<std::string, double> constants;
+  };
+
+
+
+  struct OutputParameters
+  {
+    std::string directory;
+    bool        body_vtu        = true;
+    bool        contact_vtu     = true;
+    bool        contact_profile = true;
+    bool        history         = true;
+    bool        machine_details = true;
+  };
+
+
+
+  /// A scene: what each module is given.
+  struct Parameters
+  {
+    std::string                 scene; ///< path of the file
+    unsigned int                dimension = 2;
+    BoxParameters               box;
+    Material                    material;
+    std::set<std::string>       clamped_boundaries;
+    std::set<std::string>       contact_boundaries;
+    bool                        tangential_displacement_fixed = true;
+    LoadParameters              loads;
+    ContactLawParameters        law;
+    ContactQuadratureParameters quadrature;
+    std::string                 quadrature_name;
+    std::string                 method;
+    ProximalBundleParameters    bundle;
+    OutputParameters            output;
+
+    /// The scene with all entries that it leaves to their defaults.
+    std::string effective_scene;
+  };
+
+  /// Declares all entries with defaults (the paper's benchmark on the mesh
+  /// 40x4), patterns and documentation.
+  void
+  declare_parameters(ParameterTable &table);
+
+  /// Reads the file @p scene over the defaults into a table from
+  /// declare_parameters(). Throws BadInput if the file cannot be read at all;
+  /// errors in it are left in the table.
+  void
+  read_scene(const std::string &scene, ParameterTable &table);
+
+  /// Takes the values out of the table. Throws BadInput with the errors of the
+  /// table and those of values that do not fit together.
+  Parameters
+  to_parameters(const std::string &scene, ParameterTable &table);
+} // namespace Debond
+
+#endif

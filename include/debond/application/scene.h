@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_application_scene_h
+#define debond_application_scene_h
+
+#include <deal.II/lac/sparse_matrix.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/application/parameters.h>
+#include <debond/contact/functional.h>
+#include <debond/elasticity/elastic_problem.h>
+
+#include <memory>
+
+namespace Debond
+{
+  /**
+   * The discrete problem of a scene, ready to be solved.
+   *
+   * The constructor throws BadInput where the scene, though
+   * readable, makes no problem: a free rigid motion, a load that is not finite
+   * somewhere, a quadrature that does not exist in dim dimensions.
+   */
+  template <int dim>
+  class Scene
+  {
+  public:
+    using Energy =
+      Functional<dim, dealii::SparseMatrix<double>, dealii::Vector<double>>;
+
+    explicit Scene(const Parameters &parameters);
+
+    Scene(const Scene &) = delete;
+
+    const ElasticProblem<dim> &
+    problem() const;
+
+    const AdhesiveLaw &
+    law() const;
+
+    const AdhesionIntegral<dim> &
+    adhesion() const;
+
+    /// J, on vectors of problem().n_dofs() entries.
+    const Energy &
+    functional() const;
+
+    /// Triangles or tetrahedra.
+    unsigned int
+    n_cells() const;
+
+    /// Wall seconds that the constructor took for the mesh.
+    double
+    mesh_seconds() const;
+
+    /// Wall seconds that the constructor took for the rest.
+    double
+    assembly_seconds() const;
+
+  private:
+    void
+    build(const Parameters &parameters);
+
+    dealii::Triangulation<dim>              triangulation;
+    std::unique_ptr<ElasticProblem<dim>>    elastic_problem;
+    std::unique_ptr<AdhesiveLaw>            adhesive_law;
+    std::unique_ptr<ContactQuadrature<dim>> quadrature;
+    std::unique_ptr<AdhesionIntegral<dim>>  adhesion_integral;
+    std::unique_ptr<Energy>                 energy;
+    double                                  seconds_for_mesh;
+    double                                  seconds_for_assembly;
+  };
+} // namespace Debond
+
+#endif

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/multithread_info.h>
+
+#include <debond/application/command_line.h>
+#include <debond/application/parameters.h>
+#include <debond/application/run.h>
+#include <debond/application/scene.h>
+#include <debond/application/version.h>
+
+#include <boost/program_options.hpp>
+
+#include <unistd.h>
+
+#include <iostream>
+
+namespace Debond
+{
+  namespace
+  {
+    namespace po = boost::program_options;
+
+    const char *const usage =
+      "Usage: debond SCENE.prm [OPTIONS]\n"
+      "\n"
+      "Solves the unilateral contact of an elastic body with an adhesive\n"
+      "foundation as the scene describes it.\n\n";
+
+    const char *const exit_codes =
+      "\nExit codes:\n"
+      "  0  success\n"
+      "  1  internal error\n"
+      "  2  bad input: command line or scene; nothing is written\n"
+      "  3  not converged: the stop criterion was not met\n"
+      "  4  interrupted by SIGINT or SIGTERM; the last iterate is written\n"
+      "  5  the output could not be written\n";
+
+
+
+    po::options_description
+    visible_options()
+    {
+      po::options_description options("Options");
+      options.add_options()                              //
+        ("help", "print this text")                      //
+        ("version", "print versions and the build type") //
+        ("print-parameters",
+         "print all parameters with their documentation as a scene, with the "
+         "defaults or the values of SCENE.prm and --set")   //
+        ("validate", "read and check the scene, then stop") //
+        ("set",
+         po::value<std::vector<std::string>>()->value_name(
+           "\"SECTION/PARAMETER=VALUE\""),
+         "give a parameter another value than the scene; can be repeated");
+      return options;
+    }
+
+
+
+    /// Throws BadInput.
+    po::variables_map
+    parse(const int argc, const char *const argv[])
+    {
+      po::options_description all = visible_options();
+      all.add_options()("scene", po::value<std::string>());
+      po::positional_options_description positional;
+      positional.add("scene", 1);
+
+      // Abbreviations would make every new option a breaking change.
+      const int style = po::command_line_style::default_style &
+                        ~po::command_line_style::allow_guessing;
+      try
+        {
+          po::variables_map values;
+          po::store(po::command_line_parser(argc, argv)
+                      .options(all)
+                      .positional(positional)
+                      .style(style)
+                      .run(),
+                    values);
+          po::notify(values);
+          return values;
+        }
+      catch (const po::error &error)
+        {
+          throw BadInput({std::string(error.what()) + "; see debond --help"});
+        }
+    }
+
+
+
+    template <int dim>
+    ExitCode
+    run_or_validate(const Parameters &parameters, const bool only_validate)
+    {
+      if (!only_validate)
+        return run<dim>(parameters, std::cout, isatty(STDOUT_FILENO) == 1);
+
+      const Scene<dim> scene(parameters);
+      std::cout << parameters.scene << ": valid" << std::endl;
+      return ExitCode::success;
+    }
+
+
+
+    ExitCode
+    execute(const po::variables_map &options)
+    {
+      if (options.count("help") > 0)
+        {
+          std::cout << usage << visible_options() << exit_codes;
+          return ExitCode::success;
+        }
+      if (options.count("version") > 0)
+        {
+          std::cout << "Debond " << program_version() << "\nrevision "
+                    << git_revision() << "\ndeal.II " << deal_ii_version()
+                    << "\nbuild type " << build_type() << std::endl;
+          return ExitCode::success;
+        }
+
+      std::vector<std::string> assignments;
+      if (options.count("set") > 0)
+        assignments = options["set"].as<std::vector<std::string>>();
+
+      ParameterTable table;
+      declare_parameters(table);
+      if (options.count("scene") > 0)
+        read_scene(options["scene"].as<std::string>(), table);
+      for (const std::string &assignment : assignments)
+        table.assign(assignment);
+
+      if (options.count("print-parameters") > 0)
+        {
+          if (!table.errors().empty())
+            throw BadInput(table.errors());
+          table.print(std::cout, true);
+          return ExitCode::success;
+        }
+
+      if (options.count("scene") == 0)
+        throw BadInput({"no scene is given; see debond --help"});
+
+      const bool       only_validate = options.count("validate") > 0;
+      const Parameters parameters =
+        to_parameters(options["scene"].as<std::string>(), table);
+      return parameters.dimension == 2 ?
+               run_or_validate<2>(parameters, only_validate) :
+               run_or_validate<3>(parameters, only_validate);
+    }
+  } // namespace
+
+
+
+  ExitCode
+  execute_command_line(const int argc, const char *const argv[])
+  {
+    // The problem is solved on one core; more threads of deal.II's vector
+    // operations would only change rounding.
+    dealii::MultithreadInfo::set_thread_limit(1);
+
+    try
+      {
+        return execute(parse(argc, argv));
+      }
+    catch (const BadInput &error)
+      {
+        for (const std::string &line : error.lines)
+          std::cerr << "debond: " << line << '\n';
+        return ExitCode::bad_input;
+      }
+  }
+} // namespace Debond

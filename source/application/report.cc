@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/application/report.h>
+#include <debond/application/version.h>
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace Debond
+{
+  namespace
+  {
+    constexpr int label_width = 22;
+
+
+
+    std::ostream &
+    line(std::ostream &out, const std::string &label)
+    {
+      return out << "  " << std::left << std::setw(label_width) << label
+                 << std::right;
+    }
+
+
+
+    std::string
+    scientific(const double value, const int digits)
+    {
+      std::ostringstream text;
+      text << std::scientific << std::setprecision(digits) << value;
+      return text.str();
+    }
+
+
+
+    /// The next of the bounds 1e-9, 1e-6, ... above a small error: the same on
+    /// all machines unless the error is close to one of them.
+    std::string
+    bound(const double error)
+    {
+      if (!std::isfinite(error))
+        return "not finite";
+      double upper = 1e-9;
+      while (error >= upper)
+        upper *= 1000.;
+      return "below " + scientific(upper, 0);
+    }
+
+
+
+    template <int dim>
+    std::string
+    vector_text(const dealii::Tensor<1, dim> &vector)
+    {
+      std::string text = "(";
+      for (unsigned int d = 0; d < dim; ++d)
+        text += (d == 0 ? "" : ", ") + scientific(vector[d], 6);
+      return text + ")";
+    }
+
+
+
+    void
+    report_timings(const Summary &summary, std::ostream &out)
+    {
+      out << "Wall time in s\n" << std::fixed << std::setprecision(4);
+      for (const std::string part :
+           {"mesh", "assembly", "solve", "verification", "output", "total"})
+        {
+          const auto time = summary.timings_s.find(part);
+          if (time == summary.timings_s.end())
+            continue;
+          line(out, part) << time->second << '\n';
+          const std::string prefix = part + "/";
+          for (const auto &[name, seconds] : summary.timings_s)
+            if (name.compare(0, prefix.size(), prefix) == 0)
+              line(out, "  " + name.substr(prefix.size())) << seconds << '\n';
+        }
+      out << std::defaultfloat;
+    }
+  } // namespace
+
+
+
+  void
+  report_problem(const Parameters &parameters,
+                 const Summary    &summary,
+                 std::ostream     &out)
+  {
+    const bool details = parameters.output.machine_details;
+
+    out << "Debond " << program_version();
+    if (details)
+      out << ", revision " << summary.revision << ", deal.II "
+          << summary.deal_ii_version << ", " << summary.build_type;
+    out << "\nProblem\n";
+    if (details)
+      line(out, "scene") << parameters.scene << '\n';
+    line(out, "mesh") << summary.cells
+                      << (summary.dimension == 2 ? " triangles\n" :
+                                                   " tetrahedra\n");
+    line(out, "unknowns") << summary.degrees_of_freedom
+                          << (parameters.tangential_displacement_fixed ?
+                                ", with fixed tangential ones " +
+                                  std::to_string(
+                                    summary.degrees_of_freedom_paper) :
+                                "")
+                          << '\n';
+    line(out, "contact nodes") << summary.contact_nodes << '\n';
+    line(out, "contact law")
+      << parameters.law.name << ", a = " << parameters.law.bond_stiffness
+      << ", M = " << parameters.law.bond_threshold << ", "
+      << parameters.quadrature_name << " quadrature\n";
+    line(out, "method") << parameters.method
+                        << ", u_k = " << parameters.bundle.u << '\n'
+                        << std::flush;
+  }
+
+
+
+  template <int dim>
+  void
+  report_result(const Parameters        &parameters,
+                const Summary           &summary,
+                const Verification<dim> &verification,
+                std::ostream            &out)
+  {
+    const bool details = parameters.output.machine_details;
+    const auto error   = [details](const double value) {
+      return details ? scientific(value, 2) : bound(value);
+    };
+
+    out << "Result\n";
+    const bool success = summary.status == to_string(SolverStatus::success);
+    line(out, "status") << (success ? "" : "NOT CONVERGED: ") << summary.status
+                        << '\n';
+    if (!success)
+      line(out, "") << summary.message << '\n';
+    line(out, "J") << scientific(summary.functional, 10) << '\n';
+    if (details)
+      {
+        line(out, "iterations")
+          << summary.total_iterations << " (long " << summary.long_steps
+          << ", short " << summary.short_steps << ", null "
+          << summary.null_steps << ")\n";
+        line(out, "last v_k") << scientific(summary.last_v, 3) << '\n';
+      }
+
+    std::string states;
+    for (const BondState state : {BondState::contact,
+                                  BondState::bonded,
+                                  BondState::kink,
+                                  BondState::broken})
+      states += (states.empty() ? "" : ", ") + to_string(state) + " " +
+                std::to_string(verification.count(state));
+    line(out, "contact nodes") << states << '\n';
+
+    out << "Verification, from A u - f\n";
+    line(out, "law violation")
+      << error(summary.law_violation)
+      << ", relative to M and to a M times a node's share\n";
+    line(out, "penetration") << scientific(summary.penetration, 2) << '\n';
+    line(out, "residual") << error(summary.equilibrium_residual)
+                          << ", relative to the reactions\n";
+    line(out, "force imbalance")
+      << error(summary.force_imbalance) << ", relative to the forces\n";
+    line(out, "applied force")
+      << vector_text<dim>(verification.applied_force) << '\n';
+    if (details)
+      {
+        line(out, "force of clamps")
+          << vector_text<dim>(verification.clamped_reaction) << '\n';
+        line(out, "force of foundation")
+          << vector_text<dim>(verification.contact_reaction) << '\n';
+        report_timings(summary, out);
+      }
+    out << std::flush;
+  }
+
+
+
+  void
+  report_files(const std::vector<std::string> &files, std::ostream &out)
+  {
+    out << "Written\n";
+    for (const std::string &file : files)
+      out << "  " << file << '\n';
+    out << std::flush;
+  }
+
+
+
+  template void
+  report_result<2>(const Parameters &,
+                   const Summary &,
+                   const Verification<2> &,
+                   std::ostream &);
+  template void
+  report_result<3>(const Parameters &,
+                   const Summary &,
+                   const Verification<3> &,
+                   std::ostream &);
+} // namespace Debond

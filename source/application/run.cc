@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+
+#include <debond/application/interrupt.h>
+#include <debond/application/report.h>
+#include <debond/application/run.h>
+#include <debond/application/scene.h>
+#include <debond/application/version.h>
+#include <debond/output/progress.h>
+#include <debond/output/tables.h>
+#include <debond/output/vtu.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+namespace Debond
+{
+  namespace
+  {
+    using Result = ProximalBundleResult<dealii::Vector<double>>;
+
+
+
+    /// Creates the directory and writes the effective parameters into it.
+    /// Throws std::runtime_error naming what cannot be written.
+    std::string
+    open_output(const Parameters &parameters)
+    {
+      const std::filesystem::path directory = parameters.output.directory;
+      std::error_code             error;
+      std::filesystem::create_directories(directory, error);
+      if (error)
+        throw std::runtime_error("cannot create the output directory " +
+                                 directory.string() + ": " + error.message());
+
+      const std::string file_name = (directory / "parameters.prm").string();
+      std::ofstream     file(file_name);
+      file << parameters.effective_scene << std::flush;
+      if (!file)
+        throw std::runtime_error("cannot write " + file_name);
+      return file_name;
+    }
+
+
+
+    template <int dim>
+    Summary
+    summarize_problem(const Parameters &parameters, const Scene<dim> &scene)
+    {
+      Summary summary;
+      summary.scene                    = parameters.scene;
+      summary.method                   = parameters.method;
+      summary.dimension                = dim;
+      summary.cells                    = scene.n_cells();
+      summary.degrees_of_freedom       = scene.problem().n_free_dofs();
+      summary.degrees_of_freedom_paper = scene.problem().n_dofs_paper();
+      summary.contact_nodes = scene.problem().contact_boundary().nodes.size();
+      summary.timings_s["mesh"]     = scene.mesh_seconds();
+      summary.timings_s["assembly"] = scene.assembly_seconds();
+      summary.revision              = git_revision();
+      summary.deal_ii_version       = deal_ii_version();
+      summary.build_type            = build_type();
+      return summary;
+    }
+
+
+
+    void
+    add_result(const Result &result, Summary &summary)
+    {
+      summary.status                               = to_string(result.status);
+      summary.message                              = result.message;
+      summary.functional                           = result.functional;
+      summary.total_iterations                     = result.iterations();
+      summary.long_steps                           = result.long_steps;
+      summary.short_steps                          = result.short_steps;
+      summary.null_steps                           = result.null_steps;
+      summary.last_v                               = result.v;
+      summary.largest_qp_residual                  = result.largest_qp_residual;
+      summary.timings_s["solve/quadratic program"] = result.qp_seconds;
+      summary.timings_s["solve/functional"]        = result.objective_seconds;
+      summary.timings_s["solve/linear algebra"] = result.linear_algebra_seconds;
+    }
+
+
+
+    template <int dim>
+    void
+    add_verification(const Verification<dim> &verification, Summary &summary)
+    {
+      summary.law_violation        = verification.law_violation;
+      summary.penetration          = verification.penetration;
+      summary.equilibrium_residual = verification.equilibrium_residual;
+      summary.force_imbalance      = verification.force_imbalance;
+      for (const BondState state : {BondState::contact,
+                                    BondState::bonded,
+                                    BondState::kink,
+                                    BondState::broken})
+        summary.bond_states[to_string(state)] = verification.count(state);
+    }
+
+
+
+    template <int dim>
+    Result
+    solve(const Parameters       &parameters,
+          const Scene<dim>       &scene,
+          dealii::Vector<double> &u,
+          std::ostream           &out,
+          const bool              terminal)
+    {
+      const InterruptGuard      guard;
+      std::unique_ptr<Progress> progress;
+      if (parameters.output.machine_details)
+        progress = std::make_unique<Progress>(out, terminal);
+
+      const Result result =
+        ProximalBundle<dealii::Vector<double>>(parameters.bundle)
+          .minimize(scene.functional(),
+                    scene.functional().unilateral_constraint(),
+                    u,
+                    [&](const BundleIteration &iteration) {
+                      if (progress)
+                        progress->report(iteration);
+                      return !guard.requested();
+                    });
+      if (progress)
+        progress->finish();
+      return result;
+    }
+
+
+
+    /// Writes what the scene asks for, and returns the names of the files.
+    template <int dim>
+    std::vector<std::string>
+    write_fields(const Parameters             &parameters,
+                 const Scene<dim>             &scene,
+                 const dealii::Vector<double> &u,
+                 const Verification<dim>      &verification,
+                 const Result                 &result)
+    {
+      const OutputParameters &output = parameters.output;
+      const auto              path   = [&output](const std::string &name) {
+        return (std::filesystem::path(output.directory) / name).string();
+      };
+      std::vector<std::string> files;
+      if (output.body_vtu)
+        {
+          files.push_back(path("body.vtu"));
+          write_body_vtu(scene.problem(), u, files.back());
+        }
+      if (output.contact_vtu)
+        {
+          files.push_back(path("contact.vtu"));
+          write_contact_vtu(scene.problem(), u, verification, files.back());
+        }
+      if (output.contact_profile)
+        {
+          files.push_back(path("contact_profile.csv"));
+          write_contact_profile(scene.problem().contact_boundary(),
+                                verification,
+                                files.back());
+        }
+      if (output.history)
+        {
+          files.push_back(path("history.csv"));
+          write_history(result.history, files.back());
+        }
+      return files;
+    }
+
+
+
+    ExitCode
+    exit_code(const SolverStatus status)
+    {
+      switch (status)
+        {
+          case SolverStatus::success:
+            return ExitCode::success;
+          case SolverStatus::interrupted:
+            return ExitCode::interrupted;
+          default:
+            return ExitCode::not_converged;
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  ExitCode
+  run(const Parameters &parameters, std::ostream &out, const bool terminal)
+  {
+    dealii::Timer total;
+
+    const Scene<dim> scene(parameters);
+
+    std::vector<std::string> files;
+    try
+      {
+        files.push_back(open_output(parameters));
+      }
+    catch (const std::runtime_error &error)
+      {
+        std::cerr << "debond: " << error.what() << std::endl;
+        return ExitCode::output_not_saved;
+      }
+
+    Summary summary = summarize_problem(parameters, scene);
+    report_problem(parameters, summary, out);
+
+    dealii::Timer          timer;
+    dealii::Vector<double> u(scene.problem().n_dofs());
+    const Result           result = solve(parameters, scene, u, out, terminal);
+    summary.timings_s["solve"]    = timer.wall_time();
+
+    timer.restart();
+    const Verification<dim> verification =
+      verify(scene.problem(), scene.adhesion(), scene.law(), u);
+    summary.timings_s["verification"] = timer.wall_time();
+    add_result(result, summary);
+    add_verification(verification, summary);
+
+    std::string output_error;
+    timer.restart();
+    try
+      {
+        const std::vector<std::string> fields =
+          write_fields(parameters, scene, u, verification, result);
+        files.insert(files.end(), fields.begin(), fields.end());
+        summary.timings_s["output"] = timer.wall_time();
+        summary.timings_s["total"]  = total.wall_time();
+        const std::string name =
+          (std::filesystem::path(parameters.output.directory) / "summary.json")
+            .string();
+        write_summary(summary, name);
+        files.push_back(name);
+      }
+    catch (const std::runtime_error &error)
+      {
+        output_error = error.what();
+      }
+
+    report_result(parameters, summary, verification, out);
+    if (parameters.output.machine_details)
+      report_files(files, out);
+
+    if (result.status != SolverStatus::success)
+      std::cerr << "debond: the stop criterion is NOT met (" << summary.status
+                << "): " << summary.message << std::endl;
+    if (!output_error.empty())
+      {
+        std::cerr << "debond: " << output_error << std::endl;
+        return ExitCode::output_not_saved;
+      }
+    return exit_code(result.status);
+  }
+
+
+
+  template ExitCode
+  run<2>(const Parameters &, std::ostream &, const bool);
+  template ExitCode
+  run<3>(const Parameters &, std::ostream &, const bool);
+} // namespace Debond

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+
+#include <debond/application/expression.h>
+#include <debond/application/scene.h>
+
+namespace Debond
+{
+  namespace
+  {
+    template <int dim>
+    BoundaryConditions
+    boundary_conditions(const Parameters &parameters)
+    {
+      BoundaryConditions conditions;
+      for (const std::string &side : parameters.clamped_boundaries)
+        conditions.clamped.insert(boundary_names<dim>().at(side));
+      for (const std::string &side : parameters.contact_boundaries)
+        conditions.contact.insert(boundary_names<dim>().at(side));
+      conditions.tangential_displacement_fixed =
+        parameters.tangential_displacement_fixed;
+      return conditions;
+    }
+
+
+
+    template <int dim>
+    Loads<dim>
+    make_loads(const LoadParameters &parameters)
+    {
+      Loads<dim> loads;
+      if (!parameters.body_force.empty())
+        loads.body_force =
+          make_function<dim>(parameters.body_force, parameters.constants);
+      for (const auto &[side, expression] : parameters.tractions)
+        loads.tractions[boundary_names<dim>().at(side)] =
+          make_function<dim>(expression, parameters.constants);
+      return loads;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Scene<dim>::Scene(const Parameters &parameters)
+  {
+    try
+      {
+        build(parameters);
+      }
+    catch (const std::invalid_argument &error)
+      {
+        throw BadInput({parameters.scene + ": " + error.what()});
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::build(const Parameters &parameters)
+  {
+    dealii::Timer timer;
+    make_box<dim>(parameters.box, triangulation);
+    seconds_for_mesh = timer.wall_time();
+
+    timer.restart();
+    elastic_problem = std::make_unique<ElasticProblem<dim>>(
+      triangulation, boundary_conditions<dim>(parameters));
+    elastic_problem->assemble(parameters.material,
+                              make_loads<dim>(parameters.loads));
+    adhesive_law = make_law(parameters.law);
+    quadrature =
+      std::make_unique<ContactQuadrature<dim>>(parameters.quadrature,
+                                               adhesive_law->kinks());
+    adhesion_integral = std::make_unique<AdhesionIntegral<dim>>(
+      elastic_problem->contact_boundary(), *adhesive_law, *quadrature);
+    energy               = std::make_unique<Energy>(elastic_problem->matrix(),
+                                      elastic_problem->load(),
+                                      elastic_problem->contact_boundary(),
+                                      *adhesion_integral);
+    seconds_for_assembly = timer.wall_time();
+  }
+
+
+
+  template <int dim>
+  const ElasticProblem<dim> &
+  Scene<dim>::problem() const
+  {
+    return *elastic_problem;
+  }
+
+
+
+  template <int dim>
+  const AdhesiveLaw &
+  Scene<dim>::law() const
+  {
+    return *adhesive_law;
+  }
+
+
+
+  template <int dim>
+  const AdhesionIntegral<dim> &
+  Scene<dim>::adhesion() const
+  {
+    return *adhesion_integral;
+  }
+
+
+
+  template <int dim>
+  const typename Scene<dim>::Energy &
+  Scene<dim>::functional() const
+  {
+    return *energy;
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  Scene<dim>::n_cells() const
+  {
+    return triangulation.n_active_cells();
+  }
+
+
+
+  template <int dim>
+  double
+  Scene<dim>::mesh_seconds() const
+  {
+    return seconds_for_mesh;
+  }
+
+
+
+  template <int dim>
+  double
+  Scene<dim>::assembly_seconds() const
+  {
+    return seconds_for_assembly;
+  }
+
+
+
+  template class Scene<2>;
+  template class Scene<3>;
+} // namespace Debond

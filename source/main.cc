@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/application/command_line.h>
+
+#include <exception>
+#include <iostream>
+
+int
+main(int argc, char *argv[])
+{
+  try
+    {
+      return static_cast<int>(Debond::execute_command_line(argc, argv));
+    }
+  catch (const std::exception &error)
+    {
+      std::cerr << "debond: internal error: " << error.what() << std::endl;
+      return static_cast<int>(Debond::ExitCode::internal_error);
+    }
+}
