@@ -1,0 +1,533 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// The adhesive laws, the quadrature rules on the contact boundary and the
+// integral of the one by the other, against closed formulas and differences.
+
+#include <debond/contact/adhesion_integral.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <numeric>
+#include <stdexcept>
+
+using namespace Debond;
+
+
+
+namespace
+{
+  void
+  check(const std::string &what, const bool holds)
+  {
+    std::cout << what << ": " << (holds ? "yes" : "NO") << std::endl;
+  }
+
+
+
+  void
+  print_error(const std::function<void()> &action)
+  {
+    try
+      {
+        action();
+        std::cout << "NO ERROR" << std::endl;
+      }
+    catch (const std::invalid_argument &error)
+      {
+        std::cout << error.what() << std::endl;
+      }
+  }
+
+
+
+  bool
+  equal(const Interval &interval,
+        const double    lower,
+        const double    upper,
+        const double    scale)
+  {
+    return std::abs(interval.lower - lower) < 1e-14 * scale &&
+           std::abs(interval.upper - upper) < 1e-14 * scale;
+  }
+
+
+
+  void
+  test_winkler(const double a, const double M)
+  {
+    const auto law = make_law({"winkler", a, M});
+
+    const double energy   = a * M * M / 2.;
+    const double strength = a * M;
+    check("j_1 as in eq. (10)",
+          std::abs(law->value(-M / 2.) / energy - 0.25) < 1e-14 &&
+            std::abs(law->value(-M) / energy - 1.) < 1e-14 &&
+            std::abs(law->value(-3. * M) / energy - 1.) < 1e-14 &&
+            law->value(0.) == 0. && law->value(M) == 0.);
+
+    bool derivative_is_right = true;
+    bool curvature_is_right  = true;
+    for (const double s : {-5., -1.5, -0.9, -0.5, -0.1, 0.3, 2.})
+      {
+        const double h          = 1e-3 * M;
+        const double left       = law->value(s * M - h);
+        const double right      = law->value(s * M + h);
+        const double derivative = (right - left) / (2. * h);
+        const double curvature =
+          (right - 2. * law->value(s * M) + left) / (h * h);
+        derivative_is_right &= equal(law->clarke_interval(s * M),
+                                     derivative,
+                                     derivative,
+                                     1e3 * strength);
+        curvature_is_right &=
+          std::abs(law->curvature(s * M) - curvature) < 1e-8 * a;
+      }
+    check("derivative agrees with differences on each branch",
+          derivative_is_right);
+    check("curvature agrees with differences on each branch",
+          curvature_is_right);
+
+    check("kinks at -M and 0", law->kinks() == std::vector<double>({-M, 0.}));
+    check("Clarke interval at -M is [-aM, 0]",
+          equal(law->clarke_interval(-M), -strength, 0., strength));
+    check("Clarke interval at 0 is [0, 0]",
+          equal(law->clarke_interval(0.), 0., 0., strength));
+    check("curvature at the kinks is that of the bonds",
+          law->curvature(-M) == a && law->curvature(0.) == a);
+    check("threshold and strength are M and aM",
+          law->bond_threshold() == M &&
+            std::abs(law->bond_strength() / strength - 1.) < 1e-14);
+
+    const auto goldstein = [&](const double s,
+                               const double delta,
+                               const double lower,
+                               const double upper) {
+      return equal(law->goldstein_interval(s * M, delta * M),
+                   lower * strength,
+                   upper * strength,
+                   strength);
+    };
+    check("Goldstein interval inside the bonded branch",
+          goldstein(-0.5, 0.25, -0.75, -0.25));
+    check("Goldstein interval across the break from either side",
+          goldstein(-1.1, 0.2, -1., 0.) && goldstein(-0.9, 0.2, -1., 0.));
+    check("Goldstein interval that just misses the break",
+          goldstein(-1.1, 0.05, 0., 0.));
+    check("Goldstein interval across contact", goldstein(-0.1, 0.3, -0.4, 0.));
+    check("Goldstein interval across all branches", goldstein(0., 2., -1., 0.));
+    check("Goldstein interval with radius 0 is Clarke's",
+          goldstein(-1., 0., -1., 0.) && goldstein(-0.5, 0., -0.5, -0.5));
+  }
+
+
+
+  void
+  test_laws()
+  {
+    std::cout << "== Winkler's law, GPa and m" << std::endl;
+    test_winkler(69., 0.002);
+    std::cout << "== Winkler's law, Pa and m" << std::endl;
+    test_winkler(6.9e10, 0.002);
+
+    std::cout << "== Other laws" << std::endl;
+    const auto none = make_law({"none", 69., 0.002});
+    check("without adhesion there is no force",
+          none->value(-1.) == 0. && none->value(1.) == 0. &&
+            equal(none->goldstein_interval(-1., 5.), 0., 0., 1e-300) &&
+            none->curvature(-1.) == 0. && none->kinks().empty() &&
+            none->bond_threshold() == 0. && none->bond_strength() == 0.);
+    const auto loose = make_law({"winkler", 0., 0.002});
+    check("bonds without stiffness count as no adhesion",
+          loose->bond_threshold() == 0. && loose->bond_strength() == 0.);
+
+    print_error([] { make_law({"winkler", -1., 0.002}); });
+    print_error([] { make_law({"winkler", 69., 0.}); });
+    print_error([] { make_law({"winkler", std::nan(""), 1.}); });
+    print_error([] { make_law({"winkler", 69., INFINITY}); });
+    print_error([] { make_law({"wrinkler", 69., 0.002}); });
+  }
+
+
+
+  void
+  test_parse()
+  {
+    std::cout << "== Names of rules" << std::endl;
+    using Parameters = ContactQuadratureParameters;
+    check("nodal", Parameters::parse("nodal").rule == Parameters::Rule::nodal);
+    check("midpoint",
+          Parameters::parse("midpoint").rule == Parameters::Rule::midpoint);
+    check("exact", Parameters::parse("exact").rule == Parameters::Rule::exact);
+    check("gauss 12",
+          Parameters::parse("gauss 12").rule == Parameters::Rule::gauss &&
+            Parameters::parse("gauss 12").gauss_points == 12);
+    for (const std::string text :
+         {"", "Nodal", "gauss", "gauss 0", "gauss -1", "gauss 2x", "gauss 100"})
+      print_error([&] { Parameters::parse(text); });
+    print_error([] { ContactQuadrature<3>(Parameters::parse("gauss 8"), {}); });
+    print_error([] { ContactQuadrature<2>({Parameters::Rule::gauss, 0}, {}); });
+  }
+
+
+
+  /// The mean over a simplex of a product of powers of the barycentric
+  /// coordinates: n! prod p_k! / (n + sum p_k)! in n dimensions.
+  template <int dim>
+  double
+  mean_of_monomial(const std::array<unsigned int, dim> &powers)
+  {
+    unsigned int sum     = dim - 1;
+    double       product = std::tgamma(dim);
+    for (const unsigned int power : powers)
+      {
+        sum += power;
+        product *= std::tgamma(power + 1.);
+      }
+    return product / std::tgamma(sum + 1.);
+  }
+
+
+
+  template <int dim>
+  bool
+  integrates_degree(const ContactQuadrature<dim>  &quadrature,
+                    const std::array<double, dim> &trace,
+                    const unsigned int             degree)
+  {
+    bool exact = true;
+    for (unsigned int i = 0; i <= degree; ++i)
+      for (unsigned int j = 0; i + j <= degree; ++j)
+        {
+          std::array<unsigned int, dim> powers = {};
+          powers[0]                            = i;
+          powers[1]                            = j;
+          if (dim == 3)
+            powers[dim - 1] = degree - i - j;
+          else if (i + j != degree)
+            continue;
+
+          double mean = 0.;
+          for (const auto &point : quadrature.points(trace))
+            {
+              double monomial = 1.;
+              for (unsigned int k = 0; k < dim; ++k)
+                monomial *= std::pow(point.barycentric[k], powers[k]);
+              mean += point.weight * monomial;
+            }
+          exact &= std::abs(mean / mean_of_monomial<dim>(powers) - 1.) < 1e-12;
+        }
+    return exact;
+  }
+
+
+
+  /// f[s_0, ..., s_n] of distinct points.
+  double
+  divided_difference(const std::function<double(double)> &f,
+                     const std::vector<double>           &s)
+  {
+    double sum = 0.;
+    for (unsigned int i = 0; i < s.size(); ++i)
+      {
+        double product = 1.;
+        for (unsigned int j = 0; j < s.size(); ++j)
+          if (j != i)
+            product *= s[i] - s[j];
+        sum += f(s[i]) / product;
+      }
+    return sum;
+  }
+
+
+
+  /// The mean of j_1 (a = 1, M = 1) over a simplex on which the trace is the
+  /// linear interpolant of s: n! times the divided difference of the n-th
+  /// antiderivative of j_1 (Hermite and Genocchi).
+  template <int dim>
+  double
+  mean_of_law(const std::array<double, dim> &s)
+  {
+    const auto antiderivative = [](const double x) {
+      const double t = x + 1.;
+      if (dim == 2)
+        return x > 0. ? 0. : x > -1. ? x * x * x / 6. : -1. / 6. + t / 2.;
+      else
+        return x > 0.  ? 0. :
+               x > -1. ? x * x * x * x / 24. :
+                         1. / 24. - t / 6. + t * t / 4.;
+    };
+    return (dim - 1) *
+           divided_difference(antiderivative,
+                              std::vector<double>(s.begin(), s.end()));
+  }
+
+
+
+  template <int dim>
+  void
+  test_quadrature()
+  {
+    std::cout << "== Quadrature in " << dim << "D" << std::endl;
+    const std::array<double, dim> trace = {};
+
+    const auto degree_is = [&](const std::string &name, const unsigned int p) {
+      const ContactQuadrature<dim> quadrature(
+        ContactQuadratureParameters::parse(name), {-1., 0.});
+      bool exact = true;
+      for (unsigned int degree = 0; degree <= p; ++degree)
+        exact &= integrates_degree<dim>(quadrature, trace, degree);
+      check(name + " is exact to degree " + std::to_string(p), exact);
+    };
+    degree_is("nodal", 1);
+    degree_is("midpoint", 1);
+    for (unsigned int n = 1; n <= 7; ++n)
+      degree_is("gauss " + std::to_string(n), 2 * n - 1);
+    degree_is("exact", 2);
+
+    // Faces within a branch, across one kink, across both, with a vertex on a
+    // kink, and in penetration; in all orders of the vertices.
+    const auto                           law = make_law({"winkler", 1., 1.});
+    std::vector<std::array<double, dim>> traces;
+    if constexpr (dim == 2)
+      traces = {{{-0.7, -0.2}},
+                {{-1.3, -0.2}},
+                {{-3., 0.5}},
+                {{-1., -0.4}},
+                {{-1., 0.}},
+                {{-0.6, 0.1}},
+                {{-2., -1.5}},
+                {{-1. - 1e-9, 1e-9}}};
+    else
+      traces = {{{-0.7, -0.2, -0.4}},
+                {{-1.3, -0.2, -0.4}},
+                {{-1.3, -1.1, -0.4}},
+                {{-3., 0.5, -0.5}},
+                {{-3., -1.7, 0.5}},
+                {{-3., 0.7, 0.5}},
+                {{-1., -0.4, -2.}},
+                {{-1., 0., 0.6}},
+                {{-2., -1.5, -1.2}}};
+
+    const ContactQuadrature<dim> exact(
+      ContactQuadratureParameters::parse("exact"), law->kinks());
+    bool values_are_exact = true;
+    bool inside           = true;
+    bool degree_two       = true;
+    for (std::array<double, dim> s : traces)
+      {
+        std::sort(s.begin(), s.end());
+        do
+          {
+            double mean = 0.;
+            for (const auto &point : exact.points(s))
+              {
+                const double value = std::inner_product(
+                  s.begin(), s.end(), point.barycentric.begin(), 0.);
+                mean += point.weight * law->value(value);
+                for (const double coordinate : point.barycentric)
+                  inside &= coordinate > 0.;
+              }
+            values_are_exact &= std::abs(mean - mean_of_law<dim>(s)) < 1e-13;
+            degree_two &= integrates_degree<dim>(exact, s, 2);
+          }
+        while (std::next_permutation(s.begin(), s.end()));
+      }
+    check("exact rule gives the closed integrals of j_1", values_are_exact);
+    check("exact rule stays exact for polynomials when it splits", degree_two);
+    check("exact rule has all points inside", inside);
+  }
+
+
+
+  template <int dim>
+  ContactBoundary<dim>
+  make_boundary()
+  {
+    constexpr unsigned int fixed = dealii::numbers::invalid_unsigned_int;
+
+    std::vector<std::array<unsigned int, dim>> faces;
+    std::vector<double>                        measures;
+    if constexpr (dim == 2)
+      {
+        faces    = {{{fixed, 0}}, {{0, 1}}, {{1, 2}}, {{2, 3}}};
+        measures = {0.1, 0.2, 0.15, 0.1};
+      }
+    else
+      {
+        faces    = {{{0, 1, 4}}, {{1, 2, 4}}, {{2, fixed, 4}}, {{fixed, 0, 4}}};
+        measures = {0.02, 0.02, 0.03, 0.02};
+      }
+
+    ContactBoundary<dim> boundary;
+    boundary.nodes.resize(dim == 2 ? 4 : 5);
+    for (auto &node : boundary.nodes)
+      node.measure = 0.;
+    for (unsigned int f = 0; f < faces.size(); ++f)
+      {
+        typename ContactBoundary<dim>::Face face;
+        face.nodes   = faces[f];
+        face.measure = measures[f];
+        boundary.faces.push_back(face);
+        for (const unsigned int node : face.nodes)
+          if (node != fixed)
+            boundary.nodes[node].measure += face.measure / dim;
+      }
+    return boundary;
+  }
+
+
+
+  template <int dim>
+  void
+  test_integral(const std::string &rule, const double a, const double M)
+  {
+    const ContactBoundary<dim>   boundary = make_boundary<dim>();
+    const auto                   law      = make_law({"winkler", a, M});
+    const ContactQuadrature<dim> quadrature(
+      ContactQuadratureParameters::parse(rule), law->kinks());
+    const AdhesionIntegral<dim> integral(boundary, *law, quadrature);
+    const unsigned int          n     = boundary.nodes.size();
+    const double                scale = a * M * boundary.faces[0].measure;
+
+    bool gradient_is_right     = true;
+    bool intervals_hold        = true;
+    bool goldstein_holds       = true;
+    bool radii_act_on_own_node = true;
+    for (const double stretch : {0.3, 1., 1.7, -0.4})
+      {
+        dealii::Vector<double> s(n);
+        for (unsigned int i = 0; i < n; ++i)
+          s(i) = -stretch * M * (0.37 + 0.9 * std::fmod(0.618 * i, 1.));
+
+        dealii::Vector<double> xi(n);
+        integral.subgradient(s, xi);
+        const std::vector<Interval> clarke = integral.force_intervals(s, 0.);
+
+        const double                radius = 0.2 * M;
+        const std::vector<Interval> goldstein =
+          integral.force_intervals(s, radius);
+        std::vector<double> radii(n, 0.);
+        radii[1]                          = radius;
+        const std::vector<Interval> mixed = integral.force_intervals(s, radii);
+
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const double           h     = 1e-5 * M;
+            dealii::Vector<double> right = s;
+            dealii::Vector<double> left  = s;
+            right(i) += h;
+            left(i) -= h;
+            const double difference =
+              (integral.value(right) - integral.value(left)) / (2. * h);
+            gradient_is_right &= std::abs(difference - xi(i)) < 1e-7 * scale;
+
+            intervals_hold &= equal(clarke[i], xi(i), xi(i), scale);
+            radii_act_on_own_node &=
+              equal(mixed[i],
+                    (i == 1 ? goldstein : clarke)[i].lower,
+                    (i == 1 ? goldstein : clarke)[i].upper,
+                    scale);
+          }
+
+        for (unsigned int sample = 0; sample < 20; ++sample)
+          {
+            dealii::Vector<double> near = s;
+            for (unsigned int i = 0; i < n; ++i)
+              near(i) +=
+                radius * (2. * std::fmod(0.618 * (i + 7 * sample), 1.) - 1.);
+            integral.subgradient(near, xi);
+            for (unsigned int i = 0; i < n; ++i)
+              goldstein_holds &= goldstein[i].lower <= xi(i) + 1e-14 * scale &&
+                                 xi(i) <= goldstein[i].upper + 1e-14 * scale;
+          }
+      }
+    check(rule + ": subgradient agrees with differences", gradient_is_right);
+    check(rule + ": away from kinks the interval is the gradient",
+          intervals_hold);
+    // The points of a rule that depends on the trace move with it, so that
+    // the gradients nearby are sums over other points.
+    if (!quadrature.depends_on_trace())
+      check(rule + ": intervals with a radius hold the gradients nearby",
+            goldstein_holds);
+    check(rule + ": radii act on their own node", radii_act_on_own_node);
+  }
+
+
+
+  template <int dim>
+  void
+  test_integrals()
+  {
+    std::cout << "== Integral in " << dim << "D" << std::endl;
+    const double a = 6.9e10;
+    const double M = 0.002;
+    for (const std::string rule :
+         {"nodal", "midpoint", "gauss 2", "gauss 4", "exact"})
+      test_integral<dim>(rule, a, M);
+
+    // The nodal rule in closed form, with a node on the kink.
+    const ContactBoundary<dim>   boundary = make_boundary<dim>();
+    const auto                   law      = make_law({"winkler", a, M});
+    const ContactQuadrature<dim> quadrature(
+      ContactQuadratureParameters::parse("nodal"), law->kinks());
+    const AdhesionIntegral<dim> integral(boundary, *law, quadrature);
+    const unsigned int          n = boundary.nodes.size();
+
+    dealii::Vector<double> s(n);
+    double                 energy = 0.;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        s(i) = i == 0 ? -M : -0.3 * M * i;
+        energy += boundary.nodes[i].measure * law->value(s(i));
+      }
+    check("nodal: sum of nodal energies",
+          std::abs(integral.value(s) / energy - 1.) < 1e-14);
+
+    const double          force  = a * M * boundary.nodes[0].measure;
+    std::vector<Interval> forces = integral.force_intervals(s, 0.);
+    check("nodal: [-aM, 0] times the measure of a node on the kink",
+          equal(forces[0], -force, 0., force));
+    dealii::Vector<double> xi(n);
+    integral.subgradient(s, xi);
+    check("nodal: the subgradient at the kink is the upper end", xi(0) == 0.);
+
+    s(0)   = -0.5 * M;
+    forces = integral.force_intervals(s, 0.25 * M);
+    check("nodal: Goldstein interval of a bonded node",
+          equal(forces[0], -0.75 * force, -0.25 * force, force));
+
+    // The exact rule on all faces against the closed formula.
+    const ContactQuadrature<dim> exact_rule(
+      ContactQuadratureParameters::parse("exact"), law->kinks());
+    const AdhesionIntegral<dim> exact(boundary, *law, exact_rule);
+    energy = 0.;
+    for (unsigned int i = 0; i < n; ++i)
+      s(i) = M * (0.4 - 0.53 * i);
+    for (const auto &face : boundary.faces)
+      {
+        std::array<double, dim> trace;
+        for (unsigned int k = 0; k < dim; ++k)
+          trace[k] = face.nodes[k] == dealii::numbers::invalid_unsigned_int ?
+                       0. :
+                       s(face.nodes[k]) / M;
+        energy += a * M * M * face.measure * mean_of_law<dim>(trace);
+      }
+    check("exact: sum of the closed integrals of the faces",
+          std::abs(exact.value(s) / energy - 1.) < 1e-12);
+  }
+} // namespace
+
+
+
+int
+main()
+{
+  test_laws();
+  test_parse();
+  test_quadrature<2>();
+  test_quadrature<3>();
+  test_integrals<2>();
+  test_integrals<3>();
+}

@@ -1,0 +1,622 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The operator A and the load f: the paper's numbers of unknowns, the energy
+// of its benchmark without contact, bodies in any direction, tractions that
+// jump inside of a face, the residual, the frames of the contact nodes and the
+// errors in the input.
+
+#include <deal.II/base/function.h>
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
+#include <deal.II/lac/sparse_direct.h>
+
+#include <debond/elasticity/contact_frame.h>
+#include <debond/elasticity/crossed_mesh.h>
+#include <debond/elasticity/elastic_problem.h>
+
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <random>
+#include <stdexcept>
+
+using namespace dealii;
+using namespace Debond;
+
+constexpr types::boundary_id left = 0, right = 1, bottom = 2, top = 3;
+
+void
+check(const std::string &what, const double error, const double tolerance)
+{
+  std::cout << what << ", error below " << tolerance << ": ";
+  if (error <= tolerance)
+    std::cout << "yes" << std::endl;
+  else
+    std::cout << "NO, it is " << error << std::endl;
+}
+
+void
+print_exception(const std::function<void()> &action)
+{
+  try
+    {
+      action();
+      std::cout << "no exception" << std::endl;
+    }
+  catch (const std::invalid_argument &exception)
+    {
+      std::cout << exception.what() << std::endl;
+    }
+}
+
+/// A load from a lambda.
+template <int dim>
+class Load : public Function<dim>
+{
+public:
+  using Expression = std::function<Tensor<1, dim>(const Point<dim> &)>;
+
+  explicit Load(const Expression &e)
+    : Function<dim>(dim)
+    , expression(e)
+  {}
+
+  double
+  value(const Point<dim> &point, const unsigned int component) const override
+  {
+    return expression(point)[component];
+  }
+
+private:
+  const Expression expression;
+};
+
+template <int dim>
+std::shared_ptr<const Function<dim>>
+load(const typename Load<dim>::Expression &expression)
+{
+  return std::make_shared<Load<dim>>(expression);
+}
+
+
+
+/// The paper's tractions on the top, for a bar turned by an angle in degrees.
+template <int dim>
+Loads<dim>
+paper_loads(const double angle = 0.)
+{
+  const double c = std::cos(angle * numbers::PI / 180.);
+  const double s = std::sin(angle * numbers::PI / 180.);
+
+  Loads<dim> loads;
+  loads.tractions[top] = load<dim>([c, s](const Point<dim> &p) {
+    const double   force = c * p[0] + s * p[1] < 0.2 ? 0.69 : -0.345;
+    Tensor<1, dim> result;
+    result[0] = -s * force;
+    result[1] = c * force;
+    return result;
+  });
+  return loads;
+}
+
+BoundaryConditions
+paper_conditions(const bool tangential_displacement_fixed = true)
+{
+  return {{left, right}, {bottom}, tangential_displacement_fixed};
+}
+
+template <int dim>
+Vector<double>
+solve(const ElasticProblem<dim> &problem)
+{
+  Vector<double>      u = problem.load();
+  SparseDirectUMFPACK solver;
+  solver.initialize(problem.matrix());
+  solver.solve(u);
+  return u;
+}
+
+template <int dim>
+Vector<double>
+random_field(const ElasticProblem<dim> &problem)
+{
+  std::mt19937                           generator(1);
+  std::uniform_real_distribution<double> uniform(-1., 1.);
+  Vector<double>                         u(problem.n_dofs());
+  for (unsigned int i = 0; i < u.size(); ++i)
+    u[i] = problem.is_constrained(i) ? 0. : uniform(generator);
+  return u;
+}
+
+
+
+void
+test_benchmark()
+{
+  const auto box = [](const unsigned int n) {
+    return BoxParameters{{{0.4, 0.04, 1.}}, {{10 * n, n, 1}}, 0.};
+  };
+
+  for (const unsigned int n : {4, 8, 16})
+    {
+      Triangulation<2> mesh;
+      make_box(box(n), mesh);
+      const ElasticProblem<2> problem(mesh, paper_conditions());
+      std::cout << 10 * n << "x" << n << ": " << problem.n_dofs_paper()
+                << " degrees of freedom as the paper counts, "
+                << problem.n_free_dofs() << " free, "
+                << problem.contact_boundary().nodes.size() << " contact nodes"
+                << std::endl;
+    }
+
+  // External work without contact and adhesion, from an independent code.
+  const auto work = [&](const unsigned int n) {
+    Triangulation<2> mesh;
+    make_box(box(n), mesh);
+    ElasticProblem<2> problem(mesh, paper_conditions());
+    problem.assemble(Material(), paper_loads<2>());
+    return solve(problem) * problem.load();
+  };
+  check("external work 40x4",
+        std::abs(work(4) / (2. * 6.2397134244e-04) - 1.),
+        1e-9);
+  check("external work 80x8", std::abs(work(8) / 0.001267525943 - 1.), 1e-9);
+}
+
+
+
+template <int dim>
+void
+test_rotation(const bool fixed)
+{
+  std::array<double, 2> works;
+  std::array<double, 2> normal_displacements;
+  for (const unsigned int k : {0, 1})
+    {
+      const double       angle = 30. * k;
+      Triangulation<dim> mesh;
+      make_box({{{0.4, 0.04, 0.04}}, {{20, 2, 2}}, angle}, mesh);
+      ElasticProblem<dim> problem(mesh, paper_conditions(fixed));
+      problem.assemble(Material(), paper_loads<dim>(angle));
+      const Vector<double> u = solve(problem);
+      works[k]               = u * problem.load();
+
+      // The same node: the order is that of the turned positions.
+      normal_displacements[k] =
+        u[problem.contact_boundary().nodes[dim == 2 ? 9 : 25].dof];
+    }
+  check(std::string(dim == 2 ? "2D" : "3D") + ", tangential displacement " +
+          (fixed ? "fixed" : "free"),
+        std::abs(works[1] / works[0] - 1.),
+        1e-12);
+  check("normal displacement of a node",
+        std::abs(normal_displacements[1] / normal_displacements[0] - 1.),
+        1e-10);
+}
+
+
+
+/// The work of the loads on a displacement field, which must be linear.
+template <int dim>
+double
+work(const DoFHandler<dim>                &dof_handler,
+     const Loads<dim>                     &loads,
+     const typename Load<dim>::Expression &displacement)
+{
+  Vector<double> u(dof_handler.n_dofs());
+  for (const auto &cell : dof_handler.active_cell_iterators())
+    for (const unsigned int v : cell->vertex_indices())
+      for (unsigned int d = 0; d < dim; ++d)
+        u[cell->vertex_dof_index(v, d)] = displacement(cell->vertex(v))[d];
+  return u * load_vector(dof_handler, loads);
+}
+
+void
+test_loads()
+{
+  {
+    // 41 columns: the jump is in the middle of the 21st.
+    Triangulation<2> mesh;
+    make_box<2>({{{0.4, 0.04, 1.}}, {{41, 4, 1}}, 0.}, mesh);
+    ElasticProblem<2> problem(mesh, {{left, right}, {}, true});
+    Loads<2>          loads = paper_loads<2>();
+    problem.assemble(Material(), loads);
+    check("2D jump, resultant",
+          std::abs(problem.total_load()[1] / 0.069 - 1.),
+          1e-12);
+    check("2D jump, transverse", std::abs(problem.total_load()[0]), 0.);
+    check("2D jump, moment",
+          std::abs(work<2>(problem.dof_handler(),
+                           loads,
+                           [](const Point<2> &p) {
+                             return Tensor<1, 2>({0., p[0]});
+                           }) /
+                     (0.69 * 0.02 - 0.345 * 0.06) -
+                   1.),
+          1e-12);
+
+    // The same in other units, with a jump at an odd place.
+    loads.tractions[top] = load<2>([](const Point<2> &p) {
+      return Tensor<1, 2>({0., p[0] < 0.12345 ? 6.9e8 : 0.});
+    });
+    problem.assemble(Material(), loads);
+    check("2D jump, other units",
+          std::abs(problem.total_load()[1] / (6.9e8 * 0.12345) - 1.),
+          1e-12);
+
+    // Quadratic body force times linear displacement is beyond the rule,
+    // linear times linear is not: the integral of x^2 over the bar.
+    Loads<2> weight;
+    weight.body_force = load<2>([](const Point<2> &p) {
+      return Tensor<1, 2>({p[0], -3.});
+    });
+    check("2D body force",
+          std::abs(work<2>(problem.dof_handler(),
+                           weight,
+                           [](const Point<2> &p) {
+                             return Tensor<1, 2>({p[0], 1.});
+                           }) /
+                     (0.04 * 0.4 * 0.4 * 0.4 / 3. - 3. * 0.4 * 0.04) -
+                   1.),
+          1e-13);
+  }
+  {
+    // The line x + 0.7 z = 0.2 runs across the faces of the top.
+    Triangulation<3> mesh;
+    make_box<3>({{{0.4, 0.04, 0.04}}, {{7, 1, 3}}, 0.}, mesh);
+    ElasticProblem<3> problem(mesh, {{left, right}, {}, true});
+    unsigned int      evaluations = 0;
+    Loads<3>          loads;
+    loads.tractions[top] = load<3>([&](const Point<3> &p) {
+      ++evaluations;
+      return Tensor<1, 3>({0., p[0] + 0.7 * p[2] < 0.2 ? 0.69 : -0.345, 0.});
+    });
+    problem.assemble(Material(), loads);
+    const double loaded = 0.04 * (0.2 - 0.7 * 0.02);
+    check("3D jump, resultant",
+          std::abs(problem.total_load()[1] /
+                     (0.69 * loaded - 0.345 * (0.016 - loaded)) -
+                   1.),
+          1e-10);
+    std::cout << "at most 1e7 evaluations: "
+              << (evaluations <= 10000000 ? "yes" : "NO") << std::endl;
+
+    Loads<3> weight;
+    weight.body_force = load<3>([](const Point<3> &p) {
+      return Tensor<1, 3>({p[2], -3., 0.});
+    });
+    check("3D body force",
+          std::abs(work<3>(problem.dof_handler(),
+                           weight,
+                           [](const Point<3> &p) {
+                             return Tensor<1, 3>({p[2], 1., 0.});
+                           }) /
+                     (0.4 * 0.04 * 0.04 * (0.04 * 0.04 / 3. - 3.)) -
+                   1.),
+          1e-13);
+  }
+}
+
+
+
+/// The algebra that ties matrix, load, residual and frames together.
+template <int dim>
+void
+test_algebra(const ElasticProblem<dim> &problem, const std::string &name)
+{
+  const Vector<double> u = random_field(problem);
+  std::cout << name << std::endl;
+
+  // A u - f, and the reactions of the supports besides.
+  Vector<double> expected(problem.n_dofs());
+  problem.matrix().vmult(expected, u);
+  expected -= problem.load();
+  const Vector<double> residual = problem.residual(u);
+  double               error = 0., reaction = 0.;
+  for (unsigned int i = 0; i < problem.n_dofs(); ++i)
+    if (problem.is_constrained(i))
+      reaction = std::max(reaction, std::abs(residual[i]));
+    else
+      error = std::max(error, std::abs(residual[i] - expected[i]));
+  check("residual", error / residual.linfty_norm(), 1e-13);
+  std::cout << "reactions: " << (reaction > 0. ? "yes" : "NO") << std::endl;
+
+  // Internal forces are in balance, so the residual's resultant is the load's.
+  const Vector<double> forces = problem.cartesian_forces(residual);
+  Tensor<1, dim>       resultant;
+  std::vector<bool>    visited(problem.n_dofs(), false);
+  for (const auto &cell : problem.dof_handler().active_cell_iterators())
+    for (const unsigned int v : cell->vertex_indices())
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const auto dof = cell->vertex_dof_index(v, d);
+          if (!visited[dof])
+            resultant[d] += forces[dof];
+          visited[dof] = true;
+        }
+  check("balance of forces",
+        (resultant + problem.total_load()).norm() / forces.l1_norm(),
+        1e-13);
+
+  // Both pairs of components have the same work.
+  const Vector<double> displacement = problem.cartesian_displacement(u);
+  check("work",
+        std::abs(displacement * forces - u * residual) /
+          (displacement.l2_norm() * forces.l2_norm()),
+        1e-13);
+
+  // The energy of the cells.
+  double energy = 0.;
+  for (const auto &cell : problem.dof_handler().active_cell_iterators())
+    {
+      const SymmetricTensor<2, dim> stress = problem.stress(cell, displacement);
+      energy += 0.5 * cell->measure() *
+                (stress *
+                 (invert(problem.material().template elasticity_tensor<dim>()) *
+                  stress));
+    }
+  check("strain energy",
+        std::abs(0.5 * problem.matrix().matrix_norm_square(u) / energy - 1.),
+        1e-13);
+
+  double asymmetry = 0.;
+  for (const auto &entry : problem.matrix())
+    asymmetry =
+      std::max(asymmetry,
+               std::abs(entry.value() -
+                        problem.matrix()(entry.column(), entry.row())));
+  check("symmetry", asymmetry / problem.matrix().linfty_norm(), 1e-14);
+
+  // Normal displacements of the contact nodes and of the faces.
+  double normal_error = 0.;
+  for (const auto &face : problem.contact_boundary().faces)
+    for (unsigned int v = 0; v < dim; ++v)
+      if (face.nodes[v] != numbers::invalid_unsigned_int)
+        {
+          const auto &node = problem.contact_boundary().nodes[face.nodes[v]];
+          normal_error =
+            std::max(normal_error, node.position.distance(face.vertices[v]));
+          if (node.normal * face.normal < std::cos(numbers::PI / 6.))
+            normal_error = 1.;
+        }
+  for (const auto &cell : problem.dof_handler().active_cell_iterators())
+    for (const unsigned int v : cell->vertex_indices())
+      for (const auto &node : problem.contact_boundary().nodes)
+        if (node.position.distance(cell->vertex(v)) == 0.)
+          {
+            double normal = 0.;
+            for (unsigned int d = 0; d < dim; ++d)
+              normal +=
+                node.normal[d] * displacement[cell->vertex_dof_index(v, d)];
+            normal_error =
+              std::max(normal_error, std::abs(normal - u[node.dof]));
+          }
+  check("normal displacements", normal_error, 1e-13);
+}
+
+
+
+void
+test_frames()
+{
+  // A sheared bar, so that the normals at its corners are not orthogonal.
+  for (const bool fixed : {true, false})
+    {
+      Triangulation<2> mesh;
+      make_box<2>({{{1., 0.5, 1.}}, {{4, 2, 1}}, 0.}, mesh);
+      GridTools::transform(
+        [](const Point<2> &p) {
+          return Point<2>(p[0] + 0.3 * p[1], p[1] - 0.1 * p[0]);
+        },
+        mesh);
+      ElasticProblem<2> problem(mesh, {{right}, {left, bottom}, fixed});
+      Loads<2>          loads;
+      loads.tractions[top]  = load<2>([](const Point<2> &p) {
+        return Tensor<1, 2>({p[0], 1. + p[0]});
+      });
+      loads.tractions[left] = load<2>([](const Point<2> &) {
+        return Tensor<1, 2>({0.3, 0.2});
+      });
+      problem.assemble(Material(), loads);
+      test_algebra(problem,
+                   std::string("2D, two contact sides, tangential ") +
+                     (fixed ? "fixed" : "free"));
+      // 2 nodes inside of the left side and its top end, 3 inside of the
+      // bottom; the corner has two nodes if it is free, else none.
+      std::cout << problem.contact_boundary().nodes.size() << " contact nodes"
+                << std::endl;
+    }
+  for (const bool fixed : {true, false})
+    {
+      Triangulation<3> mesh;
+      make_box<3>({{{1., 0.5, 0.5}}, {{2, 1, 1}}, 20.}, mesh);
+      ElasticProblem<3> problem(mesh, {{right}, {left, bottom, 4}, fixed});
+      problem.assemble(Material(), paper_loads<3>());
+      test_algebra(problem,
+                   std::string("3D, three contact sides, tangential ") +
+                     (fixed ? "fixed" : "free"));
+      // The left side has one vertex and the centre to itself, the bottom and
+      // the back one vertex and two centres each: 8. If they are free, there
+      // are three edge vertices with 2 nodes each and a corner with 3 as well.
+      std::cout << problem.contact_boundary().nodes.size() << " contact nodes"
+                << std::endl;
+    }
+
+  // A polygon for a disc: the mean normals are radial.
+  {
+    Triangulation<2> coarse, mesh;
+    GridGenerator::hyper_ball(coarse);
+    coarse.refine_global(2);
+    crossed_subdivision(coarse, mesh);
+    ElasticProblem<2> problem(mesh, {{}, {0}, true});
+    double            error = 0., perimeter = 0., length = 0.;
+    for (const auto &node : problem.contact_boundary().nodes)
+      {
+        error = std::max(error, (node.normal - node.position).norm());
+        length += node.measure;
+      }
+    for (const auto &face : problem.contact_boundary().faces)
+      perimeter += face.measure;
+    std::cout << "disc, " << problem.contact_boundary().nodes.size()
+              << " contact nodes" << std::endl;
+    check("radial normals", error, 1e-13);
+    check("perimeter of the 16-gon",
+          std::abs(perimeter / (32. * std::sin(numbers::PI / 16.)) - 1.),
+          1e-13);
+    check("measure of the nodes", std::abs(length / perimeter - 1.), 1e-13);
+  }
+
+  // Sides along the axes have exact normals, and the nodes are in order, even
+  // if the coordinates have rounding errors.
+  {
+    Triangulation<3> mesh;
+    make_box<3>({{{0.4, 0.04, 0.04}}, {{7, 1, 3}}, 0.}, mesh);
+    GridTools::transform(
+      [](const Point<3> &p) {
+        return p + Point<3>(-4e-15 * p[2], 2e-15 * p[0], 0.);
+      },
+      mesh);
+    const ElasticProblem<3> problem(mesh, paper_conditions());
+    const auto             &nodes  = problem.contact_boundary().nodes;
+    bool                    exact  = true;
+    bool                    sorted = true;
+    for (unsigned int k = 0; k < nodes.size(); ++k)
+      {
+        exact = exact && nodes[k].normal == Tensor<1, 3>({0., -1., 0.});
+        if (k > 0)
+          {
+            const Point<3> a = nodes[k - 1].position, b = nodes[k].position;
+            sorted =
+              sorted && (a[0] < b[0] - 1e-8 ||
+                         (std::abs(a[0] - b[0]) < 1e-8 && a[2] < b[2] - 1e-8));
+          }
+      }
+    // (8 - 2) x 4 corners of the grid and 7 x 3 centres.
+    std::cout << nodes.size()
+              << " contact nodes, exact normals: " << (exact ? "yes" : "NO")
+              << ", in order: " << (sorted ? "yes" : "NO") << std::endl;
+  }
+}
+
+
+
+void
+print_free_motions(const std::vector<std::string> &motions)
+{
+  for (const std::string &motion : motions)
+    std::cout << motion << "; ";
+  std::cout << motions.size() << " names" << std::endl;
+}
+
+void
+test_rigid_motions()
+{
+  // A disc held in radial direction at three points can turn.
+  std::vector<Support<2>> radial;
+  for (const double angle : {0.3, 2.1, 4.5})
+    {
+      const Point<2> p(std::cos(angle), std::sin(angle));
+      radial.push_back({Point<2>(1., 5.) + p, p});
+    }
+  print_free_motions(free_rigid_motions(radial, 2.));
+  // A fourth support, in circumferential direction, holds it.
+  radial.push_back({Point<2>(2., 5.), Point<2>(0., 1.)});
+  print_free_motions(free_rigid_motions(radial, 2.));
+
+  // Bodies clamped along a line turn about it: the y-axis, and a diagonal.
+  std::vector<Support<3>> axis, diagonal;
+  for (unsigned int d = 0; d < 3; ++d)
+    for (const double s : {0., 1., 3.})
+      {
+        axis.push_back({Point<3>(2., s, 1.), Point<3>::unit_vector(d)});
+        diagonal.push_back({Point<3>(s, 1., s), Point<3>::unit_vector(d)});
+      }
+  print_free_motions(free_rigid_motions(axis, 3.));
+  print_free_motions(free_rigid_motions(diagonal, 3.));
+}
+
+
+
+void
+test_errors()
+{
+  Triangulation<2> mesh;
+  make_box<2>({{{0.4, 0.04, 1.}}, {{10, 1, 1}}, 0.}, mesh);
+  Triangulation<3> body;
+  make_box<3>({{{0.4, 0.04, 0.04}}, {{10, 1, 1}}, 0.}, body);
+
+  print_exception([&] { ElasticProblem<2>(mesh, {{}, {}, true}); });
+  print_exception([&] { ElasticProblem<2>(mesh, {{}, {bottom}, true}); });
+  print_exception([&] { ElasticProblem<2>(mesh, {{}, {left}, true}); });
+  print_exception([&] { ElasticProblem<2>(mesh, {{}, {bottom}, false}); });
+  print_exception([&] { ElasticProblem<3>(body, {{}, {bottom}, true}); });
+  print_exception([&] { ElasticProblem<3>(body, {{}, {}, true}); });
+  print_exception([&] { ElasticProblem<2>(mesh, {{left}, {bottom}, false}); });
+  print_exception([&] {
+    ElasticProblem<2>(mesh, {{left, bottom}, {bottom}, true});
+  });
+  print_exception([&] { ElasticProblem<2>(mesh, {{left, 7}, {}, true}); });
+  print_exception([] {
+    Triangulation<2> quadrilaterals;
+    GridGenerator::hyper_cube(quadrilaterals);
+    ElasticProblem<2>(quadrilaterals, {{0}, {}, true});
+  });
+  print_exception([] {
+    contact_frame<2>({Tensor<1, 2>({0., 1.}), Tensor<1, 2>({0., -1.})});
+  });
+  print_exception([] {
+    contact_frame<2>({Tensor<1, 2>({0., 1.}),
+                      Tensor<1, 2>({1., 0.}),
+                      Tensor<1, 2>({-1., 0.})});
+  });
+
+  ElasticProblem<2> problem(mesh, paper_conditions());
+  const auto        assemble = [&](const types::boundary_id   side,
+                            const Load<2>::Expression &traction) {
+    Loads<2> loads;
+    loads.tractions[side] = load<2>(traction);
+    problem.assemble(Material(), loads);
+  };
+  print_exception([&] {
+    assemble(right, [](const Point<2> &) {
+      return Tensor<1, 2>({0., std::numeric_limits<double>::infinity()});
+    });
+  });
+  print_exception([&] {
+    assemble(top, [](const Point<2> &) -> Tensor<1, 2> {
+      throw std::runtime_error("no value");
+    });
+  });
+  print_exception(
+    [&] { assemble(9, [](const Point<2> &) { return Tensor<1, 2>(); }); });
+  print_exception([&] {
+    Loads<2> loads;
+    loads.body_force = std::make_shared<Functions::ZeroFunction<2>>(3);
+    problem.assemble(Material(), loads);
+  });
+  print_exception([&] { problem.assemble(Material{69., 1.2}, {}); });
+}
+
+
+
+int
+main()
+{
+  std::cout << "Benchmark" << std::endl;
+  test_benchmark();
+  std::cout << "Rotation" << std::endl;
+  test_rotation<2>(true);
+  test_rotation<2>(false);
+  test_rotation<3>(true);
+  test_rotation<3>(false);
+  std::cout << "Loads" << std::endl;
+  test_loads();
+  std::cout << "Algebra" << std::endl;
+  test_frames();
+  std::cout << "Rigid motions" << std::endl;
+  test_rigid_motions();
+  std::cout << "Errors" << std::endl;
+  test_errors();
+}

@@ -1,0 +1,612 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+
+// What a run writes, and the verification of a solution against cases in
+// which the distance to the contact law is known in closed form.
+
+#include <deal.II/lac/full_matrix.h>
+
+#include <debond/elasticity/crossed_mesh.h>
+#include <debond/output/atomic_file.h>
+#include <debond/output/progress.h>
+#include <debond/output/summary.h>
+#include <debond/output/tables.h>
+#include <debond/output/vtu.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <limits>
+#include <sstream>
+
+using namespace Debond;
+
+
+
+namespace
+{
+  void
+  check(const std::string &what, const bool holds)
+  {
+    std::cout << what << ": " << (holds ? "yes" : "NO") << std::endl;
+  }
+
+
+
+  void
+  print_error(const std::function<void()> &action)
+  {
+    try
+      {
+        action();
+        std::cout << "NO ERROR" << std::endl;
+      }
+    catch (const std::exception &error)
+      {
+        std::cout << error.what() << std::endl;
+      }
+  }
+
+
+
+  std::string
+  contents(const std::string &file_name)
+  {
+    std::ifstream      in(file_name);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+
+
+
+  /// The fields of a CSV file by row, the titles as row 0.
+  std::vector<std::vector<std::string>>
+  read_csv(const std::string &file_name)
+  {
+    std::vector<std::vector<std::string>> rows;
+    std::istringstream                    lines(contents(file_name));
+    for (std::string line; std::getline(lines, line);)
+      {
+        rows.emplace_back();
+        std::istringstream fields(line);
+        for (std::string field; std::getline(fields, field, ',');)
+          rows.back().push_back(field);
+      }
+    return rows;
+  }
+
+
+
+  void
+  test_atomic_file()
+  {
+    std::cout << "== Files in one piece" << std::endl;
+    const auto write_text = [](const std::string &text) {
+      return [text](std::ostream &out) { out << text; };
+    };
+
+    write_atomically("atomic.txt", write_text("one"));
+    check("a file is written", contents("atomic.txt") == "one");
+    write_atomically("atomic.txt", write_text("two"));
+    check("a file is replaced", contents("atomic.txt") == "two");
+
+    print_error([] {
+      write_atomically("atomic.txt", [](std::ostream &out) {
+        out << "thr";
+        throw std::runtime_error("the writer's own error");
+      });
+    });
+    check("an error while writing keeps the old file",
+          contents("atomic.txt") == "two");
+
+    print_error(
+      [&] { write_atomically("no-such-directory/x.txt", write_text("x")); });
+    std::filesystem::create_directory("directory");
+    print_error([&] { write_atomically("directory", write_text("x")); });
+
+    // A device without space in the place of the file in the making.
+    std::filesystem::create_symlink("/dev/full", "full.txt.partial");
+    print_error([&] { write_atomically("full.txt", write_text("x")); });
+
+    bool partial_files = std::filesystem::exists("full.txt");
+    for (const auto &entry : std::filesystem::directory_iterator("."))
+      partial_files |= entry.path().extension() == ".partial";
+    check("nothing half-written stays", !partial_files);
+  }
+
+
+
+  void
+  test_history()
+  {
+    std::cout << "== Iteration history" << std::endl;
+    const std::vector<BundleIteration> history = {
+      {1, -1. / 3e4, -0.1, 1., 1., 1, 4, StepKind::long_step},
+      {2, -5.7774619650983e-4, -1e-300, 0., 0.25, 2, 0, StepKind::null_step}};
+    write_history(history, "history.csv");
+
+    const auto rows = read_csv("history.csv");
+    for (const std::string &title : rows.at(0))
+      std::cout << title << ' ';
+    std::cout << std::endl;
+
+    bool same = rows.size() == 3;
+    for (unsigned int i = 0; i < history.size(); ++i)
+      {
+        const auto &row = rows.at(i + 1);
+        same &= row.size() == 8 && std::stoul(row[0]) == history[i].iteration &&
+                std::stod(row[1]) == history[i].functional &&
+                std::stod(row[2]) == history[i].v &&
+                std::stod(row[3]) == history[i].t_L &&
+                std::stod(row[4]) == history[i].t_R &&
+                std::stoul(row[5]) == history[i].bundle_size &&
+                std::stoul(row[6]) == history[i].qp_steps &&
+                row[7] == to_string(history[i].kind);
+      }
+    check("every number is read back to the last bit", same);
+    print_error([&] { write_history(history, "no-such-directory/h.csv"); });
+  }
+
+
+
+  void
+  test_summary()
+  {
+    std::cout << "== Summary" << std::endl;
+    Summary summary;
+    summary.scene            = "prm/\"odd\"\xff.prm";
+    summary.status           = "success";
+    summary.functional       = -5.7774619650983e-4;
+    summary.total_iterations = 7;
+    summary.long_steps       = 4;
+    summary.short_steps      = 2;
+    summary.null_steps       = 1;
+    summary.law_violation    = std::numeric_limits<double>::infinity();
+    summary.contact_nodes    = 39;
+    summary.bond_states      = {{"contact", 30}, {"bonded", 9}};
+    summary.timings_s = {{"mesh", 0.5}, {"solve", 2.}, {"solve/qp", 1.5}};
+    write_summary(summary, "summary.json");
+
+    const auto json = nlohmann::ordered_json::parse(contents("summary.json"));
+    for (const auto &item : json.items())
+      std::cout << item.key() << ' ';
+    std::cout << std::endl;
+    std::cout << "iterations: " << json["iterations"].dump() << std::endl
+              << "bond_states: " << json["bond_states"].dump() << std::endl
+              << "timings_s: " << json["timings_s"].dump() << std::endl;
+    check("numbers are JSON numbers, read back to the last bit",
+          json["functional"].is_number() &&
+            json["functional"] == summary.functional &&
+            json["contact_nodes"] == 39);
+    check("an infinite number is null", json["law_violation"].is_null());
+  }
+
+
+
+  void
+  test_progress()
+  {
+    std::cout << "== Progress in a log" << std::endl;
+    BundleIteration iteration = {
+      0, -5.7774619650983e-4, -1.25e-8, 1., 1., 0, 0, StepKind::short_step};
+    Progress log(std::cout, false);
+    for (unsigned int k = 1; k <= 23; ++k)
+      {
+        iteration.iteration   = k;
+        iteration.bundle_size = k;
+        log.report(iteration);
+      }
+    log.finish();
+    log.finish();
+
+    std::cout << "== Progress on a terminal" << std::endl;
+    std::ostringstream screen;
+    Progress           terminal(screen, true);
+    for (unsigned int k = 1; k <= 1000; ++k)
+      {
+        iteration.iteration = k;
+        terminal.report(iteration);
+      }
+    terminal.finish();
+    const std::string text     = screen.str();
+    const auto        rewrites = std::count(text.begin(), text.end(), '\r');
+    check("it is rewritten a few times only", rewrites >= 2 && rewrites <= 10);
+    check("the line is ended once, with the last iteration",
+          std::count(text.begin(), text.end(), '\n') == 2 &&
+            text.back() == '\n' && text.rfind("1000 ") > text.rfind('\r'));
+
+    std::ostringstream silent;
+    Progress(silent, true).finish();
+    check("nothing is printed without an iteration", silent.str().empty());
+  }
+
+
+
+  /// A pull upwards on the top side, and a push to the right.
+  template <int dim>
+  class Traction : public dealii::Function<dim>
+  {
+  public:
+    explicit Traction(const double p)
+      : dealii::Function<dim>(dim)
+      , pressure(p)
+    {}
+
+    double
+    value(const dealii::Point<dim> &, const unsigned int c) const override
+    {
+      return c == 1 ? pressure : (c == 0 ? pressure / 4. : 0.);
+    }
+
+  private:
+    const double pressure;
+  };
+
+
+
+  /**
+   * A body clamped at both ends with one contact node (four in 3D), whose
+   * normal displacements can be prescribed.
+   */
+  template <int dim>
+  struct Body
+  {
+    dealii::Triangulation<dim>           mesh;
+    std::unique_ptr<ElasticProblem<dim>> problem;
+
+    /// @p pressure: of the load on the top, in units of E / 1000.
+    Body(const double young_modulus, const double pressure)
+    {
+      make_box<dim>({{{2., 1., 1.}}, {{2, 1, 1}}, 0.}, mesh);
+      const auto &names = boundary_names<dim>();
+      problem           = std::make_unique<ElasticProblem<dim>>(
+        mesh,
+        BoundaryConditions{{names.at("left"), names.at("right")},
+                           {names.at("bottom")},
+                           true});
+      Loads<dim> loads;
+      loads.tractions[names.at("top")] =
+        std::make_shared<Traction<dim>>(pressure * young_modulus / 1000.);
+      problem->assemble(
+        {young_modulus, 0.3, Material::Hypothesis::plane_strain}, loads);
+    }
+
+    /// The equilibrium with the normal displacement s at every contact node.
+    dealii::Vector<double>
+    equilibrium(const double s) const
+    {
+      dealii::FullMatrix<double> matrix;
+      matrix.copy_from(problem->matrix());
+      dealii::Vector<double> rhs = problem->load();
+      for (const auto &node : problem->contact_boundary().nodes)
+        {
+          for (unsigned int j = 0; j < matrix.n(); ++j)
+            matrix(node.dof, j) = 0.;
+          matrix(node.dof, node.dof) = 1.;
+          rhs(node.dof)              = s;
+        }
+      matrix.gauss_jordan();
+      dealii::Vector<double> u(rhs.size());
+      matrix.vmult(u, rhs);
+      return u;
+    }
+
+    Verification<dim>
+    check_law(const dealii::Vector<double> &u,
+              const std::string            &name,
+              const double                  a,
+              const double                  M,
+              const std::string            &rule = "nodal") const
+    {
+      const auto                   law = make_law({name, a, M});
+      const ContactQuadrature<dim> quadrature(
+        ContactQuadratureParameters::parse(rule), law->kinks());
+      const AdhesionIntegral<dim> adhesion(problem->contact_boundary(),
+                                           *law,
+                                           quadrature);
+      return verify(*problem, adhesion, *law, u);
+    }
+  };
+
+
+
+  bool
+  near(const double value, const double expected)
+  {
+    return std::abs(value - expected) < 1e-10 * std::abs(expected);
+  }
+
+
+
+  void
+  test_law_violation(const double young_modulus)
+  {
+    std::cout << "== Distance to the law, E = " << young_modulus << std::endl;
+    const Body<2> pulled(young_modulus, 1.);
+    const auto   &node  = pulled.problem->contact_boundary().nodes.at(0);
+    const double  scale = young_modulus * node.measure;
+    check("there is one contact node",
+          pulled.problem->contact_boundary().nodes.size() == 1);
+
+    // A pulled node that the bonds hold back at s: any force can be put on
+    // the graph by the choice of a.
+    const double s = -1e-4;
+    const auto   u = pulled.equilibrium(s);
+    const double force =
+      pulled.check_law(u, "none", 0., 1.).nodes[0].normal_force;
+    const double a = force / (s * node.measure);
+    check("the bonds have to pull", force < -1e-5 * scale);
+
+    const auto bonded = pulled.check_law(u, "winkler", a, -2. * s);
+    check("a bonded node on the graph",
+          bonded.law_violation < 1e-13 &&
+            bonded.nodes[0].state == BondState::bonded &&
+            near(bonded.nodes[0].allowed_force.lower, force) &&
+            near(bonded.nodes[0].allowed_force.upper, force));
+
+    // The law asks for (1 + e) times the force. Displacements within delta M
+    // and forces within delta a M of them close the gap at delta = e / (4 (1 +
+    // e)), as M = 2 |s|.
+    bool expected = true;
+    for (const double e : {1e-8, 1e-3, 0.2})
+      expected &=
+        std::abs(
+          pulled.check_law(u, "winkler", a * (1. + e), -2. * s).law_violation -
+          e / (4. * (1. + e))) < 1e-14;
+    check("a bonded node off the graph by a known distance", expected);
+
+    // Bonds that break a little before s: the force is one of those at -M.
+    expected = true;
+    for (const double e : {1e-12, 1e-8, 1e-3, 0.1})
+      {
+        const auto broken =
+          pulled.check_law(u, "winkler", 2. * a, -s * (1. - e));
+        expected &= std::abs(broken.law_violation - e / (1. - e)) < 1e-15 &&
+                    broken.nodes[0].state ==
+                      (e < 1e-6 ? BondState::kink : BondState::broken) &&
+                    broken.nodes[0].allowed_force.upper == 0.;
+      }
+    check("a node beyond the kink by a known distance", expected);
+
+    const auto kink = pulled.check_law(u, "winkler", 2. * a, -s);
+    check("a node on the kink has an interval",
+          kink.law_violation == 0. && kink.nodes[0].state == BondState::kink &&
+            near(kink.nodes[0].allowed_force.lower, 2. * force) &&
+            kink.nodes[0].allowed_force.upper == 0.);
+
+    // Far beyond the kink the law allows no force, and the kink is too far
+    // away to help: the force itself is the distance.
+    const double M   = -s / 10.;
+    const auto   far = pulled.check_law(u, "winkler", a * s / (-0.01 * M), M);
+    check("a node far beyond the kink by a known distance",
+          near(far.law_violation, 0.01) &&
+            far.nodes[0].state == BondState::broken);
+
+    // Held at zero against a pull, while the bonds give at most twice delta a
+    // M for a distance delta.
+    const auto   held = pulled.equilibrium(0.);
+    const double pull =
+      -pulled.check_law(held, "none", 0., 1.).nodes[0].normal_force;
+    const double M_held = 1e-3;
+    const double a_held = pull / (0.1 * M_held * node.measure);
+    check("a node in contact that is pulled by a known distance",
+          near(pulled.check_law(held, "winkler", a_held, M_held).law_violation,
+               0.05));
+
+    // Pressed on the foundation: on the graph at 0, off it by the distance
+    // from 0 on either side.
+    const Body<2> pressed(young_modulus, -1.);
+    const auto    at_zero = pressed.equilibrium(0.);
+    const double  push =
+      pressed.check_law(at_zero, "none", 0., 1.).nodes[0].normal_force;
+    check("the foundation has to push", push > 1e-5 * scale);
+    const double a_pressed = push / (M_held * node.measure);
+    const auto   in_contact =
+      pressed.check_law(at_zero, "winkler", a_pressed, M_held);
+    check("a node in contact on the graph",
+          in_contact.law_violation == 0. && in_contact.penetration == 0. &&
+            in_contact.nodes[0].state == BondState::contact &&
+            in_contact.nodes[0].allowed_force.lower == 0. &&
+            std::isinf(in_contact.nodes[0].allowed_force.upper));
+
+    expected = true;
+    for (const double e : {1e-15, 1e-8, 1e-2})
+      for (const double sign : {-1., 1.})
+        {
+          const double distance = sign * e * M_held;
+          const auto   off = pressed.check_law(pressed.equilibrium(distance),
+                                             "winkler",
+                                             a_pressed,
+                                             M_held);
+          expected &= near(off.law_violation, e) &&
+                      off.penetration == std::max(0., distance) &&
+                      off.count(e < 1e-6 || sign > 0. ? BondState::contact :
+                                                        BondState::bonded) == 1;
+        }
+    check("gap and penetration under pressure by a known distance", expected);
+
+    // Without adhesion displacements and forces are measured by the largest
+    // ones.
+    check("without adhesion, on the graph",
+          pressed.check_law(at_zero, "none", 0., 1.).law_violation == 0.);
+    check("without adhesion, off the graph",
+          near(pulled.check_law(u, "none", 0., 1.).law_violation, 1.) &&
+            near(pulled.check_law(held, "winkler", 0., 1.).law_violation, 1.) &&
+            near(pressed.check_law(pressed.equilibrium(1e-5), "none", 0., 1.)
+                   .law_violation,
+                 1.));
+  }
+
+
+
+  template <int dim>
+  void
+  test_forces_and_files(const double young_modulus)
+  {
+    std::cout << "== Forces and files in " << dim << "D, E = " << young_modulus
+              << std::endl;
+    const Body<dim>              body(young_modulus, 1.);
+    const ElasticProblem<dim>   &problem  = *body.problem;
+    const ContactBoundary<dim>  &boundary = problem.contact_boundary();
+    const double                 M        = 1e-3;
+    const double                 a        = young_modulus / 10.;
+    const dealii::Vector<double> u        = body.equilibrium(-M / 2.);
+    const Verification<dim>      result   = body.check_law(u, "winkler", a, M);
+
+    // The top has a length (area) of 2.
+    dealii::Tensor<1, dim> applied;
+    applied[0]  = 2. * young_modulus / 4000.;
+    applied[1]  = 2. * young_modulus / 1000.;
+    double push = 0.;
+    for (const auto &node : result.nodes)
+      push += node.normal_force;
+    check("applied force is the integral of the traction",
+          (result.applied_force - applied).norm() < 1e-13 * applied.norm());
+    check("reactions balance it",
+          (result.clamped_reaction + result.contact_reaction + applied).norm() <
+              1e-12 * applied.norm() &&
+            result.force_imbalance < 1e-13);
+    const dealii::Vector<double> reactions_at_vertices =
+      problem.cartesian_forces(problem.residual(u));
+    dealii::Tensor<1, dim> at_clamped_ends;
+    std::vector<bool>      visited(problem.n_dofs(), false);
+    for (const auto &cell : problem.dof_handler().active_cell_iterators())
+      for (const unsigned int v : cell->vertex_indices())
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const auto dof = cell->vertex_dof_index(v, d);
+            if (!visited[dof] && std::abs(cell->vertex(v)[0] - 1.) > 0.9)
+              at_clamped_ends[d] += reactions_at_vertices(dof);
+            visited[dof] = true;
+          }
+    check("clamps and foundation have their own shares",
+          (result.clamped_reaction - at_clamped_ends).norm() <
+              1e-12 * applied.norm() &&
+            std::abs(result.contact_reaction[0]) > 1e-3 * applied.norm());
+    check("normal forces act upwards at the bottom",
+          std::abs(result.contact_reaction[1] - push) <
+              1e-13 * applied.norm() &&
+            std::abs(push) > 1e-3 * applied.norm());
+    check("free nodes are in equilibrium", result.equilibrium_residual < 1e-13);
+
+    // One free displacement off by a little.
+    std::vector<bool> supported(problem.n_dofs(), false);
+    for (const auto &node : boundary.nodes)
+      supported[node.dof] = true;
+    for (unsigned int i = 0; i < problem.n_dofs(); ++i)
+      supported[i] = supported[i] || problem.is_constrained(i);
+    const unsigned int dof =
+      std::find(supported.begin(), supported.end(), false) - supported.begin();
+    dealii::Vector<double> wrong = u;
+    wrong(dof) += 1e-2 * M;
+    const Verification<dim> off = body.check_law(wrong, "winkler", a, M);
+
+    dealii::Vector<double> forces(problem.n_dofs());
+    problem.matrix().vmult(forces, wrong);
+    forces -= problem.load();
+    const dealii::Vector<double> reactions        = problem.residual(wrong);
+    double                       largest_free     = 0.;
+    double                       largest_reaction = 0.;
+    for (unsigned int i = 0; i < problem.n_dofs(); ++i)
+      if (supported[i])
+        largest_reaction = std::max(largest_reaction, std::abs(reactions(i)));
+      else
+        largest_free = std::max(largest_free, std::abs(forces(i)));
+    check("a free node that is not shows in the residual",
+          near(off.equilibrium_residual, largest_free / largest_reaction) &&
+            off.equilibrium_residual > 1e-3);
+    check("and in the balance", off.force_imbalance > 1e-5);
+
+    wrong(dof) = std::nan("");
+    print_error([&] { body.check_law(wrong, "winkler", a, M); });
+
+    // Every rule of quadrature: the graph is left by the error of nothing but
+    // the rule's own force.
+    bool finite = true;
+    for (const std::string rule : {"nodal", "midpoint", "gauss 2", "exact"})
+      finite &= body.check_law(u, "winkler", a, M, rule).law_violation > 0. &&
+                body.check_law(u, "winkler", a, M, rule).law_violation < 10.;
+    check("each rule gives a distance", finite);
+
+    const std::string suffix = std::to_string(dim) + "d";
+    write_contact_profile(boundary, result, "profile-" + suffix + ".csv");
+    const auto rows = read_csv("profile-" + suffix + ".csv");
+    for (const std::string &title : rows.at(0))
+      std::cout << title << ' ';
+    std::cout << std::endl;
+    bool same = rows.size() == boundary.nodes.size() + 1;
+    for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
+      {
+        const ContactNodeState   &node   = result.nodes[i];
+        const std::vector<double> values = {node.u_nu,
+                                            node.normal_force,
+                                            node.normal_force /
+                                              boundary.nodes[i].measure,
+                                            node.allowed_force.lower,
+                                            node.allowed_force.upper,
+                                            node.violation};
+        const auto               &row    = rows.at(i + 1);
+        same &= row.size() == dim + values.size() + 1;
+        for (unsigned int d = 0; d < dim; ++d)
+          same &= std::stod(row[d]) == boundary.nodes[i].position[d];
+        for (unsigned int k = 0; k < values.size(); ++k)
+          same &= std::stod(row[dim + k]) == values[k];
+        same &= row.back() == to_string(node.state);
+      }
+    check("every number is read back to the last bit", same);
+
+    const auto has_fields = [](const std::string              &file_name,
+                               const std::vector<std::string> &fields) {
+      const std::string text     = contents(file_name);
+      bool              complete = text.find("</VTKFile>") != std::string::npos;
+      for (const std::string &field : fields)
+        complete &= text.find("Name=\"" + field + "\"") != std::string::npos;
+      return complete;
+    };
+    write_body_vtu(problem, u, "body-" + suffix + ".vtu");
+    write_contact_vtu(problem, u, result, "contact-" + suffix + ".vtu");
+    check("body VTU has its fields",
+          has_fields("body-" + suffix + ".vtu",
+                     {"displacement",
+                      "stress_xx",
+                      "stress_yy",
+                      "stress_xy",
+                      "von_mises",
+                      "strain_energy_density"}));
+    check("contact VTU has its fields",
+          has_fields("contact-" + suffix + ".vtu",
+                     {"displacement",
+                      "u_nu",
+                      "gap",
+                      "normal_force_density",
+                      "bond_state",
+                      "law_violation"}));
+    print_error(
+      [&] { write_body_vtu(problem, u, "no-such-directory/body.vtu"); });
+  }
+} // namespace
+
+
+
+int
+main()
+{
+  for (const auto &entry : std::filesystem::directory_iterator("."))
+    if (entry.path().extension() == ".partial")
+      std::filesystem::remove(entry.path());
+
+  test_atomic_file();
+  test_history();
+  test_summary();
+  test_progress();
+  for (const double young_modulus : {69., 6.9e10})
+    {
+      test_law_violation(young_modulus);
+      test_forces_and_files<2>(young_modulus);
+      test_forces_and_files<3>(young_modulus);
+    }
+}
