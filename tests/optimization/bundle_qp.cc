@@ -15,6 +15,11 @@ using namespace Debond;
 
 namespace
 {
+  // Whether to print the figures behind the verdicts; any argument does it.
+  bool print_figures = false;
+
+
+
   struct Shape
   {
     unsigned int n;             // components of d
@@ -223,18 +228,22 @@ namespace
               << verdict(record.warm_steps == 0)
               << "\n  same for the reversed order to " << tolerance << ": "
               << verdict(record.order_change < tolerance) << '\n';
-    std::clog << name << ": residual " << record.residual << ", error "
-              << record.error << ", steps per constraint " << record.longest_run
-              << ", not optimal " << record.not_optimal << ", warm steps "
-              << record.warm_steps << ", order " << record.order_change << '\n';
+    if (print_figures)
+      std::cout << name << ": residual " << record.residual << ", error "
+                << record.error << ", steps per constraint "
+                << record.longest_run << ", not optimal " << record.not_optimal
+                << ", warm steps " << record.warm_steps << ", order "
+                << record.order_change << '\n';
   }
 } // namespace
 
 
 
 int
-main()
+main(int argc, char *[])
 {
+  print_figures = argc > 1;
+
   constexpr unsigned int n_problems = 1000;
   Generator              generator;
 

@@ -21,6 +21,11 @@ using namespace Debond;
 
 namespace
 {
+  // Whether to print the figures behind the verdicts; any argument does it.
+  bool print_figures = false;
+
+
+
   using Values = std::vector<double>;
 
   /// f(x), and one subgradient in the second argument.
@@ -321,19 +326,22 @@ namespace
               << ", feasible: " << verdict(inside) << ", at most "
               << test.most_iterations << " iterations: "
               << verdict(result.iterations() <= test.most_iterations) << '\n';
-    std::clog << test.name << ": " << result.iterations() << " iterations ("
-              << result.long_steps << " long, " << result.short_steps
-              << " short, " << result.null_steps << " null), error " << error
-              << ", QP residual " << result.largest_qp_residual << ' '
-              << result.message << '\n';
+    if (print_figures)
+      std::cout << test.name << ": " << result.iterations() << " iterations ("
+                << result.long_steps << " long, " << result.short_steps
+                << " short, " << result.null_steps << " null), error " << error
+                << ", QP residual " << result.largest_qp_residual << ' '
+                << result.message << '\n';
   }
 } // namespace
 
 
 
 int
-main()
+main(int argc, char *[])
 {
+  print_figures = argc > 1;
+
   Values maxq_start(20), goffin_start(50);
   for (unsigned int i = 0; i < 20; ++i)
     maxq_start[i] = i < 10 ? i + 1. : -(i + 1.);
