@@ -161,6 +161,12 @@ namespace Debond
         "m_R, the part of the predicted slope that a new subgradient has to exceed, eq. (15); above the descent fraction m_L",
         "none");
       declare(
+        "Line search",
+        "minimum",
+        one_of({"largest", "halving", "minimum"}),
+        "Which step with (14) is taken: 'largest' in [0, 1] by bisection, as in the paper's text; 'halving', the first of 1, 1/2, 1/4, ...; 'minimum', on along these while the functional falls, then the minimum of a parabola",
+        "none");
+      declare(
         "Stop tolerance",
         to_text(defaults.epsilon_s),
         positive_number(),
@@ -518,6 +524,8 @@ namespace Debond
     p.bundle.t_bar = table.get_double(bundle_section + "Long step threshold");
     p.bundle.m_L   = table.get_double(bundle_section + "Descent fraction");
     p.bundle.m_R   = table.get_double(bundle_section + "Slope fraction");
+    p.bundle.line_search =
+      parse_descent_rule(table.get(bundle_section + "Line search"));
     p.bundle.epsilon_s   = table.get_double(bundle_section + "Stop tolerance");
     p.bundle.bundle_size = table.get_unsigned(bundle_section + "Bundle size");
     p.bundle.maximum_iterations =

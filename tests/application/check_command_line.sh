@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# check_command_line.sh DEBOND: the options that do not solve anything.
+set -euo pipefail
+export LC_ALL=C
+
+debond=$1
+directory=$(mktemp -d)
+trap 'rm -rf "$directory"' EXIT
+cd "$directory"
+
+fail() {
+  echo "$1" >&2
+  exit 1
+}
+
+"$debond" --help >help
+for code in 0 1 2 3 4 5; do
+  grep -qE "^  $code  " help || fail "--help has no exit code $code"
+done
+
+"$debond" --version >version
+for line in '^Debond [0-9]+\.[0-9]+\.[0-9]+$' '^revision .+$' \
+  '^deal\.II 9\.' '^build type (Release|Debug)$'; do
+  grep -qE "$line" version || fail "--version has no line $line"
+done
+
+# What is printed can be read and is the same then, also with values that are
+# not the defaults.
+"$debond" --print-parameters >defaults.prm
+"$debond" defaults.prm --print-parameters >again.prm
+diff defaults.prm again.prm || fail "The printed defaults read differently."
+"$debond" defaults.prm --validate >/dev/null || fail "The defaults are invalid."
+
+"$debond" --print-parameters --set "Dimension=3" \
+  --set "Solver/Euclidean bundle/Proximal weight = 0.25" \
+  --set "Loads/Traction top=0; if(x<L, q, -q/2); 0" \
+  --set "Loads/Constants=q=0.69, L=0.2" >set.prm
+grep -qE '^ +set Proximal weight += 0\.25 ' set.prm || fail "--set has no effect."
+"$debond" set.prm --print-parameters >again.prm
+diff set.prm again.prm || fail "The printed parameters read differently."
+
+# Every parameter says its units.
+entries=$(grep -cE '^ *set ' defaults.prm)
+units=$(tr -d '\n' <defaults.prm | tr -s '# ' ' ' | grep -o 'Units:' | wc -l)
+[ "$entries" -eq "$units" ] || fail "$entries entries, but $units with units"
+
+[ "$(ls)" = "$(printf '%s\n' again.prm defaults.prm help set.prm version)" ] ||
+  fail "Files were written."

@@ -1,0 +1,71 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# check_output.sh DEBOND: which files a run writes, and what it does if it
+# cannot write one.
+set -euo pipefail
+export LC_ALL=C
+
+debond=$1
+directory=$(mktemp -d)
+trap 'rm -rf "$directory"' EXIT
+cd "$directory"
+
+fail() {
+  echo "$1" >&2
+  exit 1
+}
+
+cat >bar.prm <<'SCENE'
+subsection Mesh
+  set Cells = 10, 1
+end
+subsection Solver
+  subsection Euclidean bundle
+    set Proximal weight = 0.01
+    set Stop tolerance  = 1e-8
+  end
+end
+SCENE
+
+# The default directory, with parents that do not exist.
+"$debond" bar.prm >log
+files=(body.vtu contact.vtu contact_profile.csv history.csv parameters.prm
+  summary.json)
+[ "$(ls output/bar)" = "$(printf '%s\n' "${files[@]}")" ] ||
+  fail "output/bar has $(ls output/bar)"
+for file in "${files[@]}"; do
+  [ -s "output/bar/$file" ] || fail "$file is empty."
+  grep -q "output/bar/$file" log || fail "The log does not name $file."
+done
+grep -q '"status": "success"' output/bar/summary.json || fail "no success"
+
+# The effective parameters give the same result. They keep the placeholder of
+# the directory, so that nothing is overwritten.
+cp output/bar/parameters.prm again.prm
+"$debond" again.prm >/dev/null
+cmp output/bar/history.csv output/again/history.csv ||
+  fail "The effective parameters give another result."
+
+# Switched off.
+"$debond" bar.prm --set "Output/Directory=few" --set "Output/Body VTU=false" \
+  --set "Output/Contact VTU=false" --set "Output/Contact profile=false" \
+  --set "Output/History=false" >/dev/null
+[ "$(ls few)" = "$(printf '%s\n' parameters.prm summary.json)" ] ||
+  fail "few has $(ls few)"
+
+# A file that cannot be written is named, and the exit code is 5.
+mkdir -p blocked/contact_profile.csv
+code=0
+"$debond" bar.prm --set "Output/Directory=blocked" >log 2>errors || code=$?
+[ $code -eq 5 ] || fail "exit code $code in place of 5"
+grep -q "blocked/contact_profile.csv" errors ||
+  fail "The file that cannot be written is not named: $(cat errors)"
+grep -q "status  *success" log || fail "The result is not in the log."
+
+# Also if it is the first one, then before the solve.
+mkdir -p closed/parameters.prm
+code=0
+"$debond" bar.prm --set "Output/Directory=closed" >log 2>errors || code=$?
+[ $code -eq 5 ] || fail "exit code $code in place of 5"
+grep -q "closed/parameters.prm" errors || fail "not named: $(cat errors)"
+[ ! -s log ] || fail "The scene was solved: $(cat log)"
