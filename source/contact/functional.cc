@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/vector.h>
+#include <deal.II/lac/vector_memory.h>
 
 #include <debond/contact/functional.h>
 
@@ -15,19 +16,21 @@ namespace Debond
   public:
     Line(const Functional &functional, const VectorType &x, const VectorType &d)
       : functional(functional)
-      , gradient(x)
-      , A_d(d)
+      , gradient(memory)
+      , A_d(memory)
       , s(functional.normal_trace(x))
       , s_d(functional.normal_trace(d))
       , s_t(s)
       , xi(s)
       , adhesion_at_x(functional.adhesion.value(s))
     {
-      functional.A.vmult(gradient, x);
-      gradient -= functional.f;
-      functional.A.vmult(A_d, d);
-      slope     = gradient * d;
-      curvature = A_d * d;
+      gradient->reinit(x, true);
+      functional.A.vmult(*gradient, x);
+      *gradient -= functional.f;
+      A_d->reinit(d, true);
+      functional.A.vmult(*A_d, d);
+      slope     = *gradient * d;
+      curvature = *A_d * d;
     }
 
     double
@@ -40,8 +43,8 @@ namespace Debond
     void
     subgradient(const double t, VectorType &eta) const override
     {
-      eta = gradient;
-      eta.add(t, A_d);
+      eta = *gradient;
+      eta.add(t, *A_d);
       functional.adhesion.subgradient(trace(t), xi);
       for (unsigned int i = 0; i < xi.size(); ++i)
         eta(functional.boundary.nodes[i].dof) += xi(i);
@@ -56,9 +59,13 @@ namespace Debond
       return s_t;
     }
 
-    const Functional              &functional;
-    VectorType                     gradient; ///< A x - f
-    VectorType                     A_d;
+    const Functional &functional;
+
+    // The vectors of earlier lines are used again.
+    dealii::GrowingVectorMemory<VectorType>            memory;
+    typename dealii::VectorMemory<VectorType>::Pointer gradient; ///< A x - f
+    typename dealii::VectorMemory<VectorType>::Pointer A_d;
+
     dealii::Vector<double>         s;
     dealii::Vector<double>         s_d;
     mutable dealii::Vector<double> s_t;

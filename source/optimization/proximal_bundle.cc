@@ -156,9 +156,21 @@ namespace Debond
                 VectorType               &d) const
       {
         d = 0.;
+        // Two at a time, to read and write d half as often.
+        std::vector<unsigned int> active;
         for (unsigned int j = 0; j < size(); ++j)
           if (solution.lambda(j) > 0.)
-            d.add(-solution.lambda(j) / u, subgradients[j]);
+            active.push_back(j);
+        const auto factor = [&](const unsigned int k) {
+          return -solution.lambda(active[k]) / u;
+        };
+        for (unsigned int k = 0; k + 1 < active.size(); k += 2)
+          d.add(factor(k),
+                subgradients[active[k]],
+                factor(k + 1),
+                subgradients[active[k + 1]]);
+        if (active.size() % 2 == 1)
+          d.add(factor(active.size() - 1), subgradients[active.back()]);
         for (unsigned int i = 0; i < bounds.indices.size(); ++i)
           d(bounds.indices[i]) = solution.d(i);
       }
