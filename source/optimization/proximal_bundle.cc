@@ -3,7 +3,7 @@
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/vector.h>
 
-#include <debond/optimization/bundle_qp.h>
+#include <debond/optimization/euclidean_direction.h>
 #include <debond/optimization/proximal_bundle.h>
 
 #include <algorithm>
@@ -34,7 +34,8 @@ namespace Debond
     std::string
     failure_message(const SolverStatus              status,
                     const double                    v,
-                    const BundleQP::Solution       &direction,
+                    const double                    qp_residual,
+                    const std::string              &qp_status,
                     const ProximalBundleParameters &parameters)
     {
       std::ostringstream text;
@@ -56,9 +57,9 @@ namespace Debond
                  << ". Try a larger proximal weight or stop tolerance.";
             break;
           case SolverStatus::quadratic_program:
-            text << "bundle QP (" << to_string(direction.status)
-                 << "): relative residual " << direction.residual()
-                 << ", required is at most " << acceptable_qp_residual
+            text << "bundle QP (" << qp_status << "): relative residual "
+                 << qp_residual << ", required is at most "
+                 << acceptable_qp_residual
                  << ". Try a smaller bundle size or a larger proximal weight.";
             break;
           case SolverStatus::not_finite:
@@ -77,126 +78,76 @@ namespace Debond
 
 
 
-    /// The subgradients of the bundle with what the direction problem needs
-    /// of them.
+    /// The subgradients, which the direction problem holds, with their
+    /// linearisation errors and distances at x_k.
     template <typename VectorType>
     class Bundle
     {
     public:
-      Bundle(const unsigned int size,
-             const UpperBounds &bounds,
-             const VectorType  &model)
-        : bounds(bounds)
-        , qp(size, bounds.indices.size())
-        , subgradients(size, model)
-        , alpha(size)
-        , distance(size)
-        , b(bounds.indices.size())
-        , bounded(bounds.indices.size())
-      {}
+      using Solution = typename DirectionProblem<VectorType>::Solution;
+
+      Bundle(DirectionProblem<VectorType> &direction_problem,
+             const unsigned int            capacity)
+        : problem(direction_problem)
+        , alpha(capacity)
+        , distance(capacity)
+      {
+        problem.clear();
+      }
 
       unsigned int
       size() const
       {
-        return qp.n_cuts();
+        return problem.size();
       }
 
       bool
       full() const
       {
-        return size() == subgradients.size();
+        return size() == alpha.size();
       }
 
       void
       clear()
       {
-        qp.clear();
+        problem.clear();
       }
 
-      /// Stores @p eta of a point at the given distance and with the given
-      /// linearisation error at x_k.
       void
       add(const VectorType &eta,
           const double      new_alpha,
           const double      new_distance)
       {
-        const unsigned int j   = size();
-        VectorType        &cut = subgradients[j];
-        cut                    = eta;
-
-        // The bounded components are kept apart, so that the part of the Gram
-        // matrix that remains when bounds are active is not a difference.
-        for (unsigned int i = 0; i < bounds.indices.size(); ++i)
-          {
-            bounded(i)             = cut(bounds.indices[i]);
-            cut(bounds.indices[i]) = 0.;
-          }
-        products.resize(j + 1);
-        for (unsigned int k = 0; k <= j; ++k)
-          products(k) = subgradients[k] * cut;
-        alpha(j)    = new_alpha;
-        distance(j) = new_distance;
-        qp.add_cut(products, bounded);
+        alpha(size())    = new_alpha;
+        distance(size()) = new_distance;
+        problem.add(eta);
       }
 
-      const BundleQP::Solution &
-      solve(const VectorType &x, const double u, const double gamma)
+      const Solution &
+      solve(const VectorType &x, const double gamma)
       {
         const unsigned int m = size();
-        for (unsigned int i = 0; i < bounds.indices.size(); ++i)
-          b(i) = bounds.upper[i] - x(bounds.indices[i]);
-        beta = alpha.head(m).cwiseAbs().cwiseMax(gamma *
-                                                 distance.head(m).cwiseAbs2());
-        return qp.solve(beta, b, u);
-      }
-
-      void
-      direction(const BundleQP::Solution &solution,
-                const double              u,
-                VectorType               &d) const
-      {
-        d = 0.;
-        // Two at a time, to read and write d half as often.
-        std::vector<unsigned int> active;
-        for (unsigned int j = 0; j < size(); ++j)
-          if (solution.lambda(j) > 0.)
-            active.push_back(j);
-        const auto factor = [&](const unsigned int k) {
-          return -solution.lambda(active[k]) / u;
-        };
-        for (unsigned int k = 0; k + 1 < active.size(); k += 2)
-          d.add(factor(k),
-                subgradients[active[k]],
-                factor(k + 1),
-                subgradients[active[k + 1]]);
-        if (active.size() % 2 == 1)
-          d.add(factor(active.size() - 1), subgradients[active.back()]);
-        for (unsigned int i = 0; i < bounds.indices.size(); ++i)
-          d(bounds.indices[i]) = solution.d(i);
+        return problem.solve(x,
+                             alpha.head(m).cwiseAbs().cwiseMax(
+                               gamma * distance.head(m).cwiseAbs2()));
       }
 
       /// Accounts for x_{k+1} = x_k + t_L d.
       void
-      move(const BundleQP::Solution &solution,
-           const LineSearchResult   &step,
-           const double              d_norm)
+      move(const Solution         &solution,
+           const LineSearchResult &step,
+           const double            d_length)
       {
         const unsigned int m = size();
         alpha.head(m) +=
           (step.change - step.t_L * solution.slopes.array()).matrix();
-        distance.head(m).array() += step.t_L * d_norm;
+        distance.head(m).array() += step.t_L * d_length;
       }
 
     private:
-      const UpperBounds      &bounds;
-      BundleQP                qp;
-      std::vector<VectorType> subgradients; ///< zero in the bounded components
-      Eigen::VectorXd         alpha;        ///< linearisation errors
-      Eigen::VectorXd         distance;     ///< s_j^k
-      Eigen::VectorXd         b;
-      Eigen::VectorXd         bounded;
-      Eigen::VectorXd         products;
-      Eigen::VectorXd         beta;
+      DirectionProblem<VectorType> &problem;
+      Eigen::VectorXd               alpha;    ///< linearisation errors
+      Eigen::VectorXd               distance; ///< s_j^k
     };
   } // namespace
 
@@ -242,10 +193,26 @@ namespace Debond
                                        VectorType                  &x,
                                        const Monitor &monitor) const
   {
-    for (unsigned int i = 0; i < bounds.indices.size(); ++i)
-      if (!(x(bounds.indices[i]) <= bounds.upper[i]))
-        throw std::invalid_argument(
-          "The start of the bundle method must satisfy the bounds.");
+    EuclideanDirection<VectorType> direction_problem(parameters.u,
+                                                     bounds,
+                                                     parameters.bundle_size,
+                                                     x);
+    return minimize(objective, direction_problem, x, monitor);
+  }
+
+
+
+  template <typename VectorType>
+  ProximalBundleResult<VectorType>
+  ProximalBundle<VectorType>::minimize(
+    const Objective<VectorType>  &objective,
+    DirectionProblem<VectorType> &direction_problem,
+    VectorType                   &x,
+    const Monitor                &monitor) const
+  {
+    if (!direction_problem.is_feasible(x))
+      throw std::invalid_argument(
+        "The start of the bundle method must satisfy the bounds.");
 
     ProximalBundleResult<VectorType> result;
     const LineSearchParameters line_search_parameters{parameters.line_search,
@@ -261,7 +228,7 @@ namespace Debond
 
     VectorType eta(x), d(x);
 
-    Bundle<VectorType> bundle(parameters.bundle_size, bounds, x);
+    Bundle<VectorType> bundle(direction_problem, parameters.bundle_size);
     const auto         restart = [&]() {
       bundle.clear();
       result.functional = objective.value(x);
@@ -270,11 +237,11 @@ namespace Debond
     };
     restart();
 
-    const BundleQP::Solution *direction = nullptr;
+    const typename Bundle<VectorType>::Solution *direction = nullptr;
     while (true)
       {
         qp_timer.start();
-        direction = &bundle.solve(x, parameters.u, parameters.gamma);
+        direction = &bundle.solve(x, parameters.gamma);
         qp_timer.stop();
         result.v = direction->v;
 
@@ -288,13 +255,13 @@ namespace Debond
             result.status = SolverStatus::success;
             break;
           }
-        if (direction->residual() > acceptable_qp_residual)
+        if (direction->residual > acceptable_qp_residual)
           {
             result.status = SolverStatus::quadratic_program;
             break;
           }
         result.largest_qp_residual =
-          std::max(result.largest_qp_residual, direction->residual());
+          std::max(result.largest_qp_residual, direction->residual);
         if (result.iterations() == parameters.maximum_iterations)
           {
             result.status = SolverStatus::iteration_limit;
@@ -302,14 +269,14 @@ namespace Debond
           }
 
         algebra_timer.start();
-        bundle.direction(*direction, parameters.u, d);
-        const double d_norm = d.l2_norm();
+        direction_problem.direction(d);
+        const double d_length = direction_problem.length(d);
         algebra_timer.stop();
 
         objective_timer.start();
         const auto             line = objective.along(x, d);
-        const LineSearchResult step =
-          line_search(*line, d, d_norm, result.v, line_search_parameters, eta);
+        const LineSearchResult step = line_search(
+          *line, d, d_length, result.v, line_search_parameters, eta);
         objective_timer.stop();
         if (!step.success)
           {
@@ -336,17 +303,15 @@ namespace Debond
         if (step.t_L > 0.)
           {
             x.add(step.t_L, d);
-            for (unsigned int i = 0; i < bounds.indices.size(); ++i)
-              x(bounds.indices[i]) =
-                std::min<double>(x(bounds.indices[i]), bounds.upper[i]);
+            direction_problem.project(x);
             result.functional += step.change;
-            bundle.move(*direction, step, d_norm);
+            bundle.move(*direction, step, d_length);
           }
 
         if (bundle.full())
           restart();
         else
-          bundle.add(eta, step.alpha, (step.t_R - step.t_L) * d_norm);
+          bundle.add(eta, step.alpha, (step.t_R - step.t_L) * d_length);
         algebra_timer.stop();
 
         switch (step.kind)
@@ -372,8 +337,11 @@ namespace Debond
 
     result.functional = objective.value(x);
     if (result.status != SolverStatus::success)
-      result.message =
-        failure_message(result.status, result.v, *direction, parameters);
+      result.message = failure_message(result.status,
+                                       result.v,
+                                       direction->residual,
+                                       direction->status,
+                                       parameters);
     result.qp_seconds             = qp_timer.wall_time();
     result.objective_seconds      = objective_timer.wall_time();
     result.linear_algebra_seconds = algebra_timer.wall_time();

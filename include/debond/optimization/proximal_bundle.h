@@ -2,6 +2,7 @@
 #ifndef debond_optimization_proximal_bundle_h
 #define debond_optimization_proximal_bundle_h
 
+#include <debond/optimization/direction_problem.h>
 #include <debond/optimization/line_search.h>
 #include <debond/optimization/objective.h>
 #include <debond/optimization/status.h>
@@ -124,6 +125,15 @@ namespace Debond
              const UpperBounds           &bounds,
              VectorType                  &x,
              const Monitor               &monitor = {}) const;
+
+    /// The same in the metric of @p direction_problem, which also knows K and
+    /// has to have room for `bundle_size` subgradients; the parameter u is not
+    /// used. One method, whatever the metric.
+    ProximalBundleResult<VectorType>
+    minimize(const Objective<VectorType>  &objective,
+             DirectionProblem<VectorType> &direction_problem,
+             VectorType                   &x,
+             const Monitor                &monitor = {}) const;
 
   private:
     ProximalBundleParameters parameters;
