@@ -18,7 +18,9 @@ namespace Debond
     const std::vector<std::string> sides =
       {"left", "right", "bottom", "top", "front", "back"};
 
-    const std::string bundle_section = "Solver/Euclidean bundle/";
+    const std::string bundle_section   = "Solver/Euclidean bundle/";
+    const std::string energy_section   = "Solver/Energy bundle/";
+    const std::string majorise_section = "Solver/Majorise minimise/";
 
 
 
@@ -189,6 +191,50 @@ namespace Debond
               "The first iterate: zero is the undeformed body",
               "none");
     }
+
+
+
+    void
+    declare_condensed_methods(ParameterTable &table)
+    {
+      const Parameters defaults;
+      table.declare(
+        energy_section + "Stop tolerance",
+        to_text(defaults.energy_bundle.epsilon_s),
+        positive_number(),
+        "epsilon_s relative to the energy 1/2 <A u, u> that the body has without contact",
+        "none");
+      table.declare(
+        energy_section + "Distance weight",
+        to_text(defaults.energy_bundle.gamma),
+        number(">= 0", [](double x) { return x >= 0; }),
+        "gamma, the weight of the distance, measured in the energy norm, in the subgradient locality measure",
+        "none");
+      table.declare(energy_section + "Bundle size",
+                    std::to_string(defaults.energy_bundle.bundle_size),
+                    whole_number(2, 1000),
+                    "Subgradients that are kept before the bundle is emptied",
+                    "none");
+      table.declare(
+        energy_section + "Maximum iterations",
+        std::to_string(defaults.energy_bundle.maximum_iterations),
+        whole_number(1, 1000000),
+        "Iterations after which the method gives up; the program then returns 3",
+        "none");
+
+      table.declare(
+        majorise_section + "Stop tolerance",
+        to_text(defaults.majorise_minimise.tolerance),
+        positive_number(),
+        "The optimality conditions hold to this part of the largest force on a contact node",
+        "none");
+      table.declare(
+        majorise_section + "Maximum iterations",
+        std::to_string(defaults.majorise_minimise.maximum_iterations),
+        whole_number(1, 1000000),
+        "Iterations after which the method gives up; the program then returns 3",
+        "none");
+    }
   } // namespace
 
 
@@ -305,11 +351,15 @@ namespace Debond
 
     table.declare(
       "Solver/Method",
-      "euclidean bundle",
-      one_of({"euclidean bundle"}),
-      "The minimiser: euclidean bundle is the paper's proximal bundle method",
+      "automatic",
+      one_of({"automatic",
+              "euclidean bundle",
+              "energy bundle",
+              "majorise minimise"}),
+      "The minimiser: euclidean bundle is the paper's proximal bundle method; energy bundle is the same method on the normal displacements of the contact nodes alone, in the energy norm; majorise minimise fixes the branch of the law at each quadrature point in turn and is exact after finitely many steps; automatic chooses and says why",
       "none");
     declare_bundle(table);
+    declare_condensed_methods(table);
 
     table.declare(
       "Output/Directory",
@@ -524,6 +574,18 @@ namespace Debond
     p.bundle.t_bar = table.get_double(bundle_section + "Long step threshold");
     p.bundle.m_L   = table.get_double(bundle_section + "Descent fraction");
     p.bundle.m_R   = table.get_double(bundle_section + "Slope fraction");
+    p.energy_bundle.epsilon_s =
+      table.get_double(energy_section + "Stop tolerance");
+    p.energy_bundle.gamma =
+      table.get_double(energy_section + "Distance weight");
+    p.energy_bundle.bundle_size =
+      table.get_unsigned(energy_section + "Bundle size");
+    p.energy_bundle.maximum_iterations =
+      table.get_unsigned(energy_section + "Maximum iterations");
+    p.majorise_minimise.tolerance =
+      table.get_double(majorise_section + "Stop tolerance");
+    p.majorise_minimise.maximum_iterations =
+      table.get_unsigned(majorise_section + "Maximum iterations");
     p.bundle.line_search =
       parse_descent_rule(table.get(bundle_section + "Line search"));
     p.bundle.epsilon_s   = table.get_double(bundle_section + "Stop tolerance");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/application/report.h>
+#include <debond/application/solve.h>
 #include <debond/application/version.h>
 
 #include <cmath>
@@ -83,9 +84,10 @@ namespace Debond
 
 
   void
-  report_problem(const Parameters &parameters,
-                 const Summary    &summary,
-                 std::ostream     &out)
+  report_problem(const Parameters  &parameters,
+                 const Summary     &summary,
+                 const std::string &reason,
+                 std::ostream      &out)
   {
     const bool details = parameters.output.machine_details;
 
@@ -111,9 +113,12 @@ namespace Debond
       << parameters.law.name << ", a = " << parameters.law.bond_stiffness
       << ", M = " << parameters.law.bond_threshold << ", "
       << parameters.quadrature_name << " quadrature\n";
-    line(out, "method") << parameters.method
-                        << ", u_k = " << parameters.bundle.u << '\n'
-                        << std::flush;
+    line(out, "method") << summary.method;
+    if (summary.method == SolverMethod::euclidean_bundle)
+      out << ", u_k = " << parameters.bundle.u;
+    if (!reason.empty())
+      out << ", chosen since " << reason;
+    out << '\n' << std::flush;
   }
 
 
@@ -139,11 +144,18 @@ namespace Debond
     line(out, "J") << scientific(summary.functional, 10) << '\n';
     if (details)
       {
-        line(out, "iterations")
-          << summary.total_iterations << " (long " << summary.long_steps
-          << ", short " << summary.short_steps << ", null "
-          << summary.null_steps << ")\n";
-        line(out, "last v_k") << scientific(summary.last_v, 3) << '\n';
+        line(out, "iterations") << summary.total_iterations;
+        if (summary.method == SolverMethod::majorise_minimise)
+          out << "\n";
+        else
+          out << " (long " << summary.long_steps << ", short "
+              << summary.short_steps << ", null " << summary.null_steps
+              << ")\n";
+        line(out,
+             summary.method == SolverMethod::majorise_minimise ?
+               "optimality residual" :
+               "last v_k")
+          << scientific(summary.stop_criterion, 3) << '\n';
       }
 
     std::string states;

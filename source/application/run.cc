@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/application/interrupt.h>
 #include <debond/application/report.h>
 #include <debond/application/run.h>
-#include <debond/application/scene.h>
+#include <debond/application/solve.h>
 #include <debond/application/version.h>
-#include <debond/output/progress.h>
 #include <debond/output/tables.h>
 #include <debond/output/vtu.h>
 
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <memory>
 
 namespace Debond
 {
   namespace
   {
-    using Result = ProximalBundleResult<dealii::Vector<double>>;
-
-
-
     /// Creates the directory and writes the effective parameters into it.
     /// Throws std::runtime_error naming what cannot be written.
     std::string
@@ -51,7 +44,6 @@ namespace Debond
     {
       Summary summary;
       summary.scene                    = parameters.scene;
-      summary.method                   = parameters.method;
       summary.dimension                = dim;
       summary.cells                    = scene.n_cells();
       summary.degrees_of_freedom       = scene.problem().n_free_dofs();
@@ -68,20 +60,19 @@ namespace Debond
 
 
     void
-    add_result(const Result &result, Summary &summary)
+    add_result(const SolveResult &result, Summary &summary)
     {
-      summary.status                               = to_string(result.status);
-      summary.message                              = result.message;
-      summary.functional                           = result.functional;
-      summary.total_iterations                     = result.iterations();
-      summary.long_steps                           = result.long_steps;
-      summary.short_steps                          = result.short_steps;
-      summary.null_steps                           = result.null_steps;
-      summary.last_v                               = result.v;
-      summary.largest_qp_residual                  = result.largest_qp_residual;
-      summary.timings_s["solve/quadratic program"] = result.qp_seconds;
-      summary.timings_s["solve/functional"]        = result.objective_seconds;
-      summary.timings_s["solve/linear algebra"] = result.linear_algebra_seconds;
+      summary.status              = to_string(result.status);
+      summary.message             = result.message;
+      summary.functional          = result.functional;
+      summary.total_iterations    = result.iterations;
+      summary.long_steps          = result.long_steps;
+      summary.short_steps         = result.short_steps;
+      summary.null_steps          = result.null_steps;
+      summary.stop_criterion      = result.criterion;
+      summary.largest_qp_residual = result.largest_qp_residual;
+      for (const auto &[part, seconds] : result.parts)
+        summary.timings_s["solve/" + part] = seconds;
     }
 
 
@@ -103,44 +94,13 @@ namespace Debond
 
 
 
-    template <int dim>
-    Result
-    solve(const Parameters       &parameters,
-          const Scene<dim>       &scene,
-          dealii::Vector<double> &u,
-          std::ostream           &out,
-          const bool              terminal)
-    {
-      const InterruptGuard      guard;
-      std::unique_ptr<Progress> progress;
-      if (parameters.output.machine_details)
-        progress = std::make_unique<Progress>(out, terminal);
-
-      const Result result =
-        ProximalBundle<dealii::Vector<double>>(parameters.bundle)
-          .minimize(scene.functional(),
-                    scene.functional().unilateral_constraint(),
-                    u,
-                    [&](const BundleIteration &iteration) {
-                      if (progress)
-                        progress->report(iteration);
-                      return !guard.requested();
-                    });
-      if (progress)
-        progress->finish();
-      return result;
-    }
-
-
-
     /// Writes what the scene asks for, and returns the names of the files.
     template <int dim>
     std::vector<std::string>
-    write_fields(const Parameters             &parameters,
-                 const Scene<dim>             &scene,
-                 const dealii::Vector<double> &u,
-                 const Verification<dim>      &verification,
-                 const Result                 &result)
+    write_fields(const Parameters        &parameters,
+                 const Scene<dim>        &scene,
+                 const Verification<dim> &verification,
+                 const SolveResult       &result)
     {
       const OutputParameters &output = parameters.output;
       const auto              path   = [&output](const std::string &name) {
@@ -150,12 +110,15 @@ namespace Debond
       if (output.body_vtu)
         {
           files.push_back(path("body.vtu"));
-          write_body_vtu(scene.problem(), u, files.back());
+          write_body_vtu(scene.problem(), result.u, files.back());
         }
       if (output.contact_vtu)
         {
           files.push_back(path("contact.vtu"));
-          write_contact_vtu(scene.problem(), u, verification, files.back());
+          write_contact_vtu(scene.problem(),
+                            result.u,
+                            verification,
+                            files.back());
         }
       if (output.contact_profile)
         {
@@ -167,7 +130,10 @@ namespace Debond
       if (output.history)
         {
           files.push_back(path("history.csv"));
-          write_history(result.history, files.back());
+          if (result.majorise_history.empty())
+            write_history(result.bundle_history, files.back());
+          else
+            write_history(result.majorise_history, files.back());
         }
       return files;
     }
@@ -210,17 +176,19 @@ namespace Debond
         return ExitCode::output_not_saved;
       }
 
-    Summary summary = summarize_problem(parameters, scene);
-    report_problem(parameters, summary, out);
+    Summary            summary = summarize_problem(parameters, scene);
+    const MethodChoice choice  = choose_method(parameters);
+    summary.method             = choice.method;
+    report_problem(parameters, summary, choice.reason, out);
 
-    dealii::Timer          timer;
-    dealii::Vector<double> u(scene.problem().n_dofs());
-    const Result           result = solve(parameters, scene, u, out, terminal);
-    summary.timings_s["solve"]    = timer.wall_time();
+    dealii::Timer     timer;
+    const SolveResult result =
+      solve(choice.method, parameters, scene, out, terminal);
+    summary.timings_s["solve"] = timer.wall_time();
 
     timer.restart();
     const Verification<dim> verification =
-      verify(scene.problem(), scene.adhesion(), scene.law(), u);
+      verify(scene.problem(), scene.adhesion(), scene.law(), result.u);
     summary.timings_s["verification"] = timer.wall_time();
     add_result(result, summary);
     add_verification(verification, summary);
@@ -230,7 +198,7 @@ namespace Debond
     try
       {
         const std::vector<std::string> fields =
-          write_fields(parameters, scene, u, verification, result);
+          write_fields(parameters, scene, verification, result);
         files.insert(files.end(), fields.begin(), fields.end());
         summary.timings_s["output"] = timer.wall_time();
         summary.timings_s["total"]  = total.wall_time();

@@ -55,6 +55,23 @@ namespace Debond
 
 
   template <int dim>
+  void
+  AdhesionIntegral<dim>::add_curvature(const dealii::Vector<double> &s,
+                                       dealii::FullMatrix<double> &matrix) const
+  {
+    for (const Point &point : points(s))
+      {
+        const double curvature = point.weight * law.curvature(point.trace(s));
+        for (unsigned int k = 0; k < point.n_nodes; ++k)
+          for (unsigned int l = 0; l < point.n_nodes; ++l)
+            matrix(point.nodes[k], point.nodes[l]) +=
+              curvature * point.shape[k] * point.shape[l];
+      }
+  }
+
+
+
+  template <int dim>
   std::vector<Interval>
   AdhesionIntegral<dim>::force_intervals(const dealii::Vector<double> &s,
                                          const double delta) const

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/vector.h>
 #include <deal.II/lac/vector_memory.h>
@@ -158,5 +159,11 @@ namespace Debond
                             dealii::Vector<double>>;
   template class Functional<3,
                             dealii::SparseMatrix<double>,
+                            dealii::Vector<double>>;
+  template class Functional<2,
+                            dealii::FullMatrix<double>,
+                            dealii::Vector<double>>;
+  template class Functional<3,
+                            dealii::FullMatrix<double>,
                             dealii::Vector<double>>;
 } // namespace Debond

@@ -26,7 +26,7 @@ namespace Debond
 
 
     std::string
-    header()
+    bundle_header()
     {
       std::ostringstream text;
       text << std::setw(11) << "iteration" << std::setw(17) << "J"
@@ -38,14 +38,12 @@ namespace Debond
 
 
     std::string
-    row(const BundleIteration &iteration)
+    majorise_header()
     {
       std::ostringstream text;
-      text << std::setw(11) << iteration.iteration << std::scientific
-           << std::setprecision(8) << std::setw(17) << iteration.functional
-           << std::setprecision(2) << std::setw(12) << iteration.v
-           << std::setw(9) << iteration.bundle_size << "  "
-           << to_string(iteration.kind);
+      text << std::setw(11) << "iteration" << std::setw(17) << "J"
+           << std::setw(12) << "residual" << std::setw(9) << "factors"
+           << std::setw(9) << "contact";
       return text.str();
     }
 
@@ -87,25 +85,54 @@ namespace Debond
   void
   Progress::report(const BundleIteration &iteration)
   {
+    std::ostringstream text;
+    text << std::setw(11) << iteration.iteration << std::scientific
+         << std::setprecision(8) << std::setw(17) << iteration.functional
+         << std::setprecision(2) << std::setw(12) << iteration.v << std::setw(9)
+         << iteration.bundle_size << "  " << to_string(iteration.kind);
+    report_row(iteration.iteration, bundle_header(), text.str());
+  }
+
+
+
+  void
+  Progress::report(const MajoriseMinimiseIteration &iteration)
+  {
+    std::ostringstream text;
+    text << std::setw(11) << iteration.iteration << std::scientific
+         << std::setprecision(8) << std::setw(17) << iteration.functional
+         << std::setprecision(2) << std::setw(12) << iteration.residual
+         << std::setw(9) << iteration.active_set_steps << std::setw(9)
+         << iteration.n_active;
+    report_row(iteration.iteration, majorise_header(), text.str());
+  }
+
+
+
+  void
+  Progress::report_row(const unsigned int iteration,
+                       const std::string &header,
+                       const std::string &row)
+  {
     if (!header_printed)
-      out << header() << std::endl;
+      out << header << std::endl;
     header_printed = true;
 
-    last    = iteration;
-    pending = true;
+    last_row = row;
+    pending  = true;
     if (terminal)
       {
         const double now = now_in_seconds();
         if (now - last_print_seconds < seconds_between_prints)
           return;
         last_print_seconds = now;
-        out << '\r' << padded(row(iteration)) << std::flush;
+        out << '\r' << padded(row) << std::flush;
       }
-    else if (iteration.iteration >= next_logged)
+    else if (iteration >= next_logged)
       {
-        while (next_logged <= iteration.iteration)
+        while (next_logged <= iteration)
           next_logged = following(next_logged);
-        out << row(iteration) << std::endl;
+        out << row << std::endl;
         pending = false;
       }
   }
@@ -116,7 +143,7 @@ namespace Debond
   Progress::finish()
   {
     if (pending)
-      out << (terminal ? '\r' + padded(row(last)) : row(last)) << std::endl;
+      out << (terminal ? '\r' + padded(last_row) : last_row) << std::endl;
     pending = false;
   }
 } // namespace Debond

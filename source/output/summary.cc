@@ -50,7 +50,7 @@ namespace Debond
                                         {"long", summary.long_steps},
                                         {"short", summary.short_steps},
                                         {"null", summary.null_steps}};
-    json["last_v"]                   = summary.last_v;
+    json["stop_criterion"]           = summary.stop_criterion;
     json["largest_qp_residual"]      = summary.largest_qp_residual;
     json["cells"]                    = summary.cells;
     json["degrees_of_freedom"]       = summary.degrees_of_freedom;

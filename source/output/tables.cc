@@ -67,6 +67,21 @@ namespace Debond
 
 
 
+  void
+  write_history(const std::vector<MajoriseMinimiseIteration> &history,
+                const std::string                            &file_name)
+  {
+    write_atomically(file_name, [&](std::ostream &out) {
+      set_full_precision(out);
+      out << "iteration,functional,residual,active_set_steps,contact_nodes\n";
+      for (const MajoriseMinimiseIteration &step : history)
+        out << step.iteration << ',' << step.functional << ',' << step.residual
+            << ',' << step.active_set_steps << ',' << step.n_active << '\n';
+    });
+  }
+
+
+
   template void
   write_contact_profile(const ContactBoundary<2> &,
                         const Verification<2> &,

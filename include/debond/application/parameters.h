@@ -7,6 +7,7 @@
 #include <debond/contact/quadrature.h>
 #include <debond/elasticity/crossed_mesh.h>
 #include <debond/elasticity/material.h>
+#include <debond/optimization/majorise_minimise.h>
 #include <debond/optimization/proximal_bundle.h>
 
 #include <map>
@@ -54,6 +55,19 @@ namespace Debond
 
 
 
+  /// In the energy norm the method needs few iterations and little choice.
+  inline ProximalBundleParameters
+  energy_bundle_defaults()
+  {
+    ProximalBundleParameters parameters;
+    parameters.epsilon_s          = 1e-13;
+    parameters.bundle_size        = 50;
+    parameters.maximum_iterations = 1000;
+    return parameters;
+  }
+
+
+
   /// A scene: what each module is given.
   struct Parameters
   {
@@ -70,7 +84,13 @@ namespace Debond
     std::string                 quadrature_name;
     std::string                 method;
     ProximalBundleParameters    bundle;
-    OutputParameters            output;
+
+    /// epsilon_s relative to the energy of the body without contact; u is
+    /// not used.
+    ProximalBundleParameters energy_bundle = energy_bundle_defaults();
+
+    MajoriseMinimiseParameters majorise_minimise;
+    OutputParameters           output;
 
     /// The scene with all entries that it leaves to their defaults.
     std::string effective_scene;

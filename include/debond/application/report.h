@@ -14,9 +14,10 @@ namespace Debond
 {
   /// The log's head: program, scene, problem size and method.
   void
-  report_problem(const Parameters &parameters,
-                 const Summary    &summary,
-                 std::ostream     &out);
+  report_problem(const Parameters  &parameters,
+                 const Summary     &summary,
+                 const std::string &reason,
+                 std::ostream      &out);
 
   /// The log's end: status, result, verification and times.
   template <int dim>

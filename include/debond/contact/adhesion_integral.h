@@ -7,6 +7,7 @@
 #include <debond/contact/boundary.h>
 #include <debond/contact/law.h>
 #include <debond/contact/quadrature.h>
+#include <debond/optimization/piecewise_quadratic.h>
 
 #include <array>
 #include <vector>
@@ -21,7 +22,7 @@ namespace Debond
    * Keeps references to its arguments. Use from one thread at a time.
    */
   template <int dim>
-  class AdhesionIntegral
+  class AdhesionIntegral : public PiecewiseQuadratic
   {
   public:
     AdhesionIntegral(const ContactBoundary<dim>   &contact_boundary,
@@ -30,13 +31,19 @@ namespace Debond
 
     /// Phi(s), an energy.
     double
-    value(const dealii::Vector<double> &s) const;
+    value(const dealii::Vector<double> &s) const override;
 
     /// One element of the Clarke subdifferential of Phi at s (the upper end of
     /// the law's interval at each kink), a force for each node.
     void
     subgradient(const dealii::Vector<double> &s,
-                dealii::Vector<double>       &xi) const;
+                dealii::Vector<double>       &xi) const override;
+
+    /// Adds the second derivative of the law's branches at s, a matrix that
+    /// couples the nodes of a face (diagonal for nodal quadrature).
+    void
+    add_curvature(const dealii::Vector<double> &s,
+                  dealii::FullMatrix<double>   &matrix) const override;
 
     /// For each node the forces that the law allows: the quadrature of the
     /// Goldstein intervals of j_1 over s +- delta. With delta = 0 this is

@@ -14,13 +14,13 @@ namespace Debond
     std::string  method; ///< Solver/Method
     std::string  status; ///< to_string(SolverStatus)
     std::string  message;
-    unsigned int dimension                = 2;
-    double       functional               = 0.;
-    unsigned int total_iterations         = 0;
-    unsigned int long_steps               = 0;
-    unsigned int short_steps              = 0;
-    unsigned int null_steps               = 0;
-    double       last_v                   = 0.; ///< v_k
+    unsigned int dimension        = 2;
+    double       functional       = 0.;
+    unsigned int total_iterations = 0;
+    unsigned int long_steps       = 0;
+    unsigned int short_steps      = 0;
+    unsigned int null_steps       = 0;
+    double       stop_criterion   = 0.; ///< last v_k, or the relative residual
     double       largest_qp_residual      = 0.;
     unsigned int cells                    = 0;
     unsigned int degrees_of_freedom       = 0; ///< free ones

@@ -2,6 +2,7 @@
 #ifndef debond_output_tables_h
 #define debond_output_tables_h
 
+#include <debond/optimization/majorise_minimise.h>
 #include <debond/optimization/proximal_bundle.h>
 #include <debond/output/verification.h>
 
@@ -27,6 +28,12 @@ namespace Debond
   void
   write_history(const std::vector<BundleIteration> &history,
                 const std::string                  &file_name);
+
+  /// The same for majorise-minimise: iteration, functional, residual,
+  /// active_set_steps, contact_nodes.
+  void
+  write_history(const std::vector<MajoriseMinimiseIteration> &history,
+                const std::string                            &file_name);
 } // namespace Debond
 
 #endif

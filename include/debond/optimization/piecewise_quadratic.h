@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_piecewise_quadratic_h
+#define debond_optimization_piecewise_quadratic_h
+
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/vector.h>
+
+namespace Debond
+{
+  /**
+   * A function Phi that is the least of several convex quadratics (at each of
+   * its quadrature points): the branch that is the least one at s lies above
+   * Phi everywhere and touches it at s.
+   */
+  class PiecewiseQuadratic
+  {
+  public:
+    virtual ~PiecewiseQuadratic() = default;
+
+    /// Phi(s).
+    virtual double
+    value(const dealii::Vector<double> &s) const = 0;
+
+    /// The gradient at s of the branches that are the least ones there, which
+    /// is an element of the Clarke subdifferential of Phi.
+    virtual void
+    subgradient(const dealii::Vector<double> &s,
+                dealii::Vector<double>       &xi) const = 0;
+
+    /// Adds the second derivative of these branches, positive semidefinite.
+    virtual void
+    add_curvature(const dealii::Vector<double> &s,
+                  dealii::FullMatrix<double>   &matrix) const = 0;
+  };
+} // namespace Debond
+
+#endif

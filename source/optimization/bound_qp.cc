@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/optimization/bound_qp.h>
+
+#include <Eigen/Cholesky>
+
+
+namespace Debond
+{
+  namespace
+  {
+    /// Updates of all indices at once before the finite rule takes over. The
+    /// scenes of the tests need less than 15.
+    constexpr unsigned int maximum_joint_updates = 50;
+  } // namespace
+
+
+
+  unsigned int
+  ActiveSetRule::update(const Eigen::VectorXd &excess,
+                        const Eigen::VectorXd &mu,
+                        const double           excess_noise,
+                        const double           mu_noise,
+                        ActiveSet             &active)
+  {
+    const bool only_first = n_updates++ >= maximum_joint_updates;
+    unsigned   changes    = 0;
+    for (unsigned int i = 0; i < active.size(); ++i)
+      {
+        const bool wrong =
+          active[i] != 0 ? mu(i) < -mu_noise : excess(i) > excess_noise;
+        if (!wrong)
+          continue;
+        active[i] = active[i] == 0;
+        ++changes;
+        if (only_first)
+          break;
+      }
+    return changes;
+  }
+
+
+
+  BoundQPResult
+  solve_bound_qp(const Eigen::Ref<const Eigen::MatrixXd> &M,
+                 const Eigen::VectorXd                   &r,
+                 const Eigen::VectorXd                   &b,
+                 ActiveSet                               &active)
+  {
+    const unsigned int n = r.size();
+    BoundQPResult      result;
+    ActiveSetRule      rule;
+    while (result.steps < maximum_active_set_steps)
+      {
+        ++result.steps;
+        std::vector<int> free;
+        result.x = b;
+        for (unsigned int i = 0; i < n; ++i)
+          if (active[i] == 0)
+            {
+              free.push_back(i);
+              result.x(i) = 0.;
+            }
+
+        const Eigen::VectorXd                   rest   = r - M * result.x;
+        Eigen::MatrixXd                         M_free = M(free, free);
+        Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(M_free);
+        const Eigen::VectorXd x_free = factor.solve(rest(free).eval());
+        for (unsigned int k = 0; k < free.size(); ++k)
+          result.x(free[k]) = x_free(k);
+
+        result.mu = r - M * result.x;
+        for (const int i : free)
+          result.mu(i) = 0.;
+
+        const double largest_force =
+          r.lpNorm<Eigen::Infinity>() +
+          (M.cwiseAbs() * result.x.cwiseAbs()).lpNorm<Eigen::Infinity>();
+        if (rule.update(result.x - b,
+                        result.mu,
+                        active_set_noise * result.x.lpNorm<Eigen::Infinity>(),
+                        active_set_noise * largest_force,
+                        active) == 0)
+          {
+            result.converged = result.x.allFinite();
+            result.x         = result.x.cwiseMin(b);
+            return result;
+          }
+      }
+    return result;
+  }
+} // namespace Debond
