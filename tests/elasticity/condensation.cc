@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The condensation onto the contact normals against dense elimination.
+
+#include <deal.II/base/function_parser.h>
+#include <deal.II/lac/full_matrix.h>
+
+#include <debond/elasticity/condensation.h>
+#include <debond/elasticity/crossed_mesh.h>
+#include <debond/elasticity/elastic_problem.h>
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+using namespace Debond;
+
+namespace
+{
+  const char *
+  verdict(const bool good)
+  {
+    return good ? "yes" : "NO";
+  }
+
+
+
+  template <int dim>
+  void
+  test(const BoxParameters &box, const double modulus)
+  {
+    dealii::Triangulation<dim> mesh;
+    make_box(box, mesh);
+    BoundaryConditions conditions;
+    conditions.clamped = {boundary_names<dim>().at("left")};
+    conditions.contact = {boundary_names<dim>().at("bottom")};
+    conditions.tangential_displacement_fixed = dim == 2;
+    ElasticProblem<dim> problem(mesh, conditions);
+
+    Material material;
+    material.young_modulus = modulus;
+    material.hypothesis    = Material::Hypothesis::plane_strain;
+    Loads<dim>   loads;
+    const double q = 0.01 * modulus;
+    loads.tractions[boundary_names<dim>().at("top")] =
+      std::make_shared<dealii::Functions::ConstantFunction<dim>>(q, dim);
+    problem.assemble(material, loads);
+
+    std::vector<unsigned int> kept, others;
+    std::vector<char>         is_kept(problem.n_dofs(), 0);
+    for (const auto &node : problem.contact_boundary().nodes)
+      {
+        kept.push_back(node.dof);
+        is_kept[node.dof] = 1;
+      }
+    for (unsigned int i = 0; i < problem.n_dofs(); ++i)
+      if (!problem.is_constrained(i) && is_kept[i] == 0)
+        others.push_back(i);
+    const auto excluded = [&](const unsigned int i) {
+      return problem.is_constrained(i);
+    };
+    const Condensation condensed(problem.matrix(),
+                                 problem.load(),
+                                 kept,
+                                 excluded);
+
+    // S = A_ss - A_so A_oo^{-1} A_os by dense elimination.
+    const auto block = [&](const std::vector<unsigned int> &rows,
+                           const std::vector<unsigned int> &columns) {
+      dealii::FullMatrix<double> result(rows.size(), columns.size());
+      for (unsigned int i = 0; i < rows.size(); ++i)
+        for (unsigned int j = 0; j < columns.size(); ++j)
+          result(i, j) = problem.matrix().el(rows[i], columns[j]);
+      return result;
+    };
+    dealii::FullMatrix<double> inverse = block(others, others);
+    inverse.gauss_jordan();
+    dealii::FullMatrix<double> elimination(kept.size(), others.size());
+    block(kept, others).mmult(elimination, inverse);
+    dealii::FullMatrix<double> S = block(kept, kept), product(S);
+    elimination.mmult(product, block(others, kept));
+    S.add(-1., product);
+
+    dealii::Vector<double> f_others(others.size()), g(kept.size()),
+      interior(others.size());
+    for (unsigned int i = 0; i < others.size(); ++i)
+      f_others(i) = problem.load()(others[i]);
+    elimination.vmult(g, f_others);
+    for (unsigned int i = 0; i < kept.size(); ++i)
+      g(i) = problem.load()(kept[i]) - g(i);
+    inverse.vmult(interior, f_others);
+    const double c_0 = -0.5 * (f_others * interior);
+
+    dealii::FullMatrix<double> S_error = condensed.schur_complement();
+    S_error.add(-1., S);
+    dealii::Vector<double> g_error = condensed.load();
+    g_error -= g;
+    std::cout << "  Schur complement to 1e-12: "
+              << verdict(S_error.frobenius_norm() < 1e-12 * S.frobenius_norm())
+              << ", load to 1e-12: "
+              << verdict(g_error.l2_norm() < 1e-12 * g.l2_norm())
+              << ", energy at zero to 1e-12: "
+              << verdict(std::abs(condensed.energy_at_zero() - c_0) <
+                         -1e-12 * c_0)
+              << '\n';
+
+    // For any s: equilibrium inside, S s - g on the contact nodes, the same
+    // energy.
+    dealii::Vector<double> s(kept.size()), force(kept.size());
+    for (unsigned int i = 0; i < s.size(); ++i)
+      s(i) = -0.001 * (1 + i % 5);
+    condensed.schur_complement().vmult(force, s);
+    const double energy =
+      condensed.energy_at_zero() + 0.5 * (s * force) - condensed.load() * s;
+    force -= condensed.load();
+
+    const dealii::Vector<double> u = condensed.expand(s);
+    dealii::Vector<double>       A_u(u.size());
+    problem.matrix().vmult(A_u, u);
+    const double energy_of_u = 0.5 * (u * A_u) - problem.load() * u;
+    A_u -= problem.load();
+    double inside = 0., contact = 0.;
+    for (const unsigned int i : others)
+      inside = std::max(inside, std::abs(A_u(i)));
+    for (unsigned int i = 0; i < kept.size(); ++i)
+      contact = std::max(contact, std::abs(A_u(kept[i]) - force(i)));
+    const double largest = force.linfty_norm();
+    std::cout << "  equilibrium inside to 1e-11: "
+              << verdict(inside < 1e-11 * largest)
+              << ", contact forces to 1e-12: "
+              << verdict(contact < 1e-12 * largest) << ", energy to 1e-11: "
+              << verdict(std::abs(energy - energy_of_u) <
+                         1e-11 * std::abs(energy))
+              << '\n';
+
+    // Without contact: A u = f.
+    dealii::FullMatrix<double> S_inverse(S);
+    S_inverse.gauss_jordan();
+    dealii::Vector<double> s_free(kept.size());
+    S_inverse.vmult(s_free, g);
+    const double energy_free =
+      0.5 * (problem.load() * condensed.expand(s_free));
+    std::cout << "  energy without contact to 1e-8: "
+              << verdict(std::abs(condensed.energy_without_contact() -
+                                  energy_free) < 1e-8 * energy_free)
+              << '\n';
+  }
+} // namespace
+
+
+
+int
+main()
+{
+  BoxParameters box;
+  box.cells = {{12, 3, 2}};
+  std::cout << "2D\n";
+  test<2>(box, 69.);
+  std::cout << "2D in other units\n";
+  test<2>(box, 69e9);
+  std::cout << "2D turned\n";
+  box.rotation = 40.;
+  test<2>(box, 69.);
+  box.rotation = 0.;
+  box.cells    = {{4, 2, 1}};
+  std::cout << "3D\n";
+  test<3>(box, 69.);
+
+  // A matrix that is not positive definite is refused.
+  dealii::SparsityPattern pattern(3, 3, 2);
+  pattern.add(0, 1);
+  pattern.add(1, 0);
+  pattern.compress();
+  dealii::SparseMatrix<double> indefinite(pattern);
+  for (unsigned int i = 0; i < 3; ++i)
+    indefinite.set(i, i, 1.);
+  indefinite.set(0, 1, 2.);
+  indefinite.set(1, 0, 2.);
+  try
+    {
+      Condensation(indefinite,
+                   dealii::Vector<double>(3),
+                   {2},
+                   [](const unsigned int) { return false; });
+      std::cout << "accepted an indefinite matrix\n";
+    }
+  catch (const std::runtime_error &error)
+    {
+      std::cout << error.what() << '\n';
+    }
+}

@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Methods for a few unknowns with a dense matrix, against enumeration: the
+// bound QP over all active sets, majorise-minimise and the bundle method in the
+// energy norm over all states (pressed, bonded, broken) of all unknowns.
+
+#include <debond/optimization/bound_qp.h>
+#include <debond/optimization/majorise_minimise.h>
+#include <debond/optimization/metric_direction.h>
+#include <debond/optimization/proximal_bundle.h>
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <random>
+
+using namespace Debond;
+
+namespace
+{
+  using Vector = dealii::Vector<double>;
+
+  // Whether to print the figures behind the verdicts; any argument does it.
+  bool print_figures = false;
+
+
+
+  /// sum_i w_i j_1(s_i) with the paper's j_1.
+  class Bonds : public PiecewiseQuadratic
+  {
+  public:
+    Eigen::VectorXd stiffness; // w_i a
+    double          threshold; // M
+
+    bool
+    broken(const double s) const
+    {
+      return s < -threshold;
+    }
+
+    double
+    value(const Vector &s) const override
+    {
+      double sum = 0.;
+      for (unsigned int i = 0; i < s.size(); ++i)
+        sum +=
+          0.5 * stiffness(i) * std::pow(broken(s(i)) ? threshold : s(i), 2);
+      return sum;
+    }
+
+    void
+    subgradient(const Vector &s, Vector &xi) const override
+    {
+      for (unsigned int i = 0; i < s.size(); ++i)
+        xi(i) = broken(s(i)) ? 0. : stiffness(i) * s(i);
+    }
+
+    void
+    add_curvature(const Vector               &s,
+                  dealii::FullMatrix<double> &matrix) const override
+    {
+      for (unsigned int i = 0; i < s.size(); ++i)
+        if (!broken(s(i)))
+          matrix(i, i) += stiffness(i);
+    }
+  };
+
+
+
+  class Energy : public Objective<Vector>
+  {
+  public:
+    Energy(const dealii::FullMatrix<double> &matrix,
+           const Vector                     &load,
+           const Bonds                      &bonds)
+      : S(matrix)
+      , g(load)
+      , phi(bonds)
+    {}
+
+    double
+    value(const Vector &s) const override
+    {
+      return 0.5 * S.matrix_norm_square(s) - g * s + phi.value(s);
+    }
+
+    void
+    subgradient(const Vector &s, Vector &eta) const override
+    {
+      Vector xi(s.size());
+      phi.subgradient(s, xi);
+      S.vmult(eta, s);
+      eta -= g;
+      eta += xi;
+    }
+
+  private:
+    const dealii::FullMatrix<double> &S;
+    const Vector                     &g;
+    const Bonds                      &phi;
+  };
+
+
+
+  struct Problem
+  {
+    Eigen::MatrixXd            S_eigen;
+    dealii::FullMatrix<double> S;
+    Vector                     g;
+    Bonds                      bonds;
+  };
+
+
+
+  Problem
+  random_problem(std::mt19937_64 &engine, const unsigned int n)
+  {
+    std::uniform_real_distribution<double> uniform(-1., 1.);
+
+    // Neighbours are coupled, as on a contact boundary.
+    Problem p;
+    p.S_eigen = Eigen::MatrixXd::Zero(n, n);
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j)
+        p.S_eigen(i, j) = -std::exp(-std::abs(double(i) - double(j))) *
+                          (1. + 0.3 * uniform(engine));
+    p.S_eigen = (0.5 * (p.S_eigen + p.S_eigen.transpose())).eval();
+    for (unsigned int i = 0; i < n; ++i)
+      p.S_eigen(i, i) = 0.2 - (p.S_eigen.row(i).sum() - p.S_eigen(i, i));
+
+    p.S.reinit(n, n);
+    p.g.reinit(n);
+    p.bonds.stiffness.resize(n);
+    p.bonds.threshold = 0.5 + 0.4 * uniform(engine);
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        p.g(i)               = 1.5 * uniform(engine) - 0.5;
+        p.bonds.stiffness(i) = 1. + uniform(engine);
+        for (unsigned int j = 0; j < n; ++j)
+          p.S(i, j) = p.S_eigen(i, j);
+      }
+    return p;
+  }
+
+
+
+  /// The values at all points that satisfy the law: for each choice of states,
+  /// the solution of its linear system if it has those states.
+  std::vector<double>
+  stationary_values(const Problem &p)
+  {
+    enum State : unsigned int
+    {
+      pressed,
+      bonded,
+      broken
+    };
+    const unsigned int  n = p.g.size();
+    std::vector<double> values;
+    for (unsigned int code = 0; code < std::pow(3, n); ++code)
+      {
+        std::vector<unsigned int> state(n);
+        std::vector<int>          free;
+        Eigen::MatrixXd           M    = p.S_eigen;
+        unsigned int              rest = code;
+        for (unsigned int i = 0; i < n; ++i, rest /= 3)
+          {
+            state[i] = rest % 3;
+            if (state[i] == bonded)
+              M(i, i) += p.bonds.stiffness(i);
+            if (state[i] != pressed)
+              free.push_back(i);
+          }
+        const Eigen::VectorXd g =
+          Eigen::Map<const Eigen::VectorXd>(p.g.begin(), n);
+        Eigen::VectorXd s = Eigen::VectorXd::Zero(n);
+        if (!free.empty())
+          {
+            const Eigen::VectorXd s_free = M(free, free).llt().solve(g(free));
+            for (unsigned int k = 0; k < free.size(); ++k)
+              s(free[k]) = s_free(k);
+          }
+        const Eigen::VectorXd mu         = g - p.S_eigen * s;
+        bool                  consistent = true;
+        for (unsigned int i = 0; i < n; ++i)
+          consistent =
+            consistent &&
+            (state[i] == pressed ? mu(i) >= 0. :
+             state[i] == bonded  ? s(i) <= 0. && !p.bonds.broken(s(i)) :
+                                   p.bonds.broken(s(i)));
+        if (consistent)
+          {
+            Vector point(n);
+            std::copy(s.begin(), s.end(), point.begin());
+            values.push_back(Energy(p.S, p.g, p.bonds).value(point));
+          }
+      }
+    return values;
+  }
+
+
+
+  const char *
+  verdict(const bool good)
+  {
+    return good ? "yes" : "NO";
+  }
+
+
+
+  void
+  test_bound_qp(std::mt19937_64 &engine)
+  {
+    std::uniform_real_distribution<double> uniform(-1., 1.);
+    double                                 worst      = 0.;
+    unsigned int                           most_steps = 0;
+    bool                                   converged  = true;
+    for (unsigned int k = 0; k < 500; ++k)
+      {
+        const unsigned int    n = 1 + k % 9;
+        const Eigen::MatrixXd B =
+          Eigen::MatrixXd::NullaryExpr(n, n, [&]() { return uniform(engine); });
+        const Eigen::MatrixXd M =
+          B * B.transpose() + 0.01 * Eigen::MatrixXd::Identity(n, n);
+        const Eigen::VectorXd r =
+          Eigen::VectorXd::NullaryExpr(n, [&]() { return uniform(engine); });
+        const Eigen::VectorXd b =
+          Eigen::VectorXd::NullaryExpr(n, [&]() { return uniform(engine); });
+
+        double best = std::numeric_limits<double>::infinity();
+        for (unsigned int set = 0; set < (1u << n); ++set)
+          {
+            std::vector<int> free;
+            Eigen::VectorXd  x = b;
+            for (unsigned int i = 0; i < n; ++i)
+              if ((set >> i) % 2 == 0)
+                {
+                  free.push_back(i);
+                  x(i) = 0.;
+                }
+            if (!free.empty())
+              {
+                const Eigen::VectorXd x_free =
+                  M(free, free).llt().solve((r - M * x)(free));
+                for (unsigned int i = 0; i < free.size(); ++i)
+                  x(free[i]) = x_free(i);
+              }
+            if (((x - b).array() <= 1e-12).all())
+              best = std::min(best, x.dot(0.5 * (M * x) - r));
+          }
+
+        ActiveSet  active(n, 0);
+        const auto result = solve_bound_qp(M, r, b, active);
+        converged         = converged && result.converged;
+        most_steps        = std::max(most_steps, result.steps);
+        worst =
+          std::max(worst,
+                   std::abs(result.x.dot(0.5 * (M * result.x) - r) - best) /
+                     (1. + std::abs(best)));
+      }
+    std::cout << "bound QP on 500 problems: converged: " << verdict(converged)
+              << ", enumerated minimum to 1e-10: " << verdict(worst < 1e-10)
+              << '\n';
+    if (print_figures)
+      std::cout << "  worst " << worst << ", most steps " << most_steps << '\n';
+  }
+
+
+
+  void
+  test_minimisers(std::mt19937_64 &engine)
+  {
+    double                 worst_mm = 0., worst_bundle = 0.;
+    unsigned int           mm_failures = 0, bundle_failures = 0, rises = 0;
+    unsigned int           mm_global = 0, bundle_global = 0, several = 0;
+    unsigned int           most_mm = 0, most_bundle = 0;
+    constexpr unsigned int n_problems = 300;
+    for (unsigned int k = 0; k < n_problems; ++k)
+      {
+        const unsigned int  n      = 2 + k % 6;
+        const Problem       p      = random_problem(engine, n);
+        std::vector<double> values = stationary_values(p);
+        std::sort(values.begin(), values.end());
+        several += values.size() > 1 && values[1] - values[0] > 1e-8;
+        const auto distance = [&](const double value) {
+          double least = std::numeric_limits<double>::infinity();
+          for (const double v : values)
+            least = std::min(least, std::abs(value - v));
+          return least;
+        };
+
+        Vector     s(n);
+        const auto mm = MajoriseMinimise({}).minimize(p.S, p.g, p.bonds, s);
+        mm_failures += mm.status != SolverStatus::success;
+        worst_mm = std::max(worst_mm, distance(mm.functional));
+        mm_global += std::abs(mm.functional - values[0]) < 1e-9;
+        most_mm = std::max<unsigned int>(most_mm, mm.history.size());
+        for (unsigned int i = 1; i < mm.history.size(); ++i)
+          rises +=
+            mm.history[i].functional > mm.history[i - 1].functional + 1e-14;
+
+        ProximalBundleParameters parameters;
+        parameters.epsilon_s          = 1e-14;
+        parameters.bundle_size        = 50;
+        parameters.maximum_iterations = 500;
+        MetricDirection direction(p.S, p.bonds, parameters.bundle_size);
+        s = 0.;
+        const auto bundle =
+          ProximalBundle<Vector>(parameters)
+            .minimize(Energy(p.S, p.g, p.bonds), direction, s);
+        bundle_failures += bundle.status != SolverStatus::success;
+        worst_bundle = std::max(worst_bundle, distance(bundle.functional));
+        bundle_global += std::abs(bundle.functional - values[0]) < 1e-9;
+        most_bundle = std::max(most_bundle, bundle.iterations());
+      }
+    std::cout
+      << "majorise-minimise on " << n_problems
+      << " problems: converged: " << verdict(mm_failures == 0)
+      << ", an enumerated stationary value to 1e-12: "
+      << verdict(worst_mm < 1e-12) << ", never rising: " << verdict(rises == 0)
+      << "\nenergy bundle on the same: converged: "
+      << verdict(bundle_failures == 0)
+      << ", an enumerated stationary value to 1e-10: "
+      << verdict(worst_bundle < 1e-10)
+      << "\nmore than a quarter of these problems have several stationary values: "
+      << verdict(several > n_problems / 4) << '\n';
+    if (print_figures)
+      std::cout << "  majorise-minimise: worst " << worst_mm << ", global in "
+                << mm_global << ", at most " << most_mm
+                << " iterations, failed " << mm_failures
+                << "\n  energy bundle: worst " << worst_bundle << ", global in "
+                << bundle_global << ", at most " << most_bundle
+                << " iterations, failed " << bundle_failures
+                << "\n  several stationary values in " << several << '\n';
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *[])
+{
+  print_figures = argc > 1;
+
+  std::mt19937_64 engine(20261121);
+  test_bound_qp(engine);
+  test_minimisers(engine);
+}
