@@ -159,12 +159,10 @@ namespace Debond
       }
 
     std::string states;
-    for (const BondState state : {BondState::contact,
-                                  BondState::bonded,
-                                  BondState::kink,
-                                  BondState::broken})
-      states += (states.empty() ? "" : ", ") + to_string(state) + " " +
-                std::to_string(verification.count(state));
+    for (const BondState state : bond_states)
+      if (const unsigned int count = verification.count(state); count > 0)
+        states += (states.empty() ? "" : ", ") + to_string(state) + " " +
+                  std::to_string(count);
     line(out, "contact nodes") << states << '\n';
 
     out << "Verification, from A u - f\n";

@@ -85,10 +85,7 @@ namespace Debond
       summary.penetration          = verification.penetration;
       summary.equilibrium_residual = verification.equilibrium_residual;
       summary.force_imbalance      = verification.force_imbalance;
-      for (const BondState state : {BondState::contact,
-                                    BondState::bonded,
-                                    BondState::kink,
-                                    BondState::broken})
+      for (const BondState state : bond_states)
         summary.bond_states[to_string(state)] = verification.count(state);
     }
 

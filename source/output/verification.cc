@@ -21,8 +21,19 @@ namespace Debond
           return "kink";
         case BondState::broken:
           return "broken";
+        case BondState::free:
+          return "free";
       }
     throw std::invalid_argument("This is not a bond state");
+  }
+
+
+
+  template <int dim>
+  double
+  Verification<dim>::error() const
+  {
+    return std::max({equilibrium_residual, force_imbalance, contact_residual});
   }
 
 
@@ -52,40 +63,59 @@ namespace Debond
 
 
     template <int dim>
+    double
+    largest_measure(const ContactBoundary<dim> &boundary)
+    {
+      double largest = 0.;
+      for (const auto &node : boundary.nodes)
+        largest = std::max(largest, node.measure);
+      return largest;
+    }
+
+
+
+    template <int dim>
     LawScales
     law_scales(const AdhesiveLaw                   &law,
                const ContactBoundary<dim>          &boundary,
-               const std::vector<ContactNodeState> &nodes)
+               const std::vector<ContactNodeState> &nodes,
+               const double                         largest_reaction)
     {
       if (law.bond_threshold() > 0. && law.bond_strength() > 0.)
         return {law.bond_threshold(), law.bond_strength()};
 
       LawScales scales = {0., 0.};
-      for (unsigned int i = 0; i < nodes.size(); ++i)
-        {
-          scales.length   = std::max(scales.length, std::abs(nodes[i].u_nu));
-          scales.traction = std::max(scales.traction,
-                                     std::abs(nodes[i].normal_force) /
-                                       boundary.nodes[i].measure);
-        }
+      for (const ContactNodeState &node : nodes)
+        scales.length = std::max(scales.length, std::abs(node.u_nu));
+      if (!boundary.nodes.empty())
+        scales.traction = largest_reaction / largest_measure(boundary);
       return scales;
     }
 
 
 
     BondState
-    bond_state(const double       u_nu,
-               const AdhesiveLaw &law,
-               const double       length_tolerance)
+    bond_state(const ContactNodeState &node,
+               const AdhesiveLaw      &law,
+               const LawScales        &scales,
+               const double            tolerance)
     {
-      if (u_nu >= -length_tolerance)
+      // A small gap under pressure is contact that an iterative method has not
+      // closed yet.
+      constexpr double largest_gap = 1e-3;
+      const double     gap_in_contact =
+        node.normal_force > 0. ?
+              std::max(tolerance, std::min(largest_gap, 1.01 * node.violation)) :
+              tolerance;
+      if (node.u_nu >= -gap_in_contact * scales.length)
         return BondState::contact;
       if (!(law.bond_strength() > 0.))
-        return BondState::bonded;
-      if (std::abs(u_nu + law.bond_threshold()) <= length_tolerance)
+        return BondState::free;
+      if (std::abs(node.u_nu + law.bond_threshold()) <=
+          tolerance * scales.length)
         return BondState::kink;
-      return u_nu < -law.bond_threshold() ? BondState::broken :
-                                            BondState::bonded;
+      return node.u_nu < -law.bond_threshold() ? BondState::broken :
+                                                 BondState::bonded;
     }
 
 
@@ -173,25 +203,34 @@ namespace Debond
 
 
 
+    /// Largest |A u - f| where the body is free and where it is supported or
+    /// touches the foundation.
+    struct LargestResiduals
+    {
+      double free      = 0.;
+      double supported = 0.;
+    };
+
+
+
     template <int dim>
-    double
-    equilibrium_residual(const ElasticProblem<dim>    &problem,
-                         const dealii::Vector<double> &residual)
+    LargestResiduals
+    largest_residuals(const ElasticProblem<dim>    &problem,
+                      const dealii::Vector<double> &residual)
     {
       std::vector<bool> supported(problem.n_dofs(), false);
       for (const auto &node : problem.contact_boundary().nodes)
         supported[node.dof] = true;
 
-      double largest_free      = 0.;
-      double largest_supported = 0.;
+      LargestResiduals result;
       for (unsigned int i = 0; i < problem.n_dofs(); ++i)
         {
           double &largest = supported[i] || problem.is_constrained(i) ?
-                              largest_supported :
-                              largest_free;
+                              result.supported :
+                              result.free;
           largest         = std::max(largest, std::abs(residual(i)));
         }
-      return largest_free > 0. ? largest_free / largest_supported : 0.;
+      return result;
     }
 
 
@@ -289,17 +328,24 @@ namespace Debond
         result.penetration = std::max(result.penetration, s(i));
       }
 
-    const LawScales scales = law_scales(law, boundary, result.nodes);
+    const LargestResiduals largest = largest_residuals(problem, residual);
+    const LawScales        scales =
+      law_scales(law, boundary, result.nodes, largest.supported);
     compute_violations(boundary, adhesion, s, scales, result.nodes);
 
     result.law_violation = 0.;
     for (ContactNodeState &node : result.nodes)
       {
-        node.state = bond_state(node.u_nu, law, tolerance * scales.length);
+        node.state           = bond_state(node, law, scales, tolerance);
         result.law_violation = std::max(result.law_violation, node.violation);
       }
 
-    result.equilibrium_residual = equilibrium_residual(problem, residual);
+    result.equilibrium_residual =
+      largest.free > 0. ? largest.free / largest.supported : 0.;
+    result.contact_residual = result.law_violation;
+    if (largest.supported > 0.)
+      result.contact_residual *= std::min(
+        1., scales.traction * largest_measure(boundary) / largest.supported);
     compute_force_balance(problem, residual, result);
     return result;
   }

@@ -424,7 +424,7 @@ namespace
                                              M_held);
           expected &= near(off.law_violation, e) &&
                       off.penetration == std::max(0., distance) &&
-                      off.count(e < 1e-6 || sign > 0. ? BondState::contact :
+                      off.count(e < 1e-3 || sign > 0. ? BondState::contact :
                                                         BondState::bonded) == 1;
         }
     check("gap and penetration under pressure by a known distance", expected);

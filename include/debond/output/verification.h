@@ -8,6 +8,7 @@
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,18 @@ namespace Debond
   enum class BondState
   {
     contact, ///< u_nu = 0
-    bonded,  ///< -M < u_nu < 0 (free, if the law has no adhesion)
+    bonded,  ///< -M < u_nu < 0
     kink,    ///< u_nu = -M
-    broken   ///< u_nu < -M
+    broken,  ///< u_nu < -M
+    free     ///< u_nu < 0, if the law has no adhesion
   };
+
+  /// All of them, in the order of their numbers in files.
+  constexpr std::array<BondState, 5> bond_states = {{BondState::contact,
+                                                     BondState::bonded,
+                                                     BondState::kink,
+                                                     BondState::broken,
+                                                     BondState::free}};
 
   std::string
   to_string(const BondState state);
@@ -60,9 +69,15 @@ namespace Debond
      * delta for which the node's force is within delta F_i of what the law
      * allows at displacements within delta M of u_nu. Here F_i = a M times
      * the measure of the node. Without adhesion M is the largest |u_nu| and
-     * a M the largest |force| / measure.
+     * a M the largest force on a node (of a support or the foundation) over
+     * the largest measure.
      */
     double law_violation;
+
+    /// The part of the law violation that matters for the body: the violation
+    /// times min(1, a M measure / largest reaction), with the largest measure
+    /// of a node. Very weak bonds violate their law by rounding alone.
+    double contact_residual;
 
     /// Largest u_nu > 0 (zero if there is none), in length.
     double penetration;
@@ -81,12 +96,19 @@ namespace Debond
     /// | applied + clamped + contact | over the sum of their norms.
     double force_imbalance;
 
+    /// The largest of equilibrium_residual, force_imbalance and
+    /// contact_residual: how far the result is from a solution, relative to the
+    /// forces.
+    double
+    error() const;
+
     unsigned int
     count(const BondState state) const;
   };
 
   /// @p tolerance: displacements within tolerance * M of 0 and -M count as
-  /// contact and kink for ContactNodeState::state (and for nothing else).
+  /// contact and kink for ContactNodeState::state (and for nothing else). So
+  /// does a gap under pressure within the node's violation and 1e-3 M.
   template <int dim>
   Verification<dim>
   verify(const ElasticProblem<dim>    &problem,

@@ -23,7 +23,8 @@ namespace Debond
   /**
    * Writes the contact boundary as VTU: displacement, u_nu, gap (-u_nu),
    * normal_force_density (nodal force over nodal measure, pressure positive),
-   * bond_state (0 contact, 1 bonded, 2 kink, 3 broken), law_violation.
+   * bond_state (0 contact, 1 bonded, 2 kink, 3 broken, 4 free: no adhesion),
+   * law_violation.
    */
   template <int dim>
   void
