@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <iostream>
+#include <new>
 
 namespace Debond
 {
@@ -166,6 +167,13 @@ namespace Debond
       {
         for (const std::string &line : error.lines)
           std::cerr << "debond: " << line << '\n';
+        return ExitCode::bad_input;
+      }
+    catch (const std::bad_alloc &)
+      {
+        std::cerr << "debond: there is not enough memory for this scene; try "
+                     "fewer cells or a smaller bundle"
+                  << std::endl;
         return ExitCode::bad_input;
       }
   }

@@ -101,7 +101,7 @@ namespace Debond
         "force per volume");
       for (const std::string &side : sides)
         table.declare("Loads/Traction " + side,
-                      side == "top" ? "0; if(x<0.2,0.69,-0.345)" : "",
+                      "",
                       expression,
                       "The traction f_2 on the side " + side +
                         ", as the body force",
@@ -362,6 +362,13 @@ namespace Debond
     declare_condensed_methods(table);
 
     table.declare(
+      "Verification/Tolerance",
+      to_text(defaults.verification_tolerance),
+      positive_number(),
+      "The program returns 3 if the equilibrium residual, the force imbalance (both relative to the forces) or the violation of the contact law of the result is larger, whatever the solver says",
+      "none");
+
+    table.declare(
       "Output/Directory",
       "output/{scene}",
       Pattern("a path",
@@ -593,7 +600,12 @@ namespace Debond
     p.bundle.maximum_iterations =
       table.get_unsigned(bundle_section + "Maximum iterations");
 
-    p.output.directory       = output_directory(table, scene);
+    p.verification_tolerance = table.get_double("Verification/Tolerance");
+
+    p.output.directory = output_directory(table, scene);
+    // The effective scene names the directory itself, so that a second run of
+    // it does not write elsewhere.
+    table.assign("Output/Directory=" + p.output.directory);
     p.output.body_vtu        = table.get_bool("Output/Body VTU");
     p.output.contact_vtu     = table.get_bool("Output/Contact VTU");
     p.output.contact_profile = table.get_bool("Output/Contact profile");

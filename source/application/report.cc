@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/application/report.h>
 #include <debond/application/solve.h>
+#include <debond/application/text.h>
 #include <debond/application/version.h>
 
 #include <cmath>
@@ -108,11 +109,30 @@ namespace Debond
                                     summary.degrees_of_freedom_paper) :
                                 "")
                           << '\n';
-    line(out, "contact nodes") << summary.contact_nodes << '\n';
-    line(out, "contact law")
-      << parameters.law.name << ", a = " << parameters.law.bond_stiffness
-      << ", M = " << parameters.law.bond_threshold << ", "
-      << parameters.quadrature_name << " quadrature\n";
+    line(out, "material") << "E = " << parameters.material.young_modulus
+                          << ", nu = " << parameters.material.poisson_ratio
+                          << (summary.dimension == 3 ? "" :
+                              parameters.material.hypothesis ==
+                                  Material::Hypothesis::plane_stress ?
+                                                       ", plane stress" :
+                                                       ", plane strain")
+                          << '\n';
+    const auto list = [](const std::set<std::string> &names) {
+      return join(std::vector<std::string>(names.begin(), names.end()), ", ");
+    };
+    line(out, "clamped") << list(parameters.clamped_boundaries) << '\n';
+    if (!parameters.loads.body_force.empty())
+      line(out, "body force") << parameters.loads.body_force << '\n';
+    for (const auto &[side, traction] : parameters.loads.tractions)
+      line(out, "traction " + side) << traction << '\n';
+    line(out, "contact") << list(parameters.contact_boundaries) << ", "
+                         << summary.contact_nodes << " nodes\n";
+    line(out, "contact law") << parameters.law.name;
+    if (parameters.law.name != "none")
+      out << ", a = " << parameters.law.bond_stiffness
+          << ", M = " << parameters.law.bond_threshold << ", "
+          << parameters.quadrature_name << " quadrature";
+    out << '\n';
     line(out, "method") << summary.method;
     if (summary.method == SolverMethod::euclidean_bundle)
       out << ", u_k = " << parameters.bundle.u;
@@ -168,7 +188,9 @@ namespace Debond
     out << "Verification, from A u - f\n";
     line(out, "law violation")
       << error(summary.law_violation)
-      << ", relative to M and to a M times a node's share\n";
+      << (parameters.law.name == "none" ?
+            ", relative to the largest displacement and force\n" :
+            ", relative to M and to a M times a node's share\n");
     line(out, "penetration") << scientific(summary.penetration, 2) << '\n';
     line(out, "residual") << error(summary.equilibrium_residual)
                           << ", relative to the reactions\n";

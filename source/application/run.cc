@@ -5,12 +5,13 @@
 #include <debond/application/run.h>
 #include <debond/application/solve.h>
 #include <debond/application/version.h>
+#include <debond/output/atomic_file.h>
 #include <debond/output/tables.h>
 #include <debond/output/vtu.h>
 
 #include <filesystem>
-#include <fstream>
 #include <iostream>
+#include <sstream>
 
 namespace Debond
 {
@@ -28,11 +29,19 @@ namespace Debond
         throw std::runtime_error("cannot create the output directory " +
                                  directory.string() + ": " + error.message());
 
+      // What an earlier run left must not stand beside the new results.
+      for (const char *name : {"body.vtu",
+                               "contact.vtu",
+                               "contact_profile.csv",
+                               "history.csv",
+                               "summary.json"})
+        if (std::filesystem::is_regular_file(directory / name, error))
+          std::filesystem::remove(directory / name, error);
+
       const std::string file_name = (directory / "parameters.prm").string();
-      std::ofstream     file(file_name);
-      file << parameters.effective_scene << std::flush;
-      if (!file)
-        throw std::runtime_error("cannot write " + file_name);
+      write_atomically(file_name, [&](std::ostream &file) {
+        file << parameters.effective_scene;
+      });
       return file_name;
     }
 
@@ -85,8 +94,33 @@ namespace Debond
       summary.penetration          = verification.penetration;
       summary.equilibrium_residual = verification.equilibrium_residual;
       summary.force_imbalance      = verification.force_imbalance;
+      const auto components        = [](const dealii::Tensor<1, dim> &force) {
+        return std::vector<double>(force.begin_raw(), force.end_raw());
+      };
+      summary.applied_force    = components(verification.applied_force);
+      summary.clamped_reaction = components(verification.clamped_reaction);
+      summary.contact_reaction = components(verification.contact_reaction);
       for (const BondState state : bond_states)
         summary.bond_states[to_string(state)] = verification.count(state);
+    }
+
+
+
+    /// The solver is content, but its result is not a solution.
+    void
+    reject_result(const double      error,
+                  const Parameters &parameters,
+                  Summary          &summary)
+    {
+      std::ostringstream text;
+      text.precision(3);
+      text << "verification: the largest of residual, force imbalance and "
+              "contact law violation is "
+           << error << ", required is at most "
+           << parameters.verification_tolerance
+           << ". Try a smaller stop tolerance.";
+      summary.status  = "not verified";
+      summary.message = text.str();
     }
 
 
@@ -189,6 +223,10 @@ namespace Debond
     summary.timings_s["verification"] = timer.wall_time();
     add_result(result, summary);
     add_verification(verification, summary);
+    const bool verified =
+      verification.error() <= parameters.verification_tolerance;
+    if (result.status == SolverStatus::success && !verified)
+      reject_result(verification.error(), parameters, summary);
 
     std::string output_error;
     timer.restart();
@@ -214,15 +252,17 @@ namespace Debond
     if (parameters.output.machine_details)
       report_files(files, out);
 
-    if (result.status != SolverStatus::success)
-      std::cerr << "debond: the stop criterion is NOT met (" << summary.status
+    if (result.status != SolverStatus::success || !verified)
+      std::cerr << "debond: NOT CONVERGED (" << summary.status
                 << "): " << summary.message << std::endl;
     if (!output_error.empty())
       {
         std::cerr << "debond: " << output_error << std::endl;
         return ExitCode::output_not_saved;
       }
-    return exit_code(result.status);
+    return result.status == SolverStatus::success && !verified ?
+             ExitCode::not_converged :
+             exit_code(result.status);
   }
 
 

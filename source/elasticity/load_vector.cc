@@ -103,9 +103,17 @@ namespace Debond
     class TractionIntegral
     {
     public:
-      explicit TractionIntegral(CheckedLoad<dim> &load)
+      /// @p n_faces: faces of the side, which is sampled at 64 intervals in
+      /// each direction at least, however coarse the mesh is.
+      TractionIntegral(CheckedLoad<dim>  &load,
+                       const std::string &load_name,
+                       const unsigned int n_faces)
         : traction(load)
+        , name(load_name)
         , rule(4)
+        , minimum_depth(std::max(0.,
+                                 std::ceil(std::log2(
+                                   64. / std::pow(n_faces, 1. / (dim - 1))))))
       {}
 
       /// The nodal forces on the face with the given vertices.
@@ -113,8 +121,9 @@ namespace Debond
       operator()(const std::array<dealii::Point<dim>, dim> &face_vertices,
                  const double                               measure)
       {
-        vertices = face_vertices;
-        largest  = 0.;
+        vertices      = face_vertices;
+        largest       = 0.;
+        n_evaluations = 0;
 
         FaceForces<dim> forces;
         if constexpr (dim == 2)
@@ -160,6 +169,13 @@ namespace Debond
         for (unsigned int v = 0; v < dim; ++v)
           point += ((1. - inset) * barycentric[v] + inset / dim) * vertices[v];
 
+        if (++n_evaluations > maximum_evaluations)
+          {
+            std::ostringstream message;
+            message << "The " << name << " cannot be integrated near (" << point
+                    << "): it is not piecewise smooth.";
+            throw std::invalid_argument(message.str());
+          }
         const dealii::Tensor<1, dim> value = traction(point);
         largest                            = std::max(largest, value.norm());
 
@@ -174,7 +190,7 @@ namespace Debond
       auto
       integrate(const double tolerance, const Integrand &f)
       {
-        return refine(0., 1., lobatto(0., 1., f), tolerance, f);
+        return refine(0., 1., lobatto(0., 1., f), tolerance, 0, f);
       }
 
       template <typename Integrand>
@@ -192,14 +208,14 @@ namespace Debond
         return result;
       }
 
-      /// Halves the interval until that makes no difference. Ends because the
-      /// difference is at most a multiple of `largest` and the interval.
+      /// Halves the interval until that makes no difference.
       template <typename Forces, typename Integrand>
       Forces
       refine(const double     begin,
              const double     end,
              const Forces    &whole,
              const double     tolerance,
+             const unsigned   depth,
              const Integrand &f)
       {
         const double middle = 0.5 * (begin + end);
@@ -207,15 +223,22 @@ namespace Debond
         const Forces right  = lobatto(middle, end, f);
         const Forces halves = sum(left, right);
 
-        if (largest_difference(whole, halves) <= tolerance * largest)
+        if (depth >= minimum_depth &&
+            largest_difference(whole, halves) <= tolerance * largest)
           return halves;
-        return sum(refine(begin, middle, left, tolerance, f),
-                   refine(middle, end, right, tolerance, f));
+        return sum(refine(begin, middle, left, tolerance, depth + 1, f),
+                   refine(middle, end, right, tolerance, depth + 1, f));
       }
 
+      /// For one face. A jump takes 1e3 in 2D and 1e6 on a coarse face in 3D.
+      static constexpr unsigned int maximum_evaluations = 10000000;
+
       CheckedLoad<dim>                   &traction;
+      const std::string                   name;
       const dealii::QGaussLobatto<1>      rule;
+      const unsigned int                  minimum_depth;
       std::array<dealii::Point<dim>, dim> vertices;
+      unsigned int                        n_evaluations = 0;
 
       /// The largest traction seen so far, the scale of the tolerance.
       double largest = 0.;
@@ -268,16 +291,21 @@ namespace Debond
                  const dealii::Function<dim>     &function,
                  dealii::Vector<double>          &forces)
     {
-      const std::string     name = boundary_name<dim>(id);
-      CheckedLoad<dim>      traction(function, "traction on " + name);
-      TractionIntegral<dim> integral(traction);
+      const std::string name    = boundary_name<dim>(id);
+      unsigned int      n_faces = 0;
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        for (const auto &face : cell->face_iterators())
+          n_faces += face->at_boundary() && face->boundary_id() == id;
+      if (n_faces == 0)
+        throw std::invalid_argument("There is a traction on " + name +
+                                    ", but the mesh has no such boundary.");
 
-      bool found = false;
+      CheckedLoad<dim>      traction(function, "traction on " + name);
+      TractionIntegral<dim> integral(traction, "traction on " + name, n_faces);
       for (const auto &cell : dof_handler.active_cell_iterators())
         for (const auto &face : cell->face_iterators())
           if (face->at_boundary() && face->boundary_id() == id)
             {
-              found = true;
               std::array<dealii::Point<dim>, dim> vertices;
               for (unsigned int v = 0; v < dim; ++v)
                 vertices[v] = face->vertex(v);
@@ -288,9 +316,6 @@ namespace Debond
                 for (unsigned int d = 0; d < dim; ++d)
                   forces[face->vertex_dof_index(v, d)] += face_forces[v][d];
             }
-      if (!found)
-        throw std::invalid_argument("There is a traction on " + name +
-                                    ", but the mesh has no such boundary.");
     }
   } // namespace
 

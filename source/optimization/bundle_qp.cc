@@ -56,7 +56,10 @@ namespace Debond
   double
   BundleQP::Solution::residual() const
   {
-    return std::max({stationarity, feasibility, complementarity});
+    // The comparisons of std::max would lose a NaN.
+    return std::isfinite(stationarity + feasibility + complementarity) ?
+             std::max({stationarity, feasibility, complementarity}) :
+             std::numeric_limits<double>::infinity();
   }
 
 
@@ -175,6 +178,11 @@ namespace Debond
           column(l) = h(cuts[l], cuts[k]) + kappa;
         if (factor.append(column, h(cuts[k], cuts[k]) + kappa, 0.) > 0.)
           ++k;
+        else if (cuts.size() == 1)
+          {
+            solution.status = Status::breakdown;
+            return;
+          }
         else
           {
             // Cannot stay in the working set. Its weight must go somewhere;
@@ -579,6 +587,12 @@ namespace Debond
   {
     solution.status = Status::iteration_limit;
     start();
+    if (solution.status == Status::breakdown)
+      {
+        evaluate();
+        compute_residuals();
+        return;
+      }
 
     const unsigned int limit = solution.steps + 100 + 20 * (m + mu.size());
     while (solution.steps <= limit)
@@ -598,7 +612,18 @@ namespace Debond
       }
 
     if (solution.status != Status::optimal)
-      evaluate();
+      {
+        // Whatever was left half done: bounds that have not reached the factor
+        // leave the working set, and the factor is made anew next time.
+        for (unsigned int i = 0; i < mu.size(); ++i)
+          if (bound_active[i] != 0 && free_bounds(i) != 0.)
+            {
+              bound_active[i] = 0;
+              mu(i)           = 0.;
+            }
+        factor_valid = false;
+        evaluate();
+      }
     compute_residuals();
   }
 

@@ -47,8 +47,8 @@ namespace Debond
                  << " after " << parameters.maximum_iterations
                  << " iterations, required is at least "
                  << -parameters.epsilon_s
-                 << ". Try another proximal weight, more iterations or a "
-                    "larger stop tolerance.";
+                 << ". Try another proximal weight, more iterations, a larger "
+                    "bundle or a larger stop tolerance.";
             break;
           case SolverStatus::line_search:
             text << "line search: no subgradient with slope above m_R v_k = "
@@ -57,17 +57,19 @@ namespace Debond
                  << ". Try a larger proximal weight or stop tolerance.";
             break;
           case SolverStatus::quadratic_program:
-            text << "bundle QP (" << qp_status << "): relative residual "
-                 << qp_residual << ", required is at most "
-                 << acceptable_qp_residual
-                 << ". Try a smaller bundle size or a larger proximal weight.";
+            text
+              << "bundle QP, which ended as '" << qp_status
+              << "': relative residual " << qp_residual
+              << ", required is at most " << acceptable_qp_residual
+              << ". Try a larger proximal weight (it has units: energy per squared "
+                 "length) or a smaller bundle size.";
             break;
           case SolverStatus::not_finite:
             text << "objective: the functional or its subgradient is not a "
                     "finite number. Check the data of the scene.";
             break;
           case SolverStatus::interrupted:
-            text << "interrupted: predicted descent " << v
+            text << "proximal bundle method: predicted descent " << v
                  << ", required is at least " << -parameters.epsilon_s << '.';
             break;
           case SolverStatus::success:
@@ -233,30 +235,46 @@ namespace Debond
       bundle.clear();
       result.functional = objective.value(x);
       objective.subgradient(x, eta);
-      bundle.add(eta, 0., 0.);
+      if (std::isfinite(eta * eta))
+        bundle.add(eta, 0., 0.);
     };
     restart();
 
     const typename Bundle<VectorType>::Solution *direction = nullptr;
     while (true)
       {
-        qp_timer.start();
-        direction = &bundle.solve(x, parameters.gamma);
-        qp_timer.stop();
-        result.v = direction->v;
-
-        if (!std::isfinite(result.functional) || !std::isfinite(result.v))
+        // The QP sees the squares of subgradients.
+        if (!std::isfinite(result.functional) || !std::isfinite(eta * eta))
           {
             result.status = SolverStatus::not_finite;
             break;
           }
-        if (result.v - direction->duality_gap >= -parameters.epsilon_s)
+        qp_timer.start();
+        direction = &bundle.solve(x, parameters.gamma);
+        qp_timer.stop();
+        result.v = direction->v;
+        if (!std::isfinite(result.v) || !direction->slopes.allFinite())
+          {
+            result.status = SolverStatus::not_finite;
+            break;
+          }
+
+        // d = 0 is feasible, so a positive v is a failure of the QP.
+        if (result.v - direction->duality_gap >= -parameters.epsilon_s &&
+            result.v <= parameters.epsilon_s)
           {
             result.status = SolverStatus::success;
             break;
           }
-        if (direction->residual > acceptable_qp_residual)
+        if (result.v > parameters.epsilon_s ||
+            !(direction->residual <= acceptable_qp_residual))
           {
+            // Old subgradients may be to blame: once more without them.
+            if (bundle.size() > 1)
+              {
+                restart();
+                continue;
+              }
             result.status = SolverStatus::quadratic_program;
             break;
           }
@@ -310,7 +328,7 @@ namespace Debond
 
         if (bundle.full())
           restart();
-        else
+        else if (std::isfinite(eta * eta))
           bundle.add(eta, step.alpha, (step.t_R - step.t_L) * d_length);
         algebra_timer.stop();
 
@@ -337,11 +355,13 @@ namespace Debond
 
     result.functional = objective.value(x);
     if (result.status != SolverStatus::success)
-      result.message = failure_message(result.status,
-                                       result.v,
-                                       direction->residual,
-                                       direction->status,
-                                       parameters);
+      result.message =
+        failure_message(result.status,
+                        result.v,
+                        direction != nullptr ? direction->residual : 0.,
+                        direction != nullptr ? direction->status :
+                                               "not started",
+                        parameters);
     result.qp_seconds             = qp_timer.wall_time();
     result.objective_seconds      = objective_timer.wall_time();
     result.linear_algebra_seconds = algebra_timer.wall_time();

@@ -60,6 +60,9 @@ namespace Debond
     json["penetration"]              = summary.penetration;
     json["equilibrium_residual"]     = summary.equilibrium_residual;
     json["force_imbalance"]          = summary.force_imbalance;
+    json["applied_force"]            = summary.applied_force;
+    json["clamped_reaction"]         = summary.clamped_reaction;
+    json["contact_reaction"]         = summary.contact_reaction;
     json["bond_states"]              = summary.bond_states;
     json["timings_s"]                = timings_as_json(summary.timings_s);
     json["revision"]                 = summary.revision;

@@ -98,16 +98,19 @@ namespace Debond
     bond_state(const ContactNodeState &node,
                const AdhesiveLaw      &law,
                const LawScales        &scales,
+               const double            largest_displacement,
                const double            tolerance)
     {
+      if (node.u_nu >=
+          -tolerance * std::min(scales.length, largest_displacement))
+        return BondState::contact;
+
       // A small gap under pressure is contact that an iterative method has not
       // closed yet.
       constexpr double largest_gap = 1e-3;
-      const double     gap_in_contact =
-        node.normal_force > 0. ?
-              std::max(tolerance, std::min(largest_gap, 1.01 * node.violation)) :
-              tolerance;
-      if (node.u_nu >= -gap_in_contact * scales.length)
+      const double     gap =
+        std::max(tolerance, std::min(largest_gap, 1.01 * node.violation));
+      if (node.normal_force > 0. && node.u_nu >= -gap * scales.length)
         return BondState::contact;
       if (!(law.bond_strength() > 0.))
         return BondState::free;
@@ -306,7 +309,8 @@ namespace Debond
           return std::isfinite(x);
         }))
       throw std::invalid_argument(
-        "A displacement that is not finite cannot be verified");
+        "The displacement is not finite and cannot be verified: the data of the "
+        "scene are too large or too small for double precision.");
 
     const ContactBoundary<dim>  &boundary = problem.contact_boundary();
     const dealii::Vector<double> residual = problem.residual(u);
@@ -336,12 +340,14 @@ namespace Debond
     result.law_violation = 0.;
     for (ContactNodeState &node : result.nodes)
       {
-        node.state           = bond_state(node, law, scales, tolerance);
+        node.state = bond_state(node, law, scales, s.linfty_norm(), tolerance);
         result.law_violation = std::max(result.law_violation, node.violation);
       }
 
     result.equilibrium_residual =
-      largest.free > 0. ? largest.free / largest.supported : 0.;
+      largest.free > 0. ?
+        largest.free / std::max(largest.free, largest.supported) :
+        0.;
     result.contact_residual = result.law_violation;
     if (largest.supported > 0.)
       result.contact_residual *= std::min(

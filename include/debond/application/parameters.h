@@ -92,6 +92,9 @@ namespace Debond
     MajoriseMinimiseParameters majorise_minimise;
     OutputParameters           output;
 
+    /// Largest Verification::error() of a result that counts.
+    double verification_tolerance = 1e-3;
+
     /// The scene with all entries that it leaves to their defaults.
     std::string effective_scene;
   };

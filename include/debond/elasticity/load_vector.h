@@ -37,13 +37,18 @@ namespace Debond
    * by less than 1e-13 (1e-11 in 3D, where the rule is applied in both
    * directions) of the face's measure times its largest traction. So a
    * traction may jump anywhere inside of a face. At the edge of a face it is
-   * the limit from within that counts. A patch of load inside of a face can be
-   * missed if it is narrower than the distance of the first sample points,
-   * 0.14 of the face. In 3D a smooth traction takes 144 evaluations a face, one
-   * that jumps along a line in the order of 1e5 on each face the line crosses.
+   * the limit from within that counts. The side is sampled in at least 64
+   * intervals in each direction, however coarse the mesh is; a patch of load
+   * that is narrower than 0.14 of such an interval can be missed. In 3D a
+   * smooth traction on a fine mesh takes 144 evaluations a face, one that jumps
+   * along a line in the order of 1e5 on each face the line crosses.
+   *
+   * Body forces are integrated by a rule of degree 2 on each cell: let a jump
+   * of theirs follow the mesh.
    *
    * Throws std::invalid_argument, naming the boundary or the body force, the
-   * point and the component, if a load cannot be evaluated or is not finite;
+   * point and the component, if a load cannot be evaluated, is not finite or is
+   * not piecewise smooth;
    * and if it has not dim components or acts on a boundary the mesh has not.
    */
   template <int dim>

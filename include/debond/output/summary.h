@@ -4,6 +4,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 namespace Debond
 {
@@ -30,6 +31,11 @@ namespace Debond
     double       penetration              = 0.;
     double       equilibrium_residual     = 0.;
     double       force_imbalance          = 0.;
+
+    /// Resultants on the body, Cartesian components.
+    std::vector<double> applied_force;
+    std::vector<double> clamped_reaction;
+    std::vector<double> contact_reaction;
 
     /// contact, bonded, kink, broken: number of contact nodes.
     std::map<std::string, unsigned int> bond_states;

@@ -83,8 +83,7 @@ namespace Debond
     double penetration;
 
     /// Largest |A u - f| over the free degrees of freedom that are not normal
-    /// contact displacements, relative to the largest |A u - f| over the
-    /// other ones (supports and contact).
+    /// contact displacements, relative to the largest |A u - f| of all.
     double equilibrium_residual;
 
     dealii::Tensor<1, dim> applied_force;
@@ -106,7 +105,8 @@ namespace Debond
     count(const BondState state) const;
   };
 
-  /// @p tolerance: displacements within tolerance * M of 0 and -M count as
+  /// @p tolerance: displacements within tolerance * M (and tolerance times the
+  /// largest |u_nu|) of 0 and -M count as
   /// contact and kink for ContactNodeState::state (and for nothing else). So
   /// does a gap under pressure within the node's violation and 1e-3 M.
   template <int dim>
