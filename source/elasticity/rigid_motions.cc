@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <cmath>
 
 namespace Debond
@@ -22,12 +23,18 @@ namespace Debond
     for (const Support<dim> &support : supports)
       centre += support.position / double(supports.size());
 
+    // A side can be much smaller than the body that it holds.
+    double spread = 0.;
+    for (const Support<dim> &support : supports)
+      spread = std::max(spread, (support.position - centre).norm());
+    const double length = spread > 1e-12 * diameter ? spread : diameter;
+
     // Gram matrix of the supports' displacements under unit motions; its null
     // space holds the free motions.
     Gram gram = Gram::Zero();
     for (const Support<dim> &support : supports)
       {
-        const dealii::Tensor<1, dim> x = (support.position - centre) / diameter;
+        const dealii::Tensor<1, dim>  x = (support.position - centre) / length;
         const dealii::Tensor<1, dim> &d = support.direction;
 
         Motions row;
