@@ -19,6 +19,18 @@ namespace Debond
     /// not used.
     constexpr double acceptable_qp_residual = 1e-9;
 
+    /// Whether inner products with a subgradient, which the QP is made of, are
+    /// finite numbers.
+    template <typename VectorType>
+    bool
+    is_usable(const VectorType &eta)
+    {
+      constexpr double largest = 1e140;
+      return eta.linfty_norm() < largest && std::isfinite(eta * eta);
+    }
+
+
+
     [[noreturn]] void
     out_of_range(const std::string &name,
                  const double       value,
@@ -235,7 +247,7 @@ namespace Debond
       bundle.clear();
       result.functional = objective.value(x);
       objective.subgradient(x, eta);
-      if (std::isfinite(eta * eta))
+      if (is_usable(eta))
         bundle.add(eta, 0., 0.);
     };
     restart();
@@ -243,8 +255,7 @@ namespace Debond
     const typename Bundle<VectorType>::Solution *direction = nullptr;
     while (true)
       {
-        // The QP sees the squares of subgradients.
-        if (!std::isfinite(result.functional) || !std::isfinite(eta * eta))
+        if (!std::isfinite(result.functional) || !is_usable(eta))
           {
             result.status = SolverStatus::not_finite;
             break;
@@ -328,7 +339,7 @@ namespace Debond
 
         if (bundle.full())
           restart();
-        else if (std::isfinite(eta * eta))
+        else if (is_usable(eta))
           bundle.add(eta, step.alpha, (step.t_R - step.t_L) * d_length);
         algebra_timer.stop();
 

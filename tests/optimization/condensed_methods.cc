@@ -290,7 +290,14 @@ namespace
           return least;
         };
 
-        Vector     s(n);
+        // From rest, and from anywhere.
+        Vector start(n);
+        if (k % 2 == 1)
+          for (double &entry : start)
+            entry = -std::abs(
+              std::uniform_real_distribution<double>(-2., 2.)(engine));
+
+        Vector     s  = start;
         const auto mm = MajoriseMinimise({}).minimize(p.S, p.g, p.bonds, s);
         mm_failures += mm.status != SolverStatus::success;
         worst_mm = std::max(worst_mm, distance(mm.functional));
@@ -305,7 +312,7 @@ namespace
         parameters.bundle_size        = 50;
         parameters.maximum_iterations = 500;
         MetricDirection direction(p.S, p.bonds, parameters.bundle_size);
-        s = 0.;
+        s = start;
         const auto bundle =
           ProximalBundle<Vector>(parameters)
             .minimize(Energy(p.S, p.g, p.bonds), direction, s);
