@@ -67,8 +67,7 @@ namespace Debond
 
 
     void
-    add_bundle_result(const ProximalBundleResult<Vector> &bundle,
-                      SolveResult                        &result)
+    add_bundle_result(const ProximalBundleResult &bundle, SolveResult &result)
     {
       result.status                     = bundle.status;
       result.message                    = bundle.message;

@@ -128,12 +128,6 @@ namespace Debond
       return block;
     }
 
-    double
-    n_nonzeros() const
-    {
-      return L->xsize;
-    }
-
   private:
     void
     factorize(const dealii::SparseMatrix<double> &A,
@@ -314,11 +308,4 @@ namespace Debond
     return u;
   }
 
-
-
-  double
-  Condensation::n_nonzeros_of_factor() const
-  {
-    return factor->n_nonzeros();
-  }
 } // namespace Debond

@@ -201,7 +201,7 @@ namespace Debond
 
 
   template <typename VectorType>
-  ProximalBundleResult<VectorType>
+  ProximalBundleResult
   ProximalBundle<VectorType>::minimize(const Objective<VectorType> &objective,
                                        const UpperBounds           &bounds,
                                        VectorType                  &x,
@@ -217,7 +217,7 @@ namespace Debond
 
 
   template <typename VectorType>
-  ProximalBundleResult<VectorType>
+  ProximalBundleResult
   ProximalBundle<VectorType>::minimize(
     const Objective<VectorType>  &objective,
     DirectionProblem<VectorType> &direction_problem,
@@ -228,7 +228,7 @@ namespace Debond
       throw std::invalid_argument(
         "The start of the bundle method must satisfy the bounds.");
 
-    ProximalBundleResult<VectorType> result;
+    ProximalBundleResult       result;
     const LineSearchParameters line_search_parameters{parameters.line_search,
                                                       parameters.m_L,
                                                       parameters.m_R,

@@ -33,7 +33,12 @@ namespace Debond
   double
   Verification<dim>::error() const
   {
-    return std::max({equilibrium_residual, force_imbalance, contact_residual});
+    // The comparisons of std::max would lose a NaN.
+    return std::isfinite(equilibrium_residual + force_imbalance +
+                         contact_residual) ?
+             std::max(
+               {equilibrium_residual, force_imbalance, contact_residual}) :
+             std::numeric_limits<double>::infinity();
   }
 
 

@@ -64,10 +64,6 @@ namespace Debond
     dealii::Vector<double>
     expand(const dealii::Vector<double> &s) const;
 
-    /// Entries of the factor.
-    double
-    n_nonzeros_of_factor() const;
-
   private:
     class Factor;
 

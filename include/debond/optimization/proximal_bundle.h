@@ -70,7 +70,6 @@ namespace Debond
 
 
 
-  template <typename VectorType>
   struct ProximalBundleResult
   {
     SolverStatus                 status      = SolverStatus::iteration_limit;
@@ -120,7 +119,7 @@ namespace Debond
     explicit ProximalBundle(const ProximalBundleParameters &parameters);
 
     /// Improves x. Throws std::invalid_argument if x is not in K.
-    ProximalBundleResult<VectorType>
+    ProximalBundleResult
     minimize(const Objective<VectorType> &objective,
              const UpperBounds           &bounds,
              VectorType                  &x,
@@ -129,7 +128,7 @@ namespace Debond
     /// The same in the metric of @p direction_problem, which also knows K and
     /// has to have room for `bundle_size` subgradients; the parameter u is not
     /// used. One method, whatever the metric.
-    ProximalBundleResult<VectorType>
+    ProximalBundleResult
     minimize(const Objective<VectorType>  &objective,
              DirectionProblem<VectorType> &direction_problem,
              VectorType                   &x,
