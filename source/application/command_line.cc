@@ -2,6 +2,7 @@
 #include <deal.II/base/multithread_info.h>
 
 #include <debond/application/command_line.h>
+#include <debond/application/method_choice.h>
 #include <debond/application/parameters.h>
 #include <debond/application/run.h>
 #include <debond/application/scene.h>
@@ -96,6 +97,7 @@ namespace Debond
       if (!only_validate)
         return run<dim>(parameters, std::cout, isatty(STDOUT_FILENO) == 1);
 
+      choose_method(parameters);
       const Scene<dim> scene(parameters);
       std::cout << parameters.scene << ": valid" << std::endl;
       return ExitCode::success;

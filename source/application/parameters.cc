@@ -358,6 +358,23 @@ namespace Debond
               "majorise minimise"}),
       "The minimiser: euclidean bundle is the paper's proximal bundle method; energy bundle is the same method on the normal displacements of the contact nodes alone, in the energy norm; majorise minimise fixes the branch of the law at each quadrature point in turn and is exact after finitely many steps; automatic chooses and says why",
       "none");
+    table.declare(
+      "Solver/Linear solver",
+      "automatic",
+      one_of({"automatic", "direct", "multigrid"}),
+      "How the linear systems of energy bundle and majorise minimise are solved: direct factorises A once and goes on with the contact normals alone, multigrid (majorise minimise only) iterates on all unknowns, starting from the solutions on coarser meshes, and takes less memory in large scenes; automatic chooses by size and memory. euclidean bundle needs none",
+      "none");
+    table.declare(
+      "Solver/Memory limit",
+      "available",
+      Pattern("available, or a number > 0",
+              [](const std::string &text) {
+                double limit;
+                return text == "available" ||
+                       (read_number(text, limit) && limit > 0.);
+              }),
+      "The memory that a scene may take by the program's estimate; available is what the system can give at the start",
+      "GiB");
     declare_bundle(table);
     declare_condensed_methods(table);
 
@@ -575,7 +592,10 @@ namespace Debond
     p.quadrature_name    = table.get("Contact law/Quadrature");
     p.quadrature = ContactQuadratureParameters::parse(p.quadrature_name);
 
-    p.method       = table.get("Solver/Method");
+    p.method        = table.get("Solver/Method");
+    p.linear_solver = table.get("Solver/Linear solver");
+    if (table.get("Solver/Memory limit") != "available")
+      p.memory_limit = table.get_double("Solver/Memory limit") * (1 << 30);
     p.bundle.u     = table.get_double(bundle_section + "Proximal weight");
     p.bundle.gamma = table.get_double(bundle_section + "Distance weight");
     p.bundle.t_bar = table.get_double(bundle_section + "Long step threshold");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/application/method_choice.h>
 #include <debond/application/report.h>
-#include <debond/application/solve.h>
 #include <debond/application/text.h>
 #include <debond/application/version.h>
 
@@ -134,6 +134,8 @@ namespace Debond
           << parameters.quadrature_name << " quadrature";
     out << '\n';
     line(out, "method") << summary.method;
+    if (summary.linear_solver != LinearSolver::none)
+      out << ", " << summary.linear_solver << " linear solver";
     if (summary.method == SolverMethod::euclidean_bundle)
       out << ", u_k = " << parameters.bundle.u;
     if (!reason.empty())
@@ -205,6 +207,10 @@ namespace Debond
         line(out, "force of foundation")
           << vector_text<dim>(verification.contact_reaction) << '\n';
         report_timings(summary, out);
+        out << "Memory in MB\n" << std::fixed << std::setprecision(0);
+        line(out, "peak") << summary.peak_memory / 1e6 << ", estimated "
+                          << summary.memory_estimate / 1e6 << '\n'
+                          << std::defaultfloat;
       }
     out << std::flush;
   }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/timer.h>
+#include <deal.II/base/utilities.h>
 
 #include <debond/application/report.h>
 #include <debond/application/run.h>
@@ -11,6 +13,7 @@
 
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <sstream>
 
 namespace Debond
@@ -80,6 +83,7 @@ namespace Debond
       summary.null_steps          = result.null_steps;
       summary.stop_criterion      = result.criterion;
       summary.largest_qp_residual = result.largest_qp_residual;
+      summary.linear_iterations   = result.linear_iterations;
       for (const auto &[part, seconds] : result.parts)
         summary.timings_s["solve/" + part] = seconds;
     }
@@ -102,6 +106,30 @@ namespace Debond
       summary.contact_reaction = components(verification.contact_reaction);
       for (const BondState state : bond_states)
         summary.bond_states[to_string(state)] = verification.count(state);
+    }
+
+
+
+    /// Of this process so far, in bytes.
+    double
+    peak_memory()
+    {
+      dealii::Utilities::System::MemoryStats memory;
+      dealii::Utilities::System::get_memory_stats(memory);
+      return 1024. * memory.VmHWM;
+    }
+
+
+
+    /// MPI for this process alone.
+    std::unique_ptr<dealii::Utilities::MPI::MPI_InitFinalize>
+    initialize_mpi()
+    {
+      static int    argc = 0;
+      static char **argv = nullptr;
+      return std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(argc,
+                                                                        argv,
+                                                                        1);
     }
 
 
@@ -194,7 +222,12 @@ namespace Debond
   {
     dealii::Timer total;
 
-    const Scene<dim> scene(parameters);
+    const MethodChoice choice = choose_method(parameters);
+    // Trilinos needs MPI, even in one process; others need not wait for it.
+    std::unique_ptr<dealii::Utilities::MPI::MPI_InitFinalize> mpi;
+    if (choice.linear_solver == LinearSolver::multigrid)
+      mpi = initialize_mpi();
+    const Scene<dim> scene(parameters, matrix_storage(choice));
 
     std::vector<std::string> files;
     try
@@ -207,14 +240,14 @@ namespace Debond
         return ExitCode::output_not_saved;
       }
 
-    Summary            summary = summarize_problem(parameters, scene);
-    const MethodChoice choice  = choose_method(parameters);
-    summary.method             = choice.method;
+    Summary summary         = summarize_problem(parameters, scene);
+    summary.method          = choice.method;
+    summary.linear_solver   = choice.linear_solver;
+    summary.memory_estimate = choice.memory;
     report_problem(parameters, summary, choice.reason, out);
 
     dealii::Timer     timer;
-    const SolveResult result =
-      solve(choice.method, parameters, scene, out, terminal);
+    const SolveResult result = solve(choice, parameters, scene, out, terminal);
     summary.timings_s["solve"] = timer.wall_time();
 
     timer.restart();
@@ -236,6 +269,7 @@ namespace Debond
           write_fields(parameters, scene, verification, result);
         files.insert(files.end(), fields.begin(), fields.end());
         summary.timings_s["output"] = timer.wall_time();
+        summary.peak_memory         = peak_memory();
         summary.timings_s["total"]  = total.wall_time();
         const std::string name =
           (std::filesystem::path(parameters.output.directory) / "summary.json")

@@ -8,6 +8,8 @@ namespace Debond
 {
   namespace
   {
+    using Vector = dealii::Vector<double>;
+
     template <int dim>
     BoundaryConditions
     boundary_conditions(const Parameters &parameters)
@@ -42,11 +44,11 @@ namespace Debond
 
 
   template <int dim>
-  Scene<dim>::Scene(const Parameters &parameters)
+  Scene<dim>::Scene(const Parameters &parameters, const MatrixStorage storage)
   {
     try
       {
-        build(parameters);
+        build(parameters, storage);
       }
     catch (const std::invalid_argument &error)
       {
@@ -58,7 +60,7 @@ namespace Debond
 
   template <int dim>
   void
-  Scene<dim>::build(const Parameters &parameters)
+  Scene<dim>::build(const Parameters &parameters, const MatrixStorage storage)
   {
     dealii::Timer timer;
     make_box<dim>(parameters.box, triangulation);
@@ -68,17 +70,26 @@ namespace Debond
     elastic_problem = std::make_unique<ElasticProblem<dim>>(
       triangulation, boundary_conditions<dim>(parameters));
     elastic_problem->assemble(parameters.material,
-                              make_loads<dim>(parameters.loads));
+                              make_loads<dim>(parameters.loads),
+                              storage);
     adhesive_law = make_law(parameters.law);
     quadrature =
       std::make_unique<ContactQuadrature<dim>>(parameters.quadrature,
                                                adhesive_law->kinks());
     adhesion_integral = std::make_unique<AdhesionIntegral<dim>>(
       elastic_problem->contact_boundary(), *adhesive_law, *quadrature);
-    energy               = std::make_unique<Energy>(elastic_problem->matrix(),
-                                      elastic_problem->load(),
-                                      elastic_problem->contact_boundary(),
-                                      *adhesion_integral);
+    const auto make_functional = [this](const auto &A) {
+      using MatrixType = std::decay_t<decltype(A)>;
+      energy           = std::make_unique<Functional<dim, MatrixType, Vector>>(
+        A,
+        elastic_problem->load(),
+        elastic_problem->contact_boundary(),
+        *adhesion_integral);
+    };
+    if (storage == MatrixStorage::serial)
+      make_functional(elastic_problem->matrix());
+    else
+      make_functional(elastic_problem->trilinos_matrix());
     seconds_for_assembly = timer.wall_time();
   }
 
@@ -112,7 +123,7 @@ namespace Debond
 
 
   template <int dim>
-  const typename Scene<dim>::Energy &
+  const Objective<dealii::Vector<double>> &
   Scene<dim>::functional() const
   {
     return *energy;

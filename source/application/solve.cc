@@ -2,8 +2,15 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/application/interrupt.h>
+#include <debond/application/scene_size.h>
 #include <debond/application/solve.h>
+#include <debond/contact/boundary_coarsening.h>
 #include <debond/elasticity/condensation.h>
+#include <debond/elasticity/mesh_transfer.h>
+#include <debond/elasticity/multigrid.h>
+#include <debond/elasticity/multigrid_problem.h>
+#include <debond/optimization/coarse_start.h>
+#include <debond/optimization/condensed_problem.h>
 #include <debond/optimization/metric_direction.h>
 #include <debond/output/progress.h>
 
@@ -20,18 +27,26 @@ namespace Debond
 
 
 
-    /// Prints iterations, unless the log is to be compared, and ends the
-    /// method on a signal.
+    /// Contact boundaries with more nodes take their start from coarser ones.
+    constexpr unsigned int coarsest_contact_nodes = 50;
+
+    /// On coarser meshes, where the time for a factorisation does not count.
+    constexpr double largest_coarse_factorisation = 3e4;
+
+
+
+    /// Prints iterations, if it has a stream, and ends the method on a signal.
     class Watch
     {
     public:
-      Watch(const Parameters &parameters,
-            std::ostream     &out,
-            const bool        terminal)
-      {
-        if (parameters.output.machine_details)
-          progress = std::make_unique<Progress>(out, terminal);
-      }
+      explicit Watch(const InterruptGuard &guard)
+        : guard(guard)
+      {}
+
+      Watch(const InterruptGuard &guard, std::ostream &out, const bool terminal)
+        : guard(guard)
+        , progress(std::make_unique<Progress>(out, terminal))
+      {}
 
       ~Watch()
       {
@@ -60,7 +75,7 @@ namespace Debond
 
     private:
       double                    offset = 0.;
-      const InterruptGuard      guard;
+      const InterruptGuard     &guard;
       std::unique_ptr<Progress> progress;
     };
 
@@ -95,7 +110,8 @@ namespace Debond
       result.u.reinit(scene.problem().n_dofs());
       add_bundle_result(ProximalBundle<Vector>(parameters.bundle)
                           .minimize(scene.functional(),
-                                    scene.functional().unilateral_constraint(),
+                                    unilateral_constraint(
+                                      scene.problem().contact_boundary()),
                                     result.u,
                                     std::ref(watch)),
                         result);
@@ -140,6 +156,21 @@ namespace Debond
 
 
 
+    void
+    add_majorise_result(const MajoriseMinimiseResult &minimum,
+                        SolveResult                  &result)
+    {
+      result.status           = minimum.status;
+      result.message          = minimum.message;
+      result.iterations       = minimum.history.size();
+      result.criterion        = minimum.residual;
+      result.majorise_history = minimum.history;
+      for (const MajoriseMinimiseIteration &iteration : minimum.history)
+        result.linear_iterations += iteration.linear_iterations;
+    }
+
+
+
     template <int dim>
     void
     solve_by_majorise_minimise(const Parameters   &parameters,
@@ -149,80 +180,166 @@ namespace Debond
                                Vector             &s,
                                SolveResult        &result)
     {
-      const MajoriseMinimiseResult minimum =
-        MajoriseMinimise(parameters.majorise_minimise)
-          .minimize(condensed.schur_complement(),
-                    condensed.load(),
-                    scene.adhesion(),
-                    s,
-                    std::ref(watch));
-      result.status           = minimum.status;
-      result.message          = minimum.message;
-      result.iterations       = minimum.history.size();
-      result.criterion        = minimum.residual;
-      result.majorise_history = minimum.history;
+      const MajoriseMinimise method(parameters.majorise_minimise);
+      s = coarse_start(condensed.schur_complement(),
+                       condensed.load(),
+                       scene.adhesion(),
+                       coarsen(scene.problem().contact_boundary(),
+                               coarsest_contact_nodes),
+                       method);
+      CondensedProblem problem(condensed.schur_complement(),
+                               condensed.load(),
+                               scene.adhesion(),
+                               s);
+      add_majorise_result(method.minimize(problem, std::ref(watch)), result);
       for (MajoriseMinimiseIteration &iteration : result.majorise_history)
         iteration.functional += condensed.energy_at_zero();
+    }
+
+
+
+    template <int dim>
+    void
+    solve_condensed(const std::string &method,
+                    const Parameters  &parameters,
+                    const Scene<dim>  &scene,
+                    Watch             &watch,
+                    SolveResult       &result)
+    {
+      dealii::Timer              timer;
+      const ElasticProblem<dim> &problem = scene.problem();
+      std::vector<unsigned int>  normals;
+      for (const auto &node : problem.contact_boundary().nodes)
+        normals.push_back(node.dof);
+      const Condensation condensed(problem.matrix(),
+                                   problem.load(),
+                                   normals,
+                                   [&](const unsigned int i) {
+                                     return problem.is_constrained(i);
+                                   });
+      result.parts["condensation"] = timer.wall_time();
+
+      watch.add_energy(condensed.energy_at_zero());
+      timer.restart();
+      Vector s(normals.size());
+      if (method == SolverMethod::energy_bundle)
+        solve_by_energy_bundle(parameters, scene, condensed, watch, s, result);
+      else
+        solve_by_majorise_minimise(
+          parameters, scene, condensed, watch, s, result);
+      result.parts["contact"] = timer.wall_time();
+
+      timer.restart();
+      result.u                  = condensed.expand(s);
+      result.parts["expansion"] = timer.wall_time();
+    }
+
+
+
+    template <int dim>
+    void
+    solve_by_multigrid(const Parameters     &parameters,
+                       const Scene<dim>     &scene,
+                       const InterruptGuard &guard,
+                       Watch                &watch,
+                       SolveResult          &result);
+
+
+
+    /// The solution on a mesh of half as many cells in each direction, at the
+    /// nodes of the scene's mesh; zero if that mesh is the coarsest.
+    template <int dim>
+    Vector
+    solution_on_coarser_mesh(const Parameters     &parameters,
+                             const Scene<dim>     &scene,
+                             const InterruptGuard &guard)
+    {
+      Parameters coarse = parameters;
+      for (unsigned int d = 0; d < dim; ++d)
+        coarse.box.cells[d] = (coarse.box.cells[d] + 1) / 2;
+      if (coarse.box.cells == parameters.box.cells)
+        return Vector(scene.problem().n_dofs());
+
+      const bool factorised =
+        scene_size(coarse).unknowns <= largest_coarse_factorisation;
+      const Scene<dim> coarse_scene(coarse,
+                                    factorised ? MatrixStorage::serial :
+                                                 MatrixStorage::trilinos);
+      Watch            watch(guard);
+      SolveResult      result;
+      if (factorised)
+        solve_condensed(
+          SolverMethod::majorise_minimise, coarse, coarse_scene, watch, result);
+      else
+        solve_by_multigrid(coarse, coarse_scene, guard, watch, result);
+      return interpolate_displacement(coarse.box,
+                                      coarse_scene.problem(),
+                                      result.u,
+                                      scene.problem());
+    }
+
+
+
+    template <int dim>
+    void
+    solve_by_multigrid(const Parameters     &parameters,
+                       const Scene<dim>     &scene,
+                       const InterruptGuard &guard,
+                       Watch                &watch,
+                       SolveResult          &result)
+    {
+      dealii::Timer timer;
+      result.u = solution_on_coarser_mesh(parameters, scene, guard);
+      result.parts["coarser meshes"] = timer.wall_time();
+
+      timer.restart();
+      const Multigrid multigrid(scene.problem());
+      result.parts["multigrid setup"] = timer.wall_time();
+
+      timer.restart();
+      MultigridProblem<dim> problem(scene.problem(),
+                                    scene.adhesion(),
+                                    multigrid,
+                                    result.u);
+      add_majorise_result(MajoriseMinimise(parameters.majorise_minimise)
+                            .minimize(problem, std::ref(watch)),
+                          result);
+      result.parts["contact"] = timer.wall_time();
     }
   } // namespace
 
 
 
-  MethodChoice
-  choose_method(const Parameters &parameters)
+  MatrixStorage
+  matrix_storage(const MethodChoice &choice)
   {
-    if (parameters.method != SolverMethod::automatic)
-      return {parameters.method, ""};
-    return {SolverMethod::majorise_minimise,
-            "it is exact after finitely many steps, at the price of about one "
-            "factorisation"};
+    return choice.linear_solver == LinearSolver::multigrid ?
+             MatrixStorage::trilinos :
+             MatrixStorage::serial;
   }
 
 
 
   template <int dim>
   SolveResult
-  solve(const std::string &method,
-        const Parameters  &parameters,
-        const Scene<dim>  &scene,
-        std::ostream      &out,
-        const bool         terminal)
+  solve(const MethodChoice &choice,
+        const Parameters   &parameters,
+        const Scene<dim>   &scene,
+        std::ostream       &out,
+        const bool          terminal)
   {
     SolveResult result;
     {
-      Watch watch(parameters, out, terminal);
-      if (method == SolverMethod::euclidean_bundle)
-        solve_by_euclidean_bundle(parameters, scene, watch, result);
+      const InterruptGuard guard;
+      const auto           watch = parameters.output.machine_details ?
+                                     std::make_unique<Watch>(guard, out, terminal) :
+                                     std::make_unique<Watch>(guard);
+      if (choice.method == SolverMethod::euclidean_bundle)
+        solve_by_euclidean_bundle(parameters, scene, *watch, result);
+      else if (choice.linear_solver == LinearSolver::multigrid)
+        solve_by_multigrid(parameters, scene, guard, *watch, result);
       else
-        {
-          dealii::Timer              timer;
-          const ElasticProblem<dim> &problem = scene.problem();
-          std::vector<unsigned int>  normals;
-          for (const auto &node : problem.contact_boundary().nodes)
-            normals.push_back(node.dof);
-          const Condensation condensed(problem.matrix(),
-                                       problem.load(),
-                                       normals,
-                                       [&](const unsigned int i) {
-                                         return problem.is_constrained(i);
-                                       });
-          result.parts["condensation"] = timer.wall_time();
-
-          watch.add_energy(condensed.energy_at_zero());
-          timer.restart();
-          Vector s(normals.size());
-          if (method == SolverMethod::energy_bundle)
-            solve_by_energy_bundle(
-              parameters, scene, condensed, watch, s, result);
-          else
-            solve_by_majorise_minimise(
-              parameters, scene, condensed, watch, s, result);
-          result.parts["contact"] = timer.wall_time();
-
-          timer.restart();
-          result.u                  = condensed.expand(s);
-          result.parts["expansion"] = timer.wall_time();
-        }
+        solve_condensed(choice.method, parameters, scene, *watch, result);
     }
     result.functional = scene.functional().value(result.u);
     return result;
@@ -231,13 +348,13 @@ namespace Debond
 
 
   template SolveResult
-  solve(const std::string &,
+  solve(const MethodChoice &,
         const Parameters &,
         const Scene<2> &,
         std::ostream &,
         const bool);
   template SolveResult
-  solve(const std::string &,
+  solve(const MethodChoice &,
         const Parameters &,
         const Scene<3> &,
         std::ostream &,

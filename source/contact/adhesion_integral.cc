@@ -55,18 +55,23 @@ namespace Debond
 
 
   template <int dim>
-  void
-  AdhesionIntegral<dim>::add_curvature(const dealii::Vector<double> &s,
-                                       dealii::FullMatrix<double> &matrix) const
+  Eigen::SparseMatrix<double>
+  AdhesionIntegral<dim>::curvature(const dealii::Vector<double> &s) const
   {
+    std::vector<Eigen::Triplet<double>> entries;
     for (const Point &point : points(s))
       {
         const double curvature = point.weight * law.curvature(point.trace(s));
-        for (unsigned int k = 0; k < point.n_nodes; ++k)
-          for (unsigned int l = 0; l < point.n_nodes; ++l)
-            matrix(point.nodes[k], point.nodes[l]) +=
-              curvature * point.shape[k] * point.shape[l];
+        if (curvature != 0.)
+          for (unsigned int k = 0; k < point.n_nodes; ++k)
+            for (unsigned int l = 0; l < point.n_nodes; ++l)
+              entries.emplace_back(point.nodes[k],
+                                   point.nodes[l],
+                                   curvature * point.shape[k] * point.shape[l]);
       }
+    Eigen::SparseMatrix<double> result(s.size(), s.size());
+    result.setFromTriplets(entries.begin(), entries.end());
+    return result;
   }
 
 

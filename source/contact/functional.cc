@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/sparse_matrix.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/vector.h>
 #include <deal.II/lac/vector_memory.h>
 
@@ -8,6 +9,19 @@
 
 namespace Debond
 {
+  template <int dim>
+  UpperBounds
+  unilateral_constraint(const ContactBoundary<dim> &boundary)
+  {
+    UpperBounds bounds;
+    for (const auto &node : boundary.nodes)
+      bounds.indices.push_back(node.dof);
+    bounds.upper.assign(boundary.nodes.size(), 0.);
+    return bounds;
+  }
+
+
+
   /// J along x + t d: a parabola with precomputed coefficients plus the
   /// adhesion of the contact trace.
   template <int dim, typename MatrixType, typename VectorType>
@@ -129,19 +143,6 @@ namespace Debond
 
 
   template <int dim, typename MatrixType, typename VectorType>
-  UpperBounds
-  Functional<dim, MatrixType, VectorType>::unilateral_constraint() const
-  {
-    UpperBounds bounds;
-    for (const auto &node : boundary.nodes)
-      bounds.indices.push_back(node.dof);
-    bounds.upper.assign(boundary.nodes.size(), 0.);
-    return bounds;
-  }
-
-
-
-  template <int dim, typename MatrixType, typename VectorType>
   dealii::Vector<double>
   Functional<dim, MatrixType, VectorType>::normal_trace(
     const VectorType &v) const
@@ -154,6 +155,10 @@ namespace Debond
 
 
 
+  template UpperBounds
+  unilateral_constraint(const ContactBoundary<2> &);
+  template UpperBounds
+  unilateral_constraint(const ContactBoundary<3> &);
   template class Functional<2,
                             dealii::SparseMatrix<double>,
                             dealii::Vector<double>>;
@@ -165,5 +170,11 @@ namespace Debond
                             dealii::Vector<double>>;
   template class Functional<3,
                             dealii::FullMatrix<double>,
+                            dealii::Vector<double>>;
+  template class Functional<2,
+                            dealii::TrilinosWrappers::SparseMatrix,
+                            dealii::Vector<double>>;
+  template class Functional<3,
+                            dealii::TrilinosWrappers::SparseMatrix,
                             dealii::Vector<double>>;
 } // namespace Debond

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/bounding_box.h>
-#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_simplex_p.h>
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
-#include <deal.II/lac/full_matrix.h>
 
 #include <debond/elasticity/contact_frame.h>
 #include <debond/elasticity/crossed_mesh.h>
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/elasticity/linear_simplex.h>
 #include <debond/elasticity/rigid_motions.h>
 
 #include <algorithm>
@@ -20,32 +18,6 @@ namespace Debond
 {
   namespace
   {
-    /// Volume of a simplex and the (constant) gradients of its P1 basis.
-    template <int dim>
-    struct LinearSimplex
-    {
-      template <typename CellIterator>
-      explicit LinearSimplex(const CellIterator &cell)
-      {
-        dealii::Tensor<2, dim> edges;
-        for (unsigned int d = 0; d < dim; ++d)
-          edges[d] = cell->vertex(d + 1) - cell->vertex(0);
-        volume = dealii::determinant(edges) / (dim == 2 ? 2. : 6.);
-
-        const dealii::Tensor<2, dim> inverse = dealii::invert(edges);
-        for (unsigned int v = 1; v <= dim; ++v)
-          for (unsigned int d = 0; d < dim; ++d)
-            gradients[v][d] = inverse[d][v - 1];
-        for (unsigned int v = 1; v <= dim; ++v)
-          gradients[0] -= gradients[v];
-      }
-
-      double                                      volume;
-      std::array<dealii::Tensor<1, dim>, dim + 1> gradients;
-    };
-
-
-
     /// A boundary face, with what the degrees of freedom know of it.
     template <int dim>
     struct BoundaryFace
@@ -189,14 +161,6 @@ namespace Debond
       }
 
     constraints.close();
-
-    dealii::DynamicSparsityPattern pattern(dofs.n_dofs());
-    dealii::DoFTools::make_sparsity_pattern(dofs,
-                                            pattern,
-                                            constraints,
-                                            /*keep_constrained_dofs=*/false);
-    sparsity.copy_from(pattern);
-    system_matrix.reinit(sparsity);
   }
 
 
@@ -344,187 +308,6 @@ namespace Debond
 
 
   template <int dim>
-  void
-  ElasticProblem<dim>::assemble(const Material   &new_material,
-                                const Loads<dim> &loads)
-  {
-    new_material.validate<dim>();
-    applied_forces   = load_vector(dofs, loads);
-    elastic_material = new_material;
-    stiffness        = new_material.elasticity_tensor<dim>();
-
-    system_load = in_frames(applied_forces);
-    constraints.set_zero(system_load);
-
-    system_matrix                          = 0.;
-    const unsigned int         n_cell_dofs = fe.n_dofs_per_cell();
-    dealii::FullMatrix<double> cell_matrix(n_cell_dofs);
-    std::vector<dealii::types::global_dof_index> cell_dofs(n_cell_dofs);
-    std::array<dealii::SymmetricTensor<2, dim>, dim *(dim + 1)> strains;
-
-    for (const auto &cell : dofs.active_cell_iterators())
-      {
-        const LinearSimplex<dim> simplex(cell);
-
-        // The basis function of the unknown k of vertex v is phi_v times the
-        // direction of the unknown.
-        for (unsigned int v = 0; v <= dim; ++v)
-          {
-            const unsigned int frame = frame_of_vertex[cell->vertex_index(v)];
-            for (unsigned int k = 0; k < dim; ++k)
-              {
-                dealii::Tensor<1, dim> direction;
-                if (frame == dealii::numbers::invalid_unsigned_int)
-                  direction[k] = 1.;
-                else
-                  for (unsigned int d = 0; d < dim; ++d)
-                    direction[d] = frames[frame].to_cartesian[d][k];
-
-                const unsigned int i = v * dim + k;
-                cell_dofs[i]         = cell->vertex_dof_index(v, k);
-                strains[i]           = dealii::symmetrize(
-                  dealii::outer_product(direction, simplex.gradients[v]));
-              }
-          }
-
-        for (unsigned int i = 0; i < n_cell_dofs; ++i)
-          {
-            const dealii::SymmetricTensor<2, dim> weighted_stress =
-              simplex.volume * (stiffness * strains[i]);
-            for (unsigned int j = 0; j < n_cell_dofs; ++j)
-              cell_matrix(i, j) = weighted_stress * strains[j];
-          }
-        constraints.distribute_local_to_global(cell_matrix,
-                                               cell_dofs,
-                                               system_matrix);
-      }
-  }
-
-
-
-  template <int dim>
-  dealii::Vector<double>
-  ElasticProblem<dim>::in_frames(const dealii::Vector<double> &forces) const
-  {
-    dealii::Vector<double> result = forces;
-    for (const Frame &frame : frames)
-      for (unsigned int k = 0; k < dim; ++k)
-        {
-          result[frame.dofs[k]] = 0.;
-          for (unsigned int d = 0; d < dim; ++d)
-            result[frame.dofs[k]] +=
-              frame.to_cartesian[d][k] * forces[frame.dofs[d]];
-        }
-    return result;
-  }
-
-
-
-  template <int dim>
-  dealii::Vector<double>
-  ElasticProblem<dim>::cartesian_forces(
-    const dealii::Vector<double> &forces) const
-  {
-    dealii::Vector<double> result = forces;
-    for (const Frame &frame : frames)
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          result[frame.dofs[d]] = 0.;
-          for (unsigned int k = 0; k < dim; ++k)
-            result[frame.dofs[d]] +=
-              frame.to_frame[k][d] * forces[frame.dofs[k]];
-        }
-    return result;
-  }
-
-
-
-  template <int dim>
-  dealii::Vector<double>
-  ElasticProblem<dim>::cartesian_displacement(
-    const dealii::Vector<double> &u) const
-  {
-    dealii::Vector<double> result = u;
-    for (const Frame &frame : frames)
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          result[frame.dofs[d]] = 0.;
-          for (unsigned int k = 0; k < dim; ++k)
-            result[frame.dofs[d]] +=
-              frame.to_cartesian[d][k] * u[frame.dofs[k]];
-        }
-    return result;
-  }
-
-
-
-  template <int dim>
-  dealii::Vector<double>
-  ElasticProblem<dim>::residual(const dealii::Vector<double> &u) const
-  {
-    const dealii::Vector<double> displacement = cartesian_displacement(u);
-
-    dealii::Vector<double> forces(dofs.n_dofs());
-    for (const auto &cell : dofs.active_cell_iterators())
-      {
-        const LinearSimplex<dim>              simplex(cell);
-        const dealii::SymmetricTensor<2, dim> sigma =
-          stress(cell, displacement);
-        for (unsigned int v = 0; v <= dim; ++v)
-          {
-            const dealii::Tensor<1, dim> force =
-              simplex.volume * (sigma * simplex.gradients[v]);
-            for (unsigned int d = 0; d < dim; ++d)
-              forces[cell->vertex_dof_index(v, d)] += force[d];
-          }
-      }
-    forces -= applied_forces;
-    return in_frames(forces);
-  }
-
-
-
-  template <int dim>
-  dealii::SymmetricTensor<2, dim>
-  ElasticProblem<dim>::stress(
-    const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-    const dealii::Vector<double> &cartesian_displacement) const
-  {
-    const LinearSimplex<dim> simplex(cell);
-    dealii::Tensor<2, dim>   gradient;
-    for (unsigned int v = 0; v <= dim; ++v)
-      {
-        dealii::Tensor<1, dim> displacement;
-        for (unsigned int d = 0; d < dim; ++d)
-          displacement[d] =
-            cartesian_displacement[cell->vertex_dof_index(v, d)];
-        gradient += dealii::outer_product(displacement, simplex.gradients[v]);
-      }
-    return stiffness * dealii::symmetrize(gradient);
-  }
-
-
-
-  template <int dim>
-  dealii::Tensor<1, dim>
-  ElasticProblem<dim>::total_load() const
-  {
-    dealii::Tensor<1, dim> result;
-    std::vector<bool>      visited(frame_of_vertex.size(), false);
-    for (const auto &cell : dofs.active_cell_iterators())
-      for (const unsigned int v : cell->vertex_indices())
-        if (!visited[cell->vertex_index(v)])
-          {
-            visited[cell->vertex_index(v)] = true;
-            for (unsigned int d = 0; d < dim; ++d)
-              result[d] += applied_forces[cell->vertex_dof_index(v, d)];
-          }
-    return result;
-  }
-
-
-
-  template <int dim>
   const dealii::DoFHandler<dim> &
   ElasticProblem<dim>::dof_handler() const
   {
@@ -546,7 +329,18 @@ namespace Debond
   const dealii::SparseMatrix<double> &
   ElasticProblem<dim>::matrix() const
   {
+    Assert(storage == MatrixStorage::serial, dealii::ExcInvalidState());
     return system_matrix;
+  }
+
+
+
+  template <int dim>
+  const dealii::TrilinosWrappers::SparseMatrix &
+  ElasticProblem<dim>::trilinos_matrix() const
+  {
+    Assert(storage == MatrixStorage::trilinos, dealii::ExcInvalidState());
+    return *distributed_matrix;
   }
 
 

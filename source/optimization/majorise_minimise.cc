@@ -1,44 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/optimization/bound_qp.h>
 #include <debond/optimization/majorise_minimise.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace Debond
 {
   namespace
   {
-    using Map = Eigen::Map<const Eigen::VectorXd>;
-
-    Map
-    as_eigen(const dealii::Vector<double> &v)
-    {
-      return Map(v.begin(), v.size());
-    }
-
-
-
-    /// Largest violation of  S s + xi - g + mu = 0,  mu >= 0,  s <= 0,  mu's
-    /// = 0, relative to the largest term of the first.
-    double
-    optimality_residual(const Eigen::VectorXd &S_s,
-                        const Eigen::VectorXd &xi,
-                        const Eigen::VectorXd &g,
-                        const Eigen::VectorXd &s)
-    {
-      const double largest_force = std::max({S_s.lpNorm<Eigen::Infinity>(),
-                                             xi.lpNorm<Eigen::Infinity>(),
-                                             g.lpNorm<Eigen::Infinity>()});
-      double       residual      = 0.;
-      for (unsigned int i = 0; i < s.size(); ++i)
-        {
-          const double mu = g(i) - S_s(i) - xi(i);
-          residual        = std::max(residual, s(i) < 0. ? std::abs(mu) : -mu);
-        }
-      return largest_force > 0. ? residual / largest_force : 0.;
-    }
+    /// What an inexact minimisation of the majorant may leave of the residual.
+    constexpr double forcing = 0.1;
   } // namespace
 
 
@@ -51,37 +24,16 @@ namespace Debond
 
 
   MajoriseMinimiseResult
-  MajoriseMinimise::minimize(const dealii::FullMatrix<double> &S,
-                             const dealii::Vector<double>     &g,
-                             const PiecewiseQuadratic         &phi,
-                             dealii::Vector<double>           &s,
-                             const Monitor                    &monitor) const
+  MajoriseMinimise::minimize(MajorantProblem &problem,
+                             const Monitor   &monitor) const
   {
-    const unsigned int     n = s.size();
     MajoriseMinimiseResult result;
-
-    dealii::FullMatrix<double> M(n, n);
-    dealii::Vector<double>     xi(n), product(n);
-    Eigen::VectorXd            S_s(n);
-    const auto                 evaluate = [&]() {
-      if (n > 0)
-        S.vmult(product, s);
-      S_s = as_eigen(product);
-      result.functional =
-        as_eigen(s).dot(0.5 * S_s - as_eigen(g)) + phi.value(s);
-      phi.subgradient(s, xi);
-      result.residual =
-        optimality_residual(S_s, as_eigen(xi), as_eigen(g), as_eigen(s));
-    };
-    evaluate();
-
-    ActiveSet active(n);
-    for (unsigned int i = 0; i < n; ++i)
-      active[i] = s(i) == 0.;
-
+    MajorantProblem::State state = problem.evaluate();
     while (true)
       {
-        if (!std::isfinite(result.residual))
+        result.functional = state.functional;
+        result.residual   = state.residual;
+        if (!std::isfinite(state.residual))
           {
             result.status = SolverStatus::not_finite;
             result.message =
@@ -89,7 +41,9 @@ namespace Debond
               "not a finite number. Check the data of the scene.";
             return result;
           }
-        if (result.residual <= parameters.tolerance)
+        const double tolerance =
+          std::max(parameters.tolerance, state.residual_rounding);
+        if (state.residual <= tolerance)
           {
             result.status = SolverStatus::success;
             return result;
@@ -97,38 +51,41 @@ namespace Debond
         if (result.history.size() == parameters.maximum_iterations)
           break;
 
-        // Branches at s_k: Phi <= Phi(s_k) + xi'(s - s_k)
-        //                        + 1/2 (s - s_k)'E (s - s_k).
-        M = 0.;
-        phi.add_curvature(s, M);
-        if (n > 0)
-          M.vmult(product, s);
-        M.add(1., S);
-        const Eigen::Map<const Eigen::MatrixXd> M_eigen(
-          n > 0 ? &M(0, 0) : nullptr, n, n);
-        const BoundQPResult qp =
-          solve_bound_qp(M_eigen,
-                         as_eigen(g) - as_eigen(xi) + as_eigen(product),
-                         Eigen::VectorXd::Zero(n),
-                         active);
-        if (!qp.converged)
-          {
-            result.status = SolverStatus::quadratic_program;
-            result.message =
-              "majorise-minimise: the active set of the convex subproblem did "
-              "not settle after " +
-              std::to_string(qp.steps) + " steps. Try another method.";
-            return result;
-          }
-        std::copy(qp.x.begin(), qp.x.end(), s.begin());
-        evaluate();
+        MajoriseMinimiseIteration iteration = {};
+        iteration.iteration                 = result.history.size() + 1;
 
-        MajoriseMinimiseIteration iteration;
-        iteration.iteration        = result.history.size() + 1;
-        iteration.functional       = result.functional;
-        iteration.residual         = result.residual;
-        iteration.active_set_steps = qp.steps;
-        iteration.n_active = std::count(active.begin(), active.end(), 1);
+        // As long as the majorant changes it needs no exact minimum.
+        double inner_tolerance = 0.5 * tolerance;
+        if (problem.majorise())
+          inner_tolerance = std::max(inner_tolerance, forcing * state.residual);
+        const double upper = state.functional + state.functional_rounding;
+        do
+          {
+            const MajorantProblem::Minimisation inner =
+              problem.minimise(inner_tolerance);
+            iteration.active_set_steps += inner.active_set_steps;
+            iteration.linear_iterations += inner.linear_iterations;
+            if (!inner.converged)
+              {
+                std::ostringstream text;
+                text.precision(3);
+                text << "majorise-minimise: the convex subproblem of iteration "
+                     << iteration.iteration << " was not solved to "
+                     << inner_tolerance << " in " << iteration.active_set_steps
+                     << " active-set steps. Try another method.";
+                result.status  = SolverStatus::quadratic_program;
+                result.message = text.str();
+                return result;
+              }
+            state = problem.evaluate();
+            inner_tolerance *= forcing;
+          }
+        while (state.functional > upper + state.functional_rounding &&
+               inner_tolerance > 0.01 * tolerance);
+
+        iteration.functional = result.functional = state.functional;
+        iteration.residual = result.residual = state.residual;
+        iteration.n_active                   = state.n_active;
         result.history.push_back(iteration);
         if (monitor && !monitor(iteration))
           {

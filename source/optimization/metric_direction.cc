@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/full_matrix.h>
+
 #include <debond/optimization/bundle_qp.h>
 #include <debond/optimization/metric_direction.h>
 
@@ -60,12 +62,10 @@ namespace Debond
   MetricDirection::solve(const dealii::Vector<double> &x,
                          const Eigen::VectorXd        &beta)
   {
-    const unsigned int         n = x.size();
-    dealii::FullMatrix<double> metric(S);
-    phi.add_curvature(x, metric);
-    const Eigen::Map<const Eigen::MatrixXd> M(n > 0 ? &metric(0, 0) : nullptr,
-                                              n,
-                                              n);
+    const unsigned int n = x.size();
+    Eigen::MatrixXd    M =
+      Eigen::Map<const Eigen::MatrixXd>(n > 0 ? &S(0, 0) : nullptr, n, n);
+    M += phi.curvature(x);
     const Eigen::VectorXd b = -Eigen::Map<const Eigen::VectorXd>(x.begin(), n);
     const auto            G = eta.leftCols(m);
 

@@ -42,8 +42,8 @@ namespace Debond
     {
       std::ostringstream text;
       text << std::setw(11) << "iteration" << std::setw(17) << "J"
-           << std::setw(12) << "residual" << std::setw(9) << "factors"
-           << std::setw(9) << "contact";
+           << std::setw(12) << "residual" << std::setw(9) << "systems"
+           << std::setw(8) << "CG" << std::setw(9) << "contact";
       return text.str();
     }
 
@@ -102,8 +102,8 @@ namespace Debond
     text << std::setw(11) << iteration.iteration << std::scientific
          << std::setprecision(8) << std::setw(17) << iteration.functional
          << std::setprecision(2) << std::setw(12) << iteration.residual
-         << std::setw(9) << iteration.active_set_steps << std::setw(9)
-         << iteration.n_active;
+         << std::setw(9) << iteration.active_set_steps << std::setw(8)
+         << iteration.linear_iterations << std::setw(9) << iteration.n_active;
     report_row(iteration.iteration, majorise_header(), text.str());
   }
 

@@ -42,6 +42,7 @@ namespace Debond
     Json json;
     json["scene"]                    = summary.scene;
     json["method"]                   = summary.method;
+    json["linear_solver"]            = summary.linear_solver;
     json["status"]                   = summary.status;
     json["message"]                  = summary.message;
     json["dimension"]                = summary.dimension;
@@ -52,6 +53,9 @@ namespace Debond
                                         {"null", summary.null_steps}};
     json["stop_criterion"]           = summary.stop_criterion;
     json["largest_qp_residual"]      = summary.largest_qp_residual;
+    json["linear_iterations"]        = summary.linear_iterations;
+    json["memory_estimate_bytes"]    = summary.memory_estimate;
+    json["peak_memory_bytes"]        = summary.peak_memory;
     json["cells"]                    = summary.cells;
     json["degrees_of_freedom"]       = summary.degrees_of_freedom;
     json["degrees_of_freedom_paper"] = summary.degrees_of_freedom_paper;

@@ -73,10 +73,12 @@ namespace Debond
   {
     write_atomically(file_name, [&](std::ostream &out) {
       set_full_precision(out);
-      out << "iteration,functional,residual,active_set_steps,contact_nodes\n";
+      out << "iteration,functional,residual,active_set_steps,linear_iterations,"
+             "contact_nodes\n";
       for (const MajoriseMinimiseIteration &step : history)
         out << step.iteration << ',' << step.functional << ',' << step.residual
-            << ',' << step.active_set_steps << ',' << step.n_active << '\n';
+            << ',' << step.active_set_steps << ',' << step.linear_iterations
+            << ',' << step.n_active << '\n';
     });
   }
 

@@ -3,7 +3,11 @@
 // bound QP over all active sets, majorise-minimise and the bundle method in the
 // energy norm over all states (pressed, bonded, broken) of all unknowns.
 
+#include <deal.II/lac/full_matrix.h>
+
 #include <debond/optimization/bound_qp.h>
+#include <debond/optimization/coarse_start.h>
+#include <debond/optimization/condensed_problem.h>
 #include <debond/optimization/majorise_minimise.h>
 #include <debond/optimization/metric_direction.h>
 #include <debond/optimization/proximal_bundle.h>
@@ -56,13 +60,14 @@ namespace
         xi(i) = broken(s(i)) ? 0. : stiffness(i) * s(i);
     }
 
-    void
-    add_curvature(const Vector               &s,
-                  dealii::FullMatrix<double> &matrix) const override
+    Eigen::SparseMatrix<double>
+    curvature(const Vector &s) const override
     {
+      Eigen::SparseMatrix<double> matrix(s.size(), s.size());
       for (unsigned int i = 0; i < s.size(); ++i)
         if (!broken(s(i)))
-          matrix(i, i) += stiffness(i);
+          matrix.insert(i, i) = stiffness(i);
+      return matrix;
     }
   };
 
@@ -297,8 +302,9 @@ namespace
             entry = -std::abs(
               std::uniform_real_distribution<double>(-2., 2.)(engine));
 
-        Vector     s  = start;
-        const auto mm = MajoriseMinimise({}).minimize(p.S, p.g, p.bonds, s);
+        Vector           s = start;
+        CondensedProblem condensed(p.S, p.g, p.bonds, s);
+        const auto       mm = MajoriseMinimise({}).minimize(condensed);
         mm_failures += mm.status != SolverStatus::success;
         worst_mm = std::max(worst_mm, distance(mm.functional));
         mm_global += std::abs(mm.functional - values[0]) < 1e-9;
@@ -341,6 +347,41 @@ namespace
                 << " iterations, failed " << bundle_failures
                 << "\n  several stationary values in " << several << '\n';
   }
+
+
+
+  /// Neighbouring pairs of unknowns move together on each coarser level.
+  void
+  test_coarse_start(std::mt19937_64 &engine)
+  {
+    bool         feasible = true, below_rest = true, converged = true;
+    unsigned int n_problems = 50;
+    for (unsigned int k = 0; k < n_problems; ++k)
+      {
+        const Problem                            p = random_problem(engine, 16);
+        std::vector<Eigen::SparseMatrix<double>> prolongations;
+        for (unsigned int n = 16; n > 4; n /= 2)
+          {
+            Eigen::SparseMatrix<double> P(n, n / 2);
+            for (unsigned int i = 0; i < n; ++i)
+              P.insert(i, i / 2) = 1.;
+            prolongations.push_back(P);
+          }
+        const MajoriseMinimise method({});
+        Vector       s = coarse_start(p.S, p.g, p.bonds, prolongations, method);
+        const Energy energy(p.S, p.g, p.bonds);
+        for (const double entry : s)
+          feasible = feasible && entry <= 0.;
+        below_rest = below_rest && energy.value(s) <= energy.value(Vector(16));
+        CondensedProblem problem(p.S, p.g, p.bonds, s);
+        converged =
+          converged && method.minimize(problem).status == SolverStatus::success;
+      }
+    std::cout << "start from coarser spaces on " << n_problems
+              << " problems: feasible: " << verdict(feasible)
+              << ", not above rest: " << verdict(below_rest)
+              << ", converged from there: " << verdict(converged) << '\n';
+  }
 } // namespace
 
 
@@ -353,4 +394,5 @@ main(int argc, char *[])
   std::mt19937_64 engine(20261121);
   test_bound_qp(engine);
   test_minimisers(engine);
+  test_coarse_start(engine);
 }

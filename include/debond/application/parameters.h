@@ -83,6 +83,8 @@ namespace Debond
     ContactQuadratureParameters quadrature;
     std::string                 quadrature_name;
     std::string                 method;
+    std::string                 linear_solver;
+    double                      memory_limit = 0.; ///< bytes, 0: what is there
     ProximalBundleParameters    bundle;
 
     /// epsilon_s relative to the energy of the body without contact; u is

@@ -2,7 +2,6 @@
 #ifndef debond_application_scene_h
 #define debond_application_scene_h
 
-#include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/vector.h>
 
 #include <debond/application/parameters.h>
@@ -24,10 +23,8 @@ namespace Debond
   class Scene
   {
   public:
-    using Energy =
-      Functional<dim, dealii::SparseMatrix<double>, dealii::Vector<double>>;
-
-    explicit Scene(const Parameters &parameters);
+    explicit Scene(const Parameters   &parameters,
+                   const MatrixStorage storage = MatrixStorage::serial);
 
     Scene(const Scene &) = delete;
 
@@ -41,7 +38,7 @@ namespace Debond
     adhesion() const;
 
     /// J, on vectors of problem().n_dofs() entries.
-    const Energy &
+    const Objective<dealii::Vector<double>> &
     functional() const;
 
     /// Triangles or tetrahedra.
@@ -58,16 +55,16 @@ namespace Debond
 
   private:
     void
-    build(const Parameters &parameters);
+    build(const Parameters &parameters, const MatrixStorage storage);
 
-    dealii::Triangulation<dim>              triangulation;
-    std::unique_ptr<ElasticProblem<dim>>    elastic_problem;
-    std::unique_ptr<AdhesiveLaw>            adhesive_law;
-    std::unique_ptr<ContactQuadrature<dim>> quadrature;
-    std::unique_ptr<AdhesionIntegral<dim>>  adhesion_integral;
-    std::unique_ptr<Energy>                 energy;
-    double                                  seconds_for_mesh;
-    double                                  seconds_for_assembly;
+    dealii::Triangulation<dim>                         triangulation;
+    std::unique_ptr<ElasticProblem<dim>>               elastic_problem;
+    std::unique_ptr<AdhesiveLaw>                       adhesive_law;
+    std::unique_ptr<ContactQuadrature<dim>>            quadrature;
+    std::unique_ptr<AdhesionIntegral<dim>>             adhesion_integral;
+    std::unique_ptr<Objective<dealii::Vector<double>>> energy;
+    double                                             seconds_for_mesh;
+    double                                             seconds_for_assembly;
   };
 } // namespace Debond
 

@@ -2,6 +2,7 @@
 #ifndef debond_application_solve_h
 #define debond_application_solve_h
 
+#include <debond/application/method_choice.h>
 #include <debond/application/parameters.h>
 #include <debond/application/scene.h>
 #include <debond/optimization/majorise_minimise.h>
@@ -14,29 +15,6 @@
 
 namespace Debond
 {
-  /// The methods that a scene may name.
-  namespace SolverMethod
-  {
-    constexpr const char *automatic         = "automatic";
-    constexpr const char *euclidean_bundle  = "euclidean bundle";
-    constexpr const char *energy_bundle     = "energy bundle";
-    constexpr const char *majorise_minimise = "majorise minimise";
-  } // namespace SolverMethod
-
-
-
-  /// Which method solves the scene, and why it was chosen.
-  struct MethodChoice
-  {
-    std::string method;
-    std::string reason; ///< empty if the scene names the method
-  };
-
-  MethodChoice
-  choose_method(const Parameters &parameters);
-
-
-
   /// What every method reports.
   struct SolveResult
   {
@@ -57,6 +35,8 @@ namespace Debond
 
     double largest_qp_residual = 0.; ///< of bundle methods
 
+    unsigned int linear_iterations = 0; ///< of conjugate gradients
+
     /// Wall seconds by part.
     std::map<std::string, double> parts;
 
@@ -65,15 +45,20 @@ namespace Debond
     std::vector<MajoriseMinimiseIteration> majorise_history;
   };
 
-  /// Minimises the functional of the scene by the given method. Iterations are
-  /// printed to @p out unless the scene wants no machine details.
+  /// Minimises the functional of the scene, whose matrix must be stored as
+  /// matrix_storage() says, by the given method. Iterations are printed to
+  /// @p out unless the scene wants no machine details.
   template <int dim>
   SolveResult
-  solve(const std::string &method,
-        const Parameters  &parameters,
-        const Scene<dim>  &scene,
-        std::ostream      &out,
-        const bool         terminal);
+  solve(const MethodChoice &choice,
+        const Parameters   &parameters,
+        const Scene<dim>   &scene,
+        std::ostream       &out,
+        const bool          terminal);
+
+  /// How a method needs A.
+  MatrixStorage
+  matrix_storage(const MethodChoice &choice);
 } // namespace Debond
 
 #endif

@@ -39,11 +39,10 @@ namespace Debond
     subgradient(const dealii::Vector<double> &s,
                 dealii::Vector<double>       &xi) const override;
 
-    /// Adds the second derivative of the law's branches at s, a matrix that
+    /// The second derivative of the law's branches at s, a matrix that
     /// couples the nodes of a face (diagonal for nodal quadrature).
-    void
-    add_curvature(const dealii::Vector<double> &s,
-                  dealii::FullMatrix<double>   &matrix) const override;
+    Eigen::SparseMatrix<double>
+    curvature(const dealii::Vector<double> &s) const override;
 
     /// For each node the forces that the law allows: the quadrature of the
     /// Goldstein intervals of j_1 over s +- delta. With delta = 0 this is

@@ -7,6 +7,13 @@
 
 namespace Debond
 {
+  /// The constraint v_nu <= 0 as bounds on degrees of freedom.
+  template <int dim>
+  UpperBounds
+  unilateral_constraint(const ContactBoundary<dim> &boundary);
+
+
+
   /**
    * The paper's functional (Problem M_Vn)
    *
@@ -34,10 +41,6 @@ namespace Debond
     /// boundary.
     std::unique_ptr<LineRestriction<VectorType>>
     along(const VectorType &x, const VectorType &d) const override;
-
-    /// The constraint v_nu <= 0 as bounds on degrees of freedom.
-    UpperBounds
-    unilateral_constraint() const;
 
     /// The normal displacements s of the contact nodes.
     dealii::Vector<double>

@@ -11,6 +11,7 @@
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/sparsity_pattern.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/vector.h>
 
 #include <debond/contact/boundary.h>
@@ -19,6 +20,7 @@
 #include <debond/elasticity/rigid_motions.h>
 
 #include <array>
+#include <memory>
 #include <set>
 #include <vector>
 
@@ -33,6 +35,16 @@ namespace Debond
     /// The paper's simplification (7), u_tau = 0 on Gamma_C; otherwise
     /// sigma_tau = 0 there.
     bool tangential_displacement_fixed = true;
+  };
+
+
+
+  /// Where A is kept: as direct factorisations and the bundle method read it,
+  /// or as Trilinos' multigrid does.
+  enum class MatrixStorage
+  {
+    serial,
+    trilinos
   };
 
 
@@ -71,7 +83,9 @@ namespace Debond
     /// Computes A and f. Throws std::invalid_argument if the material is not
     /// valid or a load is not, see load_vector(). May be called again.
     void
-    assemble(const Material &material, const Loads<dim> &loads);
+    assemble(const Material     &material,
+             const Loads<dim>   &loads,
+             const MatrixStorage storage = MatrixStorage::serial);
 
     const dealii::DoFHandler<dim> &
     dof_handler() const;
@@ -79,8 +93,13 @@ namespace Debond
     const dealii::Mapping<dim> &
     mapping() const;
 
+    /// A, if its storage is serial.
     const dealii::SparseMatrix<double> &
     matrix() const;
+
+    /// A, if its storage is Trilinos'.
+    const dealii::TrilinosWrappers::SparseMatrix &
+    trilinos_matrix() const;
 
     const dealii::Vector<double> &
     load() const;
@@ -103,6 +122,16 @@ namespace Debond
     /// The Cartesian components of a vector of unknowns, at every vertex.
     dealii::Vector<double>
     cartesian_displacement(const dealii::Vector<double> &u) const;
+
+    /// The vector of unknowns of a displacement that is given by its Cartesian
+    /// components; constrained degrees of freedom are zero.
+    dealii::Vector<double>
+    unknowns(const dealii::Vector<double> &cartesian_displacement) const;
+
+    /// Translations and rotations about the origin in the unknowns, zero where
+    /// constrained: the near null space of A.
+    std::vector<dealii::Vector<double>>
+    rigid_body_modes() const;
 
     /**
      * A u - f at every degree of freedom, the constrained ones included, by a
@@ -162,6 +191,10 @@ namespace Debond
                           const double               diameter,
                           std::vector<Support<dim>> &supports);
 
+    template <typename MatrixType>
+    void
+    add_cell_matrices(MatrixType &matrix) const;
+
     /// Cartesian forces as forces in the unknowns' frames.
     dealii::Vector<double>
     in_frames(const dealii::Vector<double> &forces) const;
@@ -181,9 +214,12 @@ namespace Debond
     Material                        elastic_material;
     dealii::SymmetricTensor<4, dim> stiffness;
 
+    MatrixStorage                storage = MatrixStorage::serial;
     dealii::SparsityPattern      sparsity;
     dealii::SparseMatrix<double> system_matrix;
-    dealii::Vector<double>       system_load;
+    // An empty one would need MPI already.
+    std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix> distributed_matrix;
+    dealii::Vector<double>                                  system_load;
 
     /// Cartesian, at every degree of freedom, the constrained ones included.
     dealii::Vector<double> applied_forces;

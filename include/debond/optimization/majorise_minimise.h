@@ -2,7 +2,7 @@
 #ifndef debond_optimization_majorise_minimise_h
 #define debond_optimization_majorise_minimise_h
 
-#include <debond/optimization/piecewise_quadratic.h>
+#include <debond/optimization/majorant_problem.h>
 #include <debond/optimization/status.h>
 
 #include <functional>
@@ -24,11 +24,12 @@ namespace Debond
 
   struct MajoriseMinimiseIteration
   {
-    unsigned int iteration;        ///< from 1
-    double       functional;       ///< 1/2 s'S s - g's + Phi(s)
-    double       residual;         ///< of the optimality conditions, relative
-    unsigned int active_set_steps; ///< factorisations of the inner QP
-    unsigned int n_active;         ///< bounds that are active
+    unsigned int iteration;         ///< from 1
+    double       functional;        ///< J
+    double       residual;          ///< of the optimality conditions, relative
+    unsigned int active_set_steps;  ///< linear systems of the inner QP
+    unsigned int linear_iterations; ///< for them, 0 if they were factorised
+    unsigned int n_active;          ///< bounds that are active
   };
 
 
@@ -49,16 +50,13 @@ namespace Debond
 
 
   /**
-   * Majorise-minimise for
-   *
-   *     min 1/2 s'S s - g's + Phi(s)  subject to  s <= 0,
-   *
-   * S symmetric positive definite: Phi is replaced by its branch at the
-   * current s, which lies above it, and the convex problem that is left is
-   * solved exactly by active sets. The functional never rises; as there are
-   * finitely many branches, the method ends at a point that is the minimum of
-   * its own majorant and so satisfies the optimality conditions (for
-   * quadrature points that move with s it converges in the limit).
+   * Majorise-minimise for the functional of a MajorantProblem: Phi is replaced
+   * by its branch at the current point, which lies above it, and the convex
+   * problem that is left is solved, exactly or until what its solver leaves is
+   * a tenth of the residual it started from. The functional never rises; as
+   * there are finitely many branches, the method ends at a point that is the
+   * minimum of its own majorant and so satisfies the optimality conditions
+   * (for quadrature points that move with s it converges in the limit).
    *
    * See Hunter, Lange, "A tutorial on MM algorithms", Amer. Statist. 58 (2004).
    */
@@ -69,13 +67,9 @@ namespace Debond
 
     explicit MajoriseMinimise(const MajoriseMinimiseParameters &parameters);
 
-    /// Improves s, which has to be <= 0.
+    /// Improves the problem's current point.
     MajoriseMinimiseResult
-    minimize(const dealii::FullMatrix<double> &S,
-             const dealii::Vector<double>     &g,
-             const PiecewiseQuadratic         &phi,
-             dealii::Vector<double>           &s,
-             const Monitor                    &monitor = {}) const;
+    minimize(MajorantProblem &problem, const Monitor &monitor = {}) const;
 
   private:
     MajoriseMinimiseParameters parameters;

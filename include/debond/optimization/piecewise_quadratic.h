@@ -2,8 +2,9 @@
 #ifndef debond_optimization_piecewise_quadratic_h
 #define debond_optimization_piecewise_quadratic_h
 
-#include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/vector.h>
+
+#include <Eigen/SparseCore>
 
 namespace Debond
 {
@@ -27,10 +28,9 @@ namespace Debond
     subgradient(const dealii::Vector<double> &s,
                 dealii::Vector<double>       &xi) const = 0;
 
-    /// Adds the second derivative of these branches, positive semidefinite.
-    virtual void
-    add_curvature(const dealii::Vector<double> &s,
-                  dealii::FullMatrix<double>   &matrix) const = 0;
+    /// The second derivative of these branches, positive semidefinite.
+    virtual Eigen::SparseMatrix<double>
+    curvature(const dealii::Vector<double> &s) const = 0;
   };
 } // namespace Debond
 

@@ -25,7 +25,8 @@ namespace Debond
     void
     report(const BundleIteration &iteration);
 
-    /// Iteration, functional, residual, factorisations and nodes in contact.
+    /// Iteration, functional, residual, linear systems, their iterations of
+    /// conjugate gradients, and nodes in contact.
     void
     report(const MajoriseMinimiseIteration &iteration);
 

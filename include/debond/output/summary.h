@@ -11,9 +11,10 @@ namespace Debond
   /// What a run reports, for the log and for summary.json.
   struct Summary
   {
-    std::string  scene;  ///< path of the .prm as given
-    std::string  method; ///< Solver/Method
-    std::string  status; ///< to_string(SolverStatus)
+    std::string  scene;         ///< path of the .prm as given
+    std::string  method;        ///< Solver/Method
+    std::string  linear_solver; ///< direct, multigrid or none
+    std::string  status;        ///< to_string(SolverStatus)
     std::string  message;
     unsigned int dimension        = 2;
     double       functional       = 0.;
@@ -23,6 +24,9 @@ namespace Debond
     unsigned int null_steps       = 0;
     double       stop_criterion   = 0.; ///< last v_k, or the relative residual
     double       largest_qp_residual      = 0.;
+    unsigned int linear_iterations        = 0;  ///< of conjugate gradients
+    double       memory_estimate          = 0.; ///< bytes, before the solve
+    double       peak_memory              = 0.; ///< bytes, of the whole program
     unsigned int cells                    = 0;
     unsigned int degrees_of_freedom       = 0; ///< free ones
     unsigned int degrees_of_freedom_paper = 0;

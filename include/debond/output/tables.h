@@ -30,7 +30,7 @@ namespace Debond
                 const std::string                  &file_name);
 
   /// The same for majorise-minimise: iteration, functional, residual,
-  /// active_set_steps, contact_nodes.
+  /// active_set_steps, linear_iterations, contact_nodes.
   void
   write_history(const std::vector<MajoriseMinimiseIteration> &history,
                 const std::string                            &file_name);

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_mesh_transfer_h
+#define debond_elasticity_mesh_transfer_h
+
+#include <deal.II/lac/vector.h>
+
+#include <debond/elasticity/crossed_mesh.h>
+#include <debond/elasticity/elastic_problem.h>
+
+namespace Debond
+{
+  /**
+   * The P1 displacement u of a problem on the crossed mesh of @p box, at the
+   * vertices of another mesh of the same body: a vector of unknowns of
+   * @p target, whose supports and frames may be others. On a mesh whose cells
+   * divide those of @p box the displacement is reproduced exactly (their P1
+   * spaces are nested) but for what the target's supports prescribe.
+   *
+   * @p box must be the one that the source's triangulation was made from.
+   */
+  template <int dim>
+  dealii::Vector<double>
+  interpolate_displacement(const BoxParameters          &box,
+                           const ElasticProblem<dim>    &source,
+                           const dealii::Vector<double> &u,
+                           const ElasticProblem<dim>    &target);
+} // namespace Debond
+
+#endif

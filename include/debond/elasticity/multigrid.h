@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_multigrid_h
+#define debond_elasticity_multigrid_h
+
+#include <deal.II/lac/trilinos_precondition.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/elasticity/elastic_problem.h>
+
+namespace Debond
+{
+  /**
+   * One V-cycle of smoothed aggregation (Trilinos ML) for A, with the rigid
+   * body modes as near null space and Chebyshev smoothers of degree 2, which
+   * keep it symmetric: a preconditioner for conjugate gradients.
+   *
+   * See Vanek, Mandel, Brezina, Computing 56 (1996).
+   */
+  class Multigrid
+  {
+  public:
+    /// Keeps a reference to the matrix of the problem, whose storage must be
+    /// Trilinos'.
+    template <int dim>
+    explicit Multigrid(const ElasticProblem<dim> &problem);
+
+    void
+    vmult(dealii::Vector<double> &dst, const dealii::Vector<double> &src) const;
+
+  private:
+    dealii::TrilinosWrappers::PreconditionAMG cycle;
+  };
+} // namespace Debond
+
+#endif

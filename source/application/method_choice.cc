@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/application/method_choice.h>
+#include <debond/application/scene_size.h>
+
+#include <iomanip>
+#include <sstream>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Above so many unknowns multigrid takes less time than a factorisation.
+    double
+    largest_direct(const unsigned int dimension)
+    {
+      return dimension == 2 ? 2e6 : 6e4;
+    }
+
+
+
+    std::string
+    in_gib(const double bytes)
+    {
+      std::ostringstream text;
+      text << std::setprecision(bytes < 100. * (1 << 30) ? 2 : 3)
+           << bytes / (1 << 30) << " GiB";
+      return text.str();
+    }
+
+
+
+    std::string
+    rounded(const double number)
+    {
+      std::ostringstream text;
+      text << std::setprecision(2) << number;
+      return text.str();
+    }
+
+
+
+    double
+    memory_limit(const Parameters &parameters)
+    {
+      return parameters.memory_limit > 0. ? parameters.memory_limit :
+                                            available_memory();
+    }
+  } // namespace
+
+
+
+  MethodChoice
+  choose_method(const Parameters &parameters)
+  {
+    const SceneSize    size          = scene_size(parameters);
+    const unsigned int dim           = parameters.dimension;
+    const double       limit         = memory_limit(parameters);
+    const double       direct_memory = memory_with_factorisation(size, dim);
+
+    MethodChoice choice = {parameters.method, parameters.linear_solver, "", 0.};
+    if (choice.method == SolverMethod::euclidean_bundle)
+      {
+        choice.linear_solver = LinearSolver::none;
+        choice.memory =
+          memory_with_bundle(size, dim, parameters.bundle.bundle_size);
+      }
+    else
+      {
+        if (choice.method == SolverMethod::automatic)
+          {
+            choice.method = SolverMethod::majorise_minimise;
+            choice.reason =
+              "it is exact after finitely many steps, at the price of about "
+              "one linear solve";
+          }
+        if (choice.method == SolverMethod::energy_bundle)
+          {
+            if (choice.linear_solver == LinearSolver::multigrid)
+              throw BadInput(
+                {parameters.scene +
+                 ": Solver/Method = energy bundle needs the Schur complement "
+                 "of a factorisation; Solver/Linear solver must be direct or "
+                 "automatic"});
+            choice.linear_solver = LinearSolver::direct;
+          }
+        else if (choice.linear_solver == LinearSolver::automatic)
+          {
+            choice.linear_solver = LinearSolver::direct;
+            std::string reason;
+            if (direct_memory > limit)
+              reason = "a factorisation would take about " +
+                       in_gib(direct_memory) + ", there are " + in_gib(limit);
+            else if (size.unknowns > largest_direct(dim))
+              reason = "a factorisation takes longer above " +
+                       rounded(largest_direct(dim)) + " unknowns in " +
+                       std::to_string(dim) + "D";
+            if (!reason.empty())
+              {
+                choice.linear_solver = LinearSolver::multigrid;
+                choice.reason += (choice.reason.empty() ? "" : "; ") +
+                                 ("by multigrid, since " + reason);
+              }
+          }
+        choice.memory = choice.linear_solver == LinearSolver::direct ?
+                          direct_memory :
+                          memory_with_multigrid(size, dim);
+      }
+
+    if (choice.memory > limit)
+      throw BadInput({parameters.scene + ": about " + rounded(size.unknowns) +
+                      " unknowns need about " + in_gib(choice.memory) +
+                      " of memory with " + choice.method +
+                      (choice.linear_solver == LinearSolver::none ?
+                         "" :
+                         " and the linear solver " + choice.linear_solver) +
+                      ", the limit is " + in_gib(limit) +
+                      "; try fewer Mesh/Cells" +
+                      (choice.linear_solver == LinearSolver::direct ?
+                         ", Solver/Linear solver = multigrid," :
+                         "") +
+                      " or a higher Solver/Memory limit"});
+    return choice;
+  }
+} // namespace Debond

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The condensed methods on whole scenes: the same steps in all units, and
+// stiff, weak, tough and brittle bonds. The values of J on the mesh 40x4 with
+// a = 69, 690 and 6900 are those of an independent code (with a = 690 and 6900
+// of the intact state, a local minimum); the two methods here differ in all but
+// the condensation, and both are checked against the contact law.
+
+#include <debond/application/parameters.h>
+#include <debond/application/scene.h>
+#include <debond/application/solve.h>
+#include <debond/output/verification.h>
+
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+
+using namespace Debond;
+
+namespace
+{
+  // Whether to print the figures behind the verdicts; any argument does it.
+  bool print_figures = false;
+
+  const char *
+  verdict(const bool good)
+  {
+    return good ? "yes" : "NO";
+  }
+
+
+
+  struct Run
+  {
+    SolveResult     result;
+    Verification<2> verification;
+  };
+
+
+
+  /// The paper's benchmark with other entries.
+  Run
+  run(const std::vector<std::string> &assignments)
+  {
+    ParameterTable table;
+    declare_parameters(table);
+    table.assign("Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)");
+    table.assign("Output/Machine details=false");
+    for (const std::string &assignment : assignments)
+      table.assign(assignment);
+    const Parameters   parameters = to_parameters("benchmark.prm", table);
+    const MethodChoice choice     = choose_method(parameters);
+    const Scene<2>     scene(parameters, matrix_storage(choice));
+    std::ostringstream log;
+    Run                run;
+    run.result = solve(choice, parameters, scene, log, false);
+    run.verification =
+      verify(scene.problem(), scene.adhesion(), scene.law(), run.result.u);
+    return run;
+  }
+
+
+
+  void
+  test_units(const std::string &method)
+  {
+    // E, a, M, loads in GPa and m, Pa and m, MPa and mm; energies per
+    // thickness are GN, N, N.
+    const std::vector<std::string> gpa = {"Solver/Method=" + method};
+    std::vector<std::string>       pa  = gpa;
+    pa.insert(pa.end(),
+              {"Material/Young modulus=69e9",
+               "Contact law/Bond stiffness=69e9",
+               "Loads/Traction top=0; if(x < 0.2, 0.69e9, -0.345e9)"});
+    std::vector<std::string> mpa = gpa;
+    mpa.insert(mpa.end(),
+               {"Mesh/Lengths=400, 40",
+                "Material/Young modulus=69e3",
+                "Contact law/Bond stiffness=69",
+                "Contact law/Bond threshold=2",
+                "Loads/Traction top=0; if(x < 200, 690, -345)"});
+
+    const Run  reference = run(gpa);
+    const auto history   = [](const Run &run) {
+      std::vector<double> values;
+      for (const auto &step : run.result.bundle_history)
+        values.push_back(step.functional);
+      for (const auto &step : run.result.majorise_history)
+        values.push_back(step.functional);
+      return values;
+    };
+    const std::vector<double> expected = history(reference);
+    for (const auto &[name, assignments, unit] :
+         {std::make_tuple("Pa and m", pa, 1e9),
+          std::make_tuple("MPa and mm", mpa, 1e9)})
+      {
+        const std::vector<double> values = history(run(assignments));
+        double                    error  = 0.;
+        for (unsigned int k = 0; k < std::min(values.size(), expected.size());
+             ++k)
+          error =
+            std::max(error, std::abs(values[k] / (unit * expected[k]) - 1.));
+        std::cout << method << " in " << name << ": same number of steps: "
+                  << verdict(values.size() == expected.size())
+                  << ", same values to 1e-10: " << verdict(error < 1e-10)
+                  << '\n';
+        if (print_figures)
+          std::cout << "  " << values.size() << " and " << expected.size()
+                    << " steps, " << error << '\n';
+      }
+  }
+
+
+
+  void
+  test_hard_laws(const std::string &cells)
+  {
+    for (const auto &[a, M] : {std::make_pair("69", "0.002"),
+                               {"6.9", "0.002"},
+                               {"690", "0.002"},
+                               {"6900", "0.002"},
+                               {"1e5", "2e-4"},
+                               {"69", "2e-4"},
+                               {"69", "0.01"}})
+      for (const std::string method : {"majorise minimise", "energy bundle"})
+        {
+          const Run r = run({"Solver/Method=" + method,
+                             "Mesh/Cells=" + cells,
+                             std::string("Contact law/Bond stiffness=") + a,
+                             std::string("Contact law/Bond threshold=") + M});
+          std::cout << std::setw(8) << cells << ", a = " << std::setw(4) << a
+                    << ", M = " << std::setw(5) << M << ", " << std::setw(17)
+                    << method << ": " << to_string(r.result.status)
+                    << ", at most 40 iterations: "
+                    << verdict(r.result.iterations <= 40) << ", law to 1e-9: "
+                    << verdict(r.verification.law_violation < 1e-9)
+                    << ", J = " << std::scientific << std::setprecision(10)
+                    << r.result.functional << std::defaultfloat << '\n';
+          if (print_figures)
+            std::cout << "  " << r.result.iterations << " iterations, "
+                      << r.verification.law_violation << '\n';
+        }
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *[])
+{
+  print_figures = argc > 1;
+  test_units("majorise minimise");
+  test_units("energy bundle");
+  test_hard_laws("40, 4");
+  test_hard_laws("160, 16");
+}

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What large scenes need: interpolation between crossed meshes, rigid body
+// modes, conjugate gradients with multigrid, and majorise-minimise on all
+// unknowns, against the condensed problem.
+
+#include <deal.II/base/function_parser.h>
+#include <deal.II/base/mpi.h>
+#include <deal.II/lac/solver_cg.h>
+
+#include <debond/contact/adhesion_integral.h>
+#include <debond/elasticity/condensation.h>
+#include <debond/elasticity/crossed_mesh.h>
+#include <debond/elasticity/elastic_problem.h>
+#include <debond/elasticity/mesh_transfer.h>
+#include <debond/elasticity/multigrid.h>
+#include <debond/elasticity/multigrid_problem.h>
+#include <debond/optimization/condensed_problem.h>
+#include <debond/optimization/majorise_minimise.h>
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+using namespace Debond;
+
+namespace
+{
+  // Whether to print the figures behind the verdicts; any argument does it.
+  bool print_figures = false;
+
+
+
+  void
+  check(const std::string &what, const double error, const double tolerance)
+  {
+    std::cout << "  " << what << " to " << tolerance << ": "
+              << (error <= tolerance ? "yes" : "NO") << '\n';
+    if (print_figures)
+      std::cout << "    " << error << '\n';
+  }
+
+
+
+  template <int dim>
+  struct Body
+  {
+    Body(const BoxParameters &box, const MatrixStorage storage)
+    {
+      make_box(box, mesh);
+      BoundaryConditions conditions;
+      conditions.clamped = {boundary_names<dim>().at("left"),
+                            boundary_names<dim>().at("right")};
+      conditions.contact = {boundary_names<dim>().at("bottom")};
+      problem = std::make_unique<ElasticProblem<dim>>(mesh, conditions);
+
+      // The paper's load, turned with the box.
+      const double      angle = box.rotation * dealii::numbers::PI / 180.;
+      const std::string along = "(" + std::to_string(std::cos(angle)) + "*x+" +
+                                std::to_string(std::sin(angle)) + "*y)";
+      const std::string q    = "if(" + along + "<0.2,0.69,-0.345)";
+      std::string expression = std::to_string(-std::sin(angle)) + "*" + q +
+                               ";" + std::to_string(std::cos(angle)) + "*" + q +
+                               (dim == 3 ? ";0" : "");
+      auto load = std::make_shared<dealii::FunctionParser<dim>>(dim);
+      load->initialize(dim == 2 ? "x,y" : "x,y,z", expression, {});
+      Loads<dim> loads;
+      loads.tractions[boundary_names<dim>().at("top")] = load;
+      Material material;
+      material.young_modulus = 69.;
+      material.poisson_ratio = 0.33;
+      problem->assemble(material, loads, storage);
+    }
+
+    dealii::Triangulation<dim>           mesh;
+    std::unique_ptr<ElasticProblem<dim>> problem;
+  };
+
+
+
+  BoxParameters
+  box_of(const unsigned int n, const double rotation)
+  {
+    BoxParameters box;
+    box.cells    = {{10 * n, n, n}};
+    box.rotation = rotation;
+    return box;
+  }
+
+
+
+  /// A P1 field and its interpolant on a mesh of twice as many cells are the
+  /// same function: same energy, and the same values at common vertices.
+  template <int dim>
+  void
+  test_interpolation(const double rotation)
+  {
+    const BoxParameters coarse_box = box_of(1, rotation);
+    const BoxParameters fine_box   = box_of(2, rotation);
+    const Body<dim>     coarse(coarse_box, MatrixStorage::serial);
+    const Body<dim>     fine(fine_box, MatrixStorage::serial);
+
+    dealii::Vector<double> u(coarse.problem->n_dofs());
+    for (unsigned int i = 0; i < u.size(); ++i)
+      u(i) = coarse.problem->is_constrained(i) ? 0. : std::sin(1. + i * i);
+    const dealii::Vector<double> v =
+      interpolate_displacement(coarse_box, *coarse.problem, u, *fine.problem);
+    const double energy = coarse.problem->matrix().matrix_norm_square(u);
+    check("same energy",
+          std::abs(fine.problem->matrix().matrix_norm_square(v) / energy - 1.),
+          1e-12);
+    check("same work",
+          std::abs(fine.problem->load() * v - coarse.problem->load() * u) /
+            (coarse.problem->load().l2_norm() * u.l2_norm()),
+          1e-4);
+
+    const dealii::Vector<double> back =
+      interpolate_displacement(fine_box, *fine.problem, v, *coarse.problem);
+    dealii::Vector<double> difference = back;
+    difference -= u;
+    check("values at the vertices of both",
+          difference.linfty_norm() / u.linfty_norm(),
+          1e-12);
+  }
+
+
+
+  template <int dim>
+  void
+  test_multigrid(const unsigned int n, const double rotation)
+  {
+    const BoxParameters box = box_of(n, rotation);
+    const Body<dim>     body(box, MatrixStorage::trilinos);
+    const Body<dim>     serial(box, MatrixStorage::serial);
+
+    // Modes are in the null space except next to the supports: the elastic
+    // energy of a mode that is cut off there is no larger than that of a
+    // vector of its size, which would be about n^2 dim times larger.
+    const auto            &A = body.problem->trilinos_matrix();
+    dealii::Vector<double> product(body.problem->n_dofs());
+    double                 rows_with_force = 0.;
+    for (const auto &mode : body.problem->rigid_body_modes())
+      {
+        A.vmult(product, mode);
+        unsigned int count = 0;
+        for (const double entry : product)
+          count += std::abs(entry) > 1e-10 * A.frobenius_norm();
+        rows_with_force =
+          std::max(rows_with_force, 1. * count / product.size());
+      }
+    check("part of the rows where a mode meets a force", rows_with_force, 0.5);
+
+    const Multigrid        multigrid(*body.problem);
+    dealii::Vector<double> u(body.problem->n_dofs());
+    dealii::SolverControl  control(60, 1e-10 * body.problem->load().l2_norm());
+    dealii::SolverCG<dealii::Vector<double>>(control).solve(
+      A, u, body.problem->load(), multigrid);
+    std::cout << "  conjugate gradients within 60 iterations: "
+              << (control.last_step() <= 60 ? "yes" : "NO") << '\n';
+    if (print_figures)
+      std::cout << "    " << control.last_step() << '\n';
+
+    // The same minimum as the condensed problem's, from its neighbourhood.
+    ContactLawParameters law_parameters;
+    law_parameters.bond_stiffness = 69.;
+    law_parameters.bond_threshold = 0.002;
+    const auto law                = make_law(law_parameters);
+    for (const std::string rule : {"nodal", "gauss 2"})
+      {
+        const ContactQuadrature<dim> quadrature(
+          ContactQuadratureParameters::parse(rule), law->kinks());
+        const AdhesionIntegral<dim> adhesion(serial.problem->contact_boundary(),
+                                             *law,
+                                             quadrature);
+        std::vector<unsigned int>   normals;
+        for (const auto &node : serial.problem->contact_boundary().nodes)
+          normals.push_back(node.dof);
+        const Condensation     condensed(serial.problem->matrix(),
+                                     serial.problem->load(),
+                                     normals,
+                                     [&](const unsigned int i) {
+                                       return serial.problem->is_constrained(i);
+                                     });
+        dealii::Vector<double> s(normals.size());
+        CondensedProblem       small(condensed.schur_complement(),
+                               condensed.load(),
+                               adhesion,
+                               s);
+        const auto             exact = MajoriseMinimise({}).minimize(small);
+        const double J = exact.functional + condensed.energy_at_zero();
+
+        u = 0.;
+        MultigridProblem<dim> large(*body.problem, adhesion, multigrid, u);
+        const auto            iterated = MajoriseMinimise({}).minimize(large);
+        std::cout << "  " << rule << ": "
+                  << to_string(exact.status) + ", " + to_string(iterated.status)
+                  << '\n';
+        check("functional", std::abs(iterated.functional / J - 1.), 1e-11);
+        dealii::Vector<double> difference = condensed.expand(s);
+        const double           size       = difference.linfty_norm();
+        difference -= u;
+        check("displacement", difference.linfty_norm() / size, 1e-8);
+        double rise = 0.;
+        for (unsigned int k = 1; k < iterated.history.size(); ++k)
+          rise = std::max(rise,
+                          iterated.history[k].functional -
+                            iterated.history[k - 1].functional);
+        check("no rise, relative", rise / std::abs(J), 1e-12);
+      }
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *argv[])
+{
+  print_figures = argc > 1;
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+
+  for (const double rotation : {0., 30.})
+    {
+      std::cout << "2D, turned by " << rotation << '\n';
+      test_interpolation<2>(rotation);
+      test_multigrid<2>(8, rotation);
+      std::cout << "3D, turned by " << rotation << '\n';
+      test_interpolation<3>(rotation);
+      test_multigrid<3>(2, rotation);
+    }
+}
