@@ -21,9 +21,10 @@ namespace Debond
     std::string
     in_gib(const double bytes)
     {
+      const double       gib = bytes / (1 << 30);
       std::ostringstream text;
-      text << std::setprecision(bytes < 100. * (1 << 30) ? 2 : 3)
-           << bytes / (1 << 30) << " GiB";
+      text << std::fixed << std::setprecision(gib < 10. ? 1 : 0) << gib
+           << " GiB";
       return text.str();
     }
 
