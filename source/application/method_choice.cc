@@ -13,7 +13,7 @@ namespace Debond
     double
     largest_direct(const unsigned int dimension)
     {
-      return dimension == 2 ? 2e6 : 6e4;
+      return dimension == 2 ? 3e6 : 1.5e5;
     }
 
 

@@ -88,12 +88,14 @@ namespace Debond
   double
   memory_with_factorisation(const SceneSize &size, const unsigned int dimension)
   {
-    // Nested dissection's growth of the factor: n log n in 2D, n^(4/3) in 3D.
+    // The fill of minimum degree orderings: about n log n in 2D, n^(4/3) in
+    // 3D.
     const double n = size.unknowns;
     const double factor =
-      dimension == 2 ? 32. * n * std::log2(n) : 90. * std::pow(n, 4. / 3.);
+      dimension == 2 ? 29. * n * std::log2(n) : 100. * std::pow(n, 4. / 3.);
     const double dense = 4. * 8. * size.contact_nodes * size.contact_nodes;
-    return memory_of_program + 1000. * n + factor + dense;
+    return memory_of_program + (dimension == 2 ? 900. : 600.) * n + factor +
+           dense;
   }
 
 
@@ -101,7 +103,7 @@ namespace Debond
   double
   memory_with_multigrid(const SceneSize &size, const unsigned int dimension)
   {
-    return memory_of_program + (dimension == 2 ? 1500. : 3000.) * size.unknowns;
+    return memory_of_program + (dimension == 2 ? 1700. : 4600.) * size.unknowns;
   }
 
 
