@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/application/command_line.h>
+#include <debond/study/benchmarks.h>
 
 #include <exception>
 #include <iostream>
@@ -9,7 +10,12 @@ main(int argc, char *argv[])
 {
   try
     {
-      return static_cast<int>(Debond::execute_command_line(argc, argv));
+      return static_cast<int>(Debond::execute_command_line(
+        argc,
+        argv,
+        {{"benchmarks",
+          "measure what the JSON file lists, see prm/benchmarks/",
+          Debond::run_benchmarks}}));
     }
   catch (const std::exception &error)
     {

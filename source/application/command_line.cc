@@ -39,7 +39,7 @@ namespace Debond
 
 
     po::options_description
-    visible_options()
+    visible_options(const std::vector<FileCommand> &commands)
     {
       po::options_description options("Options");
       options.add_options()                              //
@@ -53,6 +53,10 @@ namespace Debond
          po::value<std::vector<std::string>>()->value_name(
            "\"SECTION/PARAMETER=VALUE\""),
          "give a parameter another value than the scene; can be repeated");
+      for (const FileCommand &command : commands)
+        options.add_options()(command.name.c_str(),
+                              po::value<std::string>()->value_name("FILE"),
+                              command.documentation.c_str());
       return options;
     }
 
@@ -60,9 +64,12 @@ namespace Debond
 
     /// Throws BadInput.
     po::variables_map
-    parse(const int argc, const char *const argv[])
+    parse(const int                      argc,
+          const char *const              argv[],
+          const po::options_description &visible)
     {
-      po::options_description all = visible_options();
+      po::options_description all;
+      all.add(visible);
       all.add_options()("scene", po::value<std::string>());
       po::positional_options_description positional;
       positional.add("scene", 1);
@@ -106,11 +113,13 @@ namespace Debond
 
 
     ExitCode
-    execute(const po::variables_map &options)
+    execute(const po::variables_map        &options,
+            const po::options_description  &visible,
+            const std::vector<FileCommand> &commands)
     {
       if (options.count("help") > 0)
         {
-          std::cout << usage << visible_options() << exit_codes;
+          std::cout << usage << visible << exit_codes;
           return ExitCode::success;
         }
       if (options.count("version") > 0)
@@ -120,6 +129,10 @@ namespace Debond
                     << "\nbuild type " << build_type() << std::endl;
           return ExitCode::success;
         }
+
+      for (const FileCommand &command : commands)
+        if (options.count(command.name) > 0)
+          return command.execute(options[command.name].as<std::string>());
 
       std::vector<std::string> assignments;
       if (options.count("set") > 0)
@@ -155,7 +168,9 @@ namespace Debond
 
 
   ExitCode
-  execute_command_line(const int argc, const char *const argv[])
+  execute_command_line(const int                       argc,
+                       const char *const               argv[],
+                       const std::vector<FileCommand> &commands)
   {
     // The problem is solved on one core; more threads of deal.II's vector
     // operations would only change rounding.
@@ -163,7 +178,8 @@ namespace Debond
 
     try
       {
-        return execute(parse(argc, argv));
+        const po::options_description visible = visible_options(commands);
+        return execute(parse(argc, argv, visible), visible, commands);
       }
     catch (const BadInput &error)
       {

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The linear solves that contact solves are measured against.
+
+#include <deal.II/base/function.h>
+#include <deal.II/base/mpi.h>
+
+#include <debond/elasticity/crossed_mesh.h>
+#include <debond/study/linear_baselines.h>
+
+#include <iostream>
+#include <memory>
+
+using namespace Debond;
+
+namespace
+{
+  const char *
+  verdict(const bool good)
+  {
+    return good ? "yes" : "NO";
+  }
+
+
+
+  /// |A u - f| / |f|.
+  template <int dim>
+  double
+  residual(const ElasticProblem<dim> &problem, const dealii::Vector<double> &u)
+  {
+    dealii::Vector<double> r(u.size());
+    return problem.matrix().residual(r, u, problem.load()) /
+           problem.load().l2_norm();
+  }
+
+
+
+  template <int dim>
+  void
+  test(const BoxParameters &box,
+       const bool           tangential_displacement_fixed,
+       const unsigned int   most_iterations)
+  {
+    dealii::Triangulation<dim> mesh;
+    make_box(box, mesh);
+    BoundaryConditions conditions;
+    conditions.clamped = {boundary_names<dim>().at("left")};
+    conditions.contact = {boundary_names<dim>().at("bottom")};
+    conditions.tangential_displacement_fixed = tangential_displacement_fixed;
+    ElasticProblem<dim> problem(mesh, conditions);
+    Material            material;
+    material.young_modulus = 69.;
+    material.hypothesis    = Material::Hypothesis::plane_strain;
+    Loads<dim> loads;
+    loads.tractions[boundary_names<dim>().at("top")] =
+      std::make_shared<dealii::Functions::ConstantFunction<dim>>(0.69, dim);
+    problem.assemble(material, loads, MatrixStorage::trilinos);
+    const LinearSolve iterative = solve_by_multigrid(problem);
+    problem.assemble(material, loads);
+    const LinearSolve direct =
+      solve_by_cholesky(problem.matrix(), problem.load());
+    dealii::Vector<double> difference = direct.u;
+    difference -= iterative.u;
+    const bool few = iterative.iterations <= most_iterations;
+    std::cout << "  residuals below 5e-10: "
+              << verdict(residual(problem, direct.u) < 5e-10) << ", "
+              << verdict(residual(problem, iterative.u) < 5e-10)
+              << "; solutions agree to 1e-9: "
+              << verdict(difference.l2_norm() < 1e-9 * direct.u.l2_norm())
+              << "; at most " << most_iterations
+              << " CG steps: " << verdict(few);
+    if (!few)
+      std::cout << ", " << iterative.iterations;
+    std::cout << std::endl;
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *argv[])
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+
+  BoxParameters box;
+  box.cells = {{160, 16, 1}};
+  std::cout << "2D" << std::endl;
+  test<2>(box, true, 34);
+  std::cout << "2D, turned, free to slide" << std::endl;
+  box.rotation = 30.;
+  test<2>(box, false, 34);
+
+  std::cout << "3D, turned, free to slide" << std::endl;
+  box.cells = {{20, 2, 2}};
+  test<3>(box, false, 34);
+}
