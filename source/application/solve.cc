@@ -293,7 +293,15 @@ namespace Debond
       result.parts["coarser meshes"] = timer.wall_time();
 
       timer.restart();
-      const Multigrid multigrid(scene.problem());
+      // Most of the nodes that are in contact on the coarser mesh will be here.
+      // To know them saves a third of the iterations in 2D (640x64), but costs
+      // a quarter more in 3D (80x8x8), where few aggregates lie inside.
+      std::vector<dealii::types::global_dof_index> held;
+      if (dim == 2)
+        for (const auto &node : scene.problem().contact_boundary().nodes)
+          if (result.u(node.dof) == 0.)
+            held.push_back(node.dof);
+      const Multigrid multigrid(scene.problem(), held);
       result.parts["multigrid setup"] = timer.wall_time();
 
       timer.restart();

@@ -10,12 +10,15 @@
 namespace Debond
 {
   template <int dim>
-  Multigrid::Multigrid(const ElasticProblem<dim> &problem)
+  Multigrid::Multigrid(const ElasticProblem<dim> &problem,
+                       const std::vector<dealii::types::global_dof_index> &held)
   {
     // ML reads the modes one after the other from a plain array, during the
     // initialisation only.
-    const std::vector<dealii::Vector<double>> modes =
-      problem.rigid_body_modes();
+    std::vector<dealii::Vector<double>> modes = problem.rigid_body_modes();
+    for (dealii::Vector<double> &mode : modes)
+      for (const dealii::types::global_dof_index i : held)
+        mode(i) = 0.;
     std::vector<double> near_null_space;
     near_null_space.reserve(modes.size() * problem.n_dofs());
     for (const dealii::Vector<double> &mode : modes)
@@ -47,6 +50,10 @@ namespace Debond
 
 
 
-  template Multigrid::Multigrid(const ElasticProblem<2> &);
-  template Multigrid::Multigrid(const ElasticProblem<3> &);
+  template Multigrid::Multigrid(
+    const ElasticProblem<2> &,
+    const std::vector<dealii::types::global_dof_index> &);
+  template Multigrid::Multigrid(
+    const ElasticProblem<3> &,
+    const std::vector<dealii::types::global_dof_index> &);
 } // namespace Debond

@@ -20,9 +20,12 @@ namespace Debond
   {
   public:
     /// Keeps a reference to the matrix of the problem, whose storage must be
-    /// Trilinos'.
+    /// Trilinos'. The cycle is meant for systems in which the degrees of
+    /// freedom @p held are zero too: there the coarse spaces vanish.
     template <int dim>
-    explicit Multigrid(const ElasticProblem<dim> &problem);
+    explicit Multigrid(
+      const ElasticProblem<dim>                          &problem,
+      const std::vector<dealii::types::global_dof_index> &held = {});
 
     void
     vmult(dealii::Vector<double> &dst, const dealii::Vector<double> &src) const;
