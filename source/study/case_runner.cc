@@ -47,7 +47,7 @@ namespace Debond
       std::filesystem::create_directories(one.directory);
       // A case that ends before it writes anything must not inherit this.
       std::filesystem::remove(one.directory + "/summary.json");
-      std::vector<std::string> command = {own_program(), scene};
+      std::vector<std::string> command = {own_program, scene};
       for (const std::string &setting : one.settings)
         {
           command.emplace_back("--set");

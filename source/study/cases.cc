@@ -57,6 +57,7 @@ namespace Debond
         {
           const Parameters parameters = to_parameters(study.scene, table);
           one.effective_scene         = parameters.effective_scene;
+          one.law                     = parameters.law;
           one.cell_edge = parameters.box.lengths[0] / parameters.box.cells[0];
         }
       catch (const BadInput &error)

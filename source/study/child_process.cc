@@ -10,7 +10,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
 
 namespace Debond
@@ -122,13 +121,5 @@ namespace Debond
       ending = "";
     else
       ending = "exit code " + std::to_string(WEXITSTATUS(wait_status));
-  }
-
-
-
-  std::string
-  own_program()
-  {
-    return std::filesystem::read_symlink("/proc/self/exe").string();
   }
 } // namespace Debond

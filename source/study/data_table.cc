@@ -119,7 +119,7 @@ namespace Debond
 
 
 
-    /// As deal.II has it; an empty cell would be a column less in its text.
+    /// As deal.II has it, which prints an empty text as two quotation marks.
     dealii::TableHandler
     table_handler(const std::vector<std::string>       &titles,
                   const std::vector<unsigned int>      &digits,
@@ -134,8 +134,10 @@ namespace Debond
         }
       for (const auto &row : rows)
         for (std::size_t i = 0; i < titles.size(); ++i)
-          handler.add_value(escape(titles[i]),
-                            escape(cell_text(row[i], digits[i])));
+          {
+            const std::string text = escape(cell_text(row[i], digits[i]));
+            handler.add_value(escape(titles[i]), text.empty() ? " " : text);
+          }
       return handler;
     }
   } // namespace
@@ -209,7 +211,8 @@ namespace Debond
   DataTable::write_latex(const std::string &file_name) const
   {
     write_atomically(file_name, [&](std::ostream &out) {
-      table_handler(titles, digits, rows, escaped_for_latex).write_tex(out);
+      table_handler(titles, digits, rows, escaped_for_latex)
+        .write_tex(out, false);
     });
   }
 } // namespace Debond

@@ -3,7 +3,7 @@
 #include <debond/study/child_process.h>
 #include <debond/study/gnuplot.h>
 
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 
@@ -27,6 +27,16 @@ namespace Debond
 
 
 
+    /// Whether a point has logarithms where they are needed.
+    bool
+    is_drawn(const Plot &plot, const std::pair<double, double> &point)
+    {
+      return (!plot.log_x || point.first > 0.) &&
+             (!plot.log_y || point.second > 0.);
+    }
+
+
+
     void
     write_data(const Plot &plot, std::ostream &out)
     {
@@ -34,10 +44,9 @@ namespace Debond
       for (const Curve &curve : plot.curves)
         {
           out << "# " << curve.title << '\n';
-          for (const auto &[x, y] : curve.points)
-            // What a logarithm cannot show is left out, as gnuplot would warn.
-            if ((!plot.log_x || x > 0.) && (!plot.log_y || y > 0.))
-              out << x << ' ' << y << '\n';
+          for (const auto &point : curve.points)
+            if (is_drawn(plot, point))
+              out << point.first << ' ' << point.second << '\n';
           // An empty block would not be counted.
           out << "nan nan\n\n\n";
         }
@@ -48,12 +57,16 @@ namespace Debond
     void
     write_script(const Plot &plot, std::ostream &out)
     {
+      std::size_t longest_title = 0;
+      for (const Curve &curve : plot.curves)
+        longest_title = std::max(longest_title, curve.title.size());
       out << "# Draws " << plot.name << ".png and " << plot.name
           << ".svg: gnuplot " << plot.name << ".gp\n"
           << "set terminal pngcairo size 960,540 font 'sans,11'\n"
           << "set output '" << plot.name << ".png'\n"
           << "set grid lc 'gray80'\n"
-          << "set key outside right top\n"
+          << "set key outside " << (longest_title > 20 ? "below" : "right top")
+          << "\n"
           << "set xlabel " << quoted(plot.x_label) << '\n'
           << "set ylabel " << quoted(plot.y_label) << '\n';
       for (const auto &[axis, is_log] :
@@ -61,20 +74,41 @@ namespace Debond
         if (is_log)
           out << "set logscale " << axis << "\nset format " << axis
               << " '10^{%L}'\n";
+      unsigned int colour = 0;
       for (std::size_t i = 0; i < plot.curves.size(); ++i)
-        out << (i == 0 ? "plot " : ", \\\n     ") << "'" << plot.name
-            << ".dat' index " << i << " with " << plot.curves[i].style << " lc "
-            << i % n_colours + 1
-            << (plot.curves[i].style == "points" ?
-                  " pt 7 ps 0.7" :
-                  " lw 1.5 dt " + std::to_string(i / n_colours + 1))
-            << " title " << quoted(plot.curves[i].title);
+        {
+          const Curve &curve = plot.curves[i];
+          if (!curve.belongs_to_previous)
+            ++colour;
+          out << (i == 0 ? "plot " : ", \\\n     ") << "'" << plot.name
+              << ".dat' index " << i << " with " << curve.style << " lc "
+              << (colour - 1) % n_colours + 1;
+          if (curve.style == "points")
+            out << " pt 7 ps 0.7";
+          else
+            out << " lw 1.5 dt "
+                << (curve.belongs_to_previous ? 2 :
+                                                (colour - 1) / n_colours + 1);
+          out << " title " << quoted(curve.title);
+        }
       out
         << "\nset terminal svg size 960,540 dynamic font 'sans,11' background "
            "rgb 'white'\n"
         << "set output '" << plot.name << ".svg'\nreplot\n";
     }
   } // namespace
+
+
+
+  bool
+  has_points(const Plot &plot)
+  {
+    for (const Curve &curve : plot.curves)
+      for (const auto &point : curve.points)
+        if (is_drawn(plot, point))
+          return true;
+    return false;
+  }
 
 
 

@@ -8,9 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <functional>
 #include <map>
-#include <stdexcept>
 
 namespace Debond
 {
@@ -113,7 +111,9 @@ namespace Debond
           plot.curves.push_back(error_curve(row));
 
           Curve line{"k^" + std::to_string(std::lround(row.rate->law.exponent)),
-                     {}};
+                     {},
+                     "lines",
+                     true};
           for (const double k : {row.rate->first, row.rate->last})
             line.points.emplace_back(k,
                                      row.rate->law.factor *
@@ -125,20 +125,28 @@ namespace Debond
 
 
 
-    /// The sweep that the x axis shows: the last one over positive numbers.
+    bool
+    has_positive_numbers(const Sweep &sweep)
+    {
+      return std::all_of(sweep.values.begin(),
+                         sweep.values.end(),
+                         [](const std::string &value) {
+                           double number;
+                           return read_number(value, number) && number > 0.;
+                         });
+    }
+
+
+
+    /// The sweep that the x axis shows: the last one over positive numbers; as
+    /// many as there are sweeps if there is none.
     std::size_t
     axis_sweep(const StudyParameters &study)
     {
       for (std::size_t i = study.sweeps.size(); i-- > 0;)
-        if (std::all_of(study.sweeps[i].values.begin(),
-                        study.sweeps[i].values.end(),
-                        [](const std::string &value) {
-                          double number;
-                          return read_number(value, number) && number > 0.;
-                        }))
+        if (has_positive_numbers(study.sweeps[i]))
           return i;
-      throw std::invalid_argument(
-        "the plots steps and iterations need a sweep over positive numbers");
+      return study.sweeps.size();
     }
 
 
@@ -185,9 +193,7 @@ namespace Debond
     {
       Plot plot{"steps",
                 "Kinds of steps.",
-                view.study.sweeps.empty() ?
-                  "" :
-                  view.study.sweeps[axis_sweep(view.study)].label,
+                view.study.sweeps[axis_sweep(view.study)].label,
                 "steps",
                 true};
       for (const char *kind : {"long", "short", "null"})
@@ -205,9 +211,7 @@ namespace Debond
     {
       Plot plot{"iterations",
                 "Iterations until the method stops.",
-                view.study.sweeps.empty() ?
-                  "" :
-                  view.study.sweeps[axis_sweep(view.study)].label,
+                view.study.sweeps[axis_sweep(view.study)].label,
                 "iterations",
                 true,
                 true};
@@ -224,7 +228,7 @@ namespace Debond
                 "The value that needs the fewest iterations, over the edge h "
                  "of the cells, with the fitted power of h.",
                 "h",
-                view.study.sweeps.size() > 1 ? view.study.sweeps[1].label : "",
+                view.study.sweeps[1].label,
                 true,
                 true};
       Curve points{"fewest iterations", {}, "points"};
@@ -287,7 +291,9 @@ namespace Debond
                  const std::string &y,
                  const std::string &style)
     {
-      Plot plot{name, caption, x, y};
+      std::string y_label = y;
+      std::replace(y_label.begin(), y_label.end(), '_', ' ');
+      Plot plot{name, caption, x, y == "u_nu" ? y : y_label};
       for (const StudyRow &row : view.rows)
         if (row.result.has_results())
           plot.curves.push_back(
@@ -297,11 +303,97 @@ namespace Debond
 
 
 
+    Plot
+    displacement_plot(const StudyView &view)
+    {
+      return profile_plot(view,
+                          "displacement",
+                          "Normal displacement of the contact boundary; "
+                          "negative: lifted off.",
+                          "x",
+                          "u_nu",
+                          "lines");
+    }
+
+
+
+    Plot
+    force_plot(const StudyView &view)
+    {
+      return profile_plot(view,
+                          "force",
+                          "Normal force density of the contact boundary; "
+                          "positive: pressed, negative: held.",
+                          "x",
+                          "normal_force_density",
+                          "linespoints pt 7 ps 0.5");
+    }
+
+
+
+    Plot
+    law_plot(const StudyView &view)
+    {
+      Plot plot =
+        profile_plot(view,
+                     "law",
+                     "Normal force density of the contact nodes over their "
+                     "normal displacement, on the graph of the contact law.",
+                     "u_nu",
+                     "normal_force_density",
+                     "points");
+      double least_u = 0., largest_force = 0.;
+      for (const Curve &curve : plot.curves)
+        for (const auto &[u, force] : curve.points)
+          {
+            least_u       = std::min(least_u, u);
+            largest_force = std::max(largest_force, force);
+          }
+      const double a = view.rows.front().one->law.bond_stiffness;
+      const double M = view.rows.front().one->law.bond_threshold;
+      plot.curves.insert(plot.curves.begin(),
+                         {"contact law",
+                          {{std::min(least_u, -M), 0.},
+                           {-M, 0.},
+                           {-M, -a * M},
+                           {0., 0.},
+                           {0., largest_force}}});
+      return plot;
+    }
+
+
+
+    bool
+    can_always(const StudyParameters & /*study*/)
+    {
+      return true;
+    }
+
+
+
+    bool
+    has_axis(const StudyParameters &study)
+    {
+      return axis_sweep(study) < study.sweeps.size();
+    }
+
+
+
+    bool
+    has_second_axis(const StudyParameters &study)
+    {
+      return study.sweeps.size() > 1 && has_positive_numbers(study.sweeps[1]);
+    }
+
+
+
     struct PlotKind
     {
-      std::string                            name;
-      std::string                            documentation;
-      std::function<Plot(const StudyView &)> make;
+      std::string name;
+      std::string documentation;
+      Plot (*make)(const StudyView &);
+      bool (*is_possible)(const StudyParameters &) = can_always;
+      std::string requirement                      = {};
     };
 
 
@@ -309,49 +401,31 @@ namespace Debond
     const std::vector<PlotKind> &
     plot_kinds()
     {
+      const std::string                  axis  = "a sweep over numbers > 0";
       static const std::vector<PlotKind> kinds = {
         {"history", "J over k", history_plot},
         {"convergence", "the error over k, both logarithmic", convergence_plot},
         {"fit", "the error over k with fitted lines", fit_plot},
-        {"iterations", "iterations over the parameter", iterations_plot},
-        {"steps", "kinds of steps over the parameter", steps_plot},
+        {"iterations",
+         "iterations over the parameter",
+         iterations_plot,
+         has_axis,
+         axis},
+        {"steps",
+         "kinds of steps over the parameter",
+         steps_plot,
+         has_axis,
+         axis},
         {"best",
          "the value of the second sweep with the fewest iterations over h",
-         best_plot},
-        {"displacement",
-         "u_nu along the contact boundary",
-         [](const StudyView &view) {
-           return profile_plot(view,
-                               "displacement",
-                               "Normal displacement of the contact boundary; "
-                               "negative: lifted off.",
-                               "x",
-                               "u_nu",
-                               "lines");
-         }},
+         best_plot,
+         has_second_axis,
+         "a second sweep over numbers > 0"},
+        {"displacement", "u_nu along the contact boundary", displacement_plot},
         {"force",
-         "the normal force of the contact nodes along the boundary",
-         [](const StudyView &view) {
-           return profile_plot(view,
-                               "force",
-                               "Normal force of the contact nodes; positive: "
-                               "pressed, negative: held.",
-                               "x",
-                               "normal_force",
-                               "linespoints pt 7 ps 0.6");
-         }},
-        {"law",
-         "the contact nodes in the plane of the contact law",
-         [](const StudyView &view) {
-           return profile_plot(
-             view,
-             "law",
-             "Normal force density of the contact nodes over their normal "
-             "displacement: they lie on the graph of the contact law.",
-             "u_nu",
-             "normal_force_density",
-             "points");
-         }}};
+         "the normal force density along the contact boundary",
+         force_plot},
+        {"law", "the contact nodes on the graph of the contact law", law_plot}};
       return kinds;
     }
   } // namespace
@@ -369,14 +443,15 @@ namespace Debond
 
 
 
-  bool
-  is_plot_kind(const std::string &name)
+  std::string
+  why_no_plot(const std::string &name, const StudyParameters &study)
   {
-    return std::any_of(plot_kinds().begin(),
-                       plot_kinds().end(),
-                       [&name](const PlotKind &kind) {
-                         return kind.name == name;
-                       });
+    for (const PlotKind &kind : plot_kinds())
+      if (kind.name == name)
+        return kind.is_possible(study) ?
+                 "" :
+                 "the plot " + name + " needs " + kind.requirement;
+    return "there is no plot '" + name + "'; known are " + plot_documentation();
   }
 
 
@@ -391,7 +466,8 @@ namespace Debond
     for (const std::string &wanted : study.plots.kinds)
       for (const PlotKind &kind : plot_kinds())
         if (kind.name == wanted)
-          plots.push_back(kind.make(view));
+          if (const Plot plot = kind.make(view); has_points(plot))
+            plots.push_back(plot);
     return plots;
   }
 } // namespace Debond

@@ -28,7 +28,9 @@ namespace Debond
   Reference::Reference(const ReferenceParameters &parameters)
     : parameters(parameters)
   {
-    std::ifstream            file(parameters.file);
+    std::ifstream file(parameters.file);
+    if (!file)
+      throw BadInput({parameters.file + ": cannot be read"});
     std::vector<std::string> titles;
     for (std::string line; std::getline(file, line);)
       {

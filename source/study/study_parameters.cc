@@ -268,7 +268,8 @@ namespace Debond
       if (sweep.values.empty())
         table.add_error(section + "/Parameter",
                         section + "/Parameter: there are no " + section +
-                          "/Values");
+                          "/Values",
+                        {section + "/Values"});
       for (const std::string &value : sweep.values)
         check_setting(study.scene,
                       sweep.parameter + "=" + value,
@@ -497,10 +498,8 @@ namespace Debond
     study.plots.kinds  = split_at_bars(table.get("Plots/Kinds"));
     study.plots.fitted = split_at_bars(table.get("Plots/Fitted cases"));
     for (const std::string &kind : study.plots.kinds)
-      if (!is_plot_kind(kind))
-        table.add_error("Plots/Kinds",
-                        "Plots/Kinds: there is no plot '" + kind +
-                          "'; known are " + plot_documentation());
+      if (const std::string reason = why_no_plot(kind, study); !reason.empty())
+        table.add_error("Plots/Kinds", "Plots/Kinds: " + reason);
     read_reference(study, table);
 
     if (!table.errors().empty())

@@ -67,7 +67,7 @@ namespace Debond
         const Column column = Column::parse(name);
         table.add_column(column.title(), column.digits());
         if (has_reference(name))
-          table.add_column(column.title() + ", " + study.reference.label,
+          table.add_column(column.title() + " (" + study.reference.label + ")",
                            column.digits());
       }
 

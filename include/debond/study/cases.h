@@ -2,6 +2,7 @@
 #ifndef debond_study_cases_h
 #define debond_study_cases_h
 
+#include <debond/contact/law.h>
 #include <debond/study/study_parameters.h>
 
 #include <optional>
@@ -22,7 +23,8 @@ namespace Debond
     /// tells whether a directory has the results of this case.
     std::string effective_scene;
 
-    double cell_edge = 0.; ///< h, along the first axis
+    double               cell_edge = 0.; ///< h, along the first axis
+    ContactLawParameters law;
 
     /// The number of the case that finds the exact minimum.
     std::size_t minimum = 0;

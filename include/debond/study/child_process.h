@@ -47,9 +47,8 @@ namespace Debond
     std::optional<std::string> ending;
   };
 
-  /// The path of the program that is running.
-  std::string
-  own_program();
+  /// The program that is running, also if its file was replaced meanwhile.
+  inline const std::string own_program = "/proc/self/exe";
 } // namespace Debond
 
 #endif

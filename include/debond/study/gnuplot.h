@@ -14,6 +14,9 @@ namespace Debond
     std::string                            title;
     std::vector<std::pair<double, double>> points;
     std::string                            style = "lines"; ///< gnuplot's
+
+    /// Drawn with dashes in the colour of the curve before it.
+    bool belongs_to_previous = false;
   };
 
 
@@ -28,6 +31,10 @@ namespace Debond
     bool               log_y  = false;
     std::vector<Curve> curves = {};
   };
+
+  /// Whether there is something to draw: gnuplot fails if there is not.
+  bool
+  has_points(const Plot &plot);
 
   /// Writes NAME.dat and NAME.gp into the directory. Throws std::runtime_error
   /// naming the file that cannot be written.

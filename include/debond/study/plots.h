@@ -16,8 +16,9 @@ namespace Debond
   std::string
   plot_documentation();
 
-  bool
-  is_plot_kind(const std::string &kind);
+  /// Why a study cannot have a plot; empty if it can.
+  std::string
+  why_no_plot(const std::string &kind, const StudyParameters &study);
 
   /// The plots that the study asks for.
   std::vector<Plot>
