@@ -63,10 +63,11 @@ namespace Debond
   {
     std::vector<double> h, values;
     for (const BestRow &row : rows)
-      {
-        h.push_back(row.cell_edge);
-        values.push_back(row.best.value);
-      }
+      if (!row.best.at_end)
+        {
+          h.push_back(row.cell_edge);
+          values.push_back(row.best.value);
+        }
     return fit_power_law(h, values);
   }
 } // namespace Debond

@@ -39,6 +39,19 @@ namespace Debond
 
 
 
+    bool
+    concerns_solver(const Sweep &sweep, const std::string &value)
+    {
+      const std::vector<std::string> settings = sweep.settings(value);
+      return std::all_of(settings.begin(),
+                         settings.end(),
+                         [](const std::string &setting) {
+                           return concerns_solver(setting);
+                         });
+    }
+
+
+
     /// Fills in what follows from the settings. Throws BadInput.
     void
     complete_case(const StudyParameters &study, Case &one)
@@ -91,7 +104,7 @@ namespace Debond
 
       std::vector<std::string> values;
       for (std::size_t i = 0; i < study.sweeps.size(); ++i)
-        if (!concerns_solver(study.sweeps[i].parameter))
+        if (!concerns_solver(study.sweeps[i], one.values[i]))
           values.push_back(study.sweeps[i].label + " = " + one.values[i]);
       minimum.label =
         join(values, ", ") + (values.empty() ? "" : ", ") + "exact minimum";
@@ -129,7 +142,8 @@ namespace Debond
       for (std::size_t i = 0; i < values.size(); ++i)
         {
           words.push_back(study.sweeps[i].label + " = " + values[i]);
-          one.settings.push_back(study.sweeps[i].parameter + "=" + values[i]);
+          for (const std::string &setting : study.sweeps[i].settings(values[i]))
+            one.settings.push_back(setting);
         }
       one.label = words.empty() ? "the scene" : join(words, ", ");
       one.directory =

@@ -111,6 +111,7 @@ namespace Debond
     return BestValue{values[*best],
                      iterations[*best],
                      std::min(values[first], values[last]),
-                     std::max(values[first], values[last])};
+                     std::max(values[first], values[last]),
+                     *best == 0 || *best + 1 == values.size()};
   }
 } // namespace Debond

@@ -32,16 +32,16 @@ namespace Debond
 
 
 
-    /// The items of "a | b | c". A bar counts only with blanks around it,
-    /// since expressions may contain "||".
+    /// The items of "a | b | c". A separator counts only with blanks around it,
+    /// since expressions may contain "||" and "&&".
     std::vector<std::string>
-    split_at_bars(const std::string &text)
+    split_at(const std::string &separator, const std::string &text)
     {
       std::vector<std::string> items;
       std::istringstream       words(text);
       std::string              item;
       for (std::string word; words >> word;)
-        if (word == "|")
+        if (word == separator)
           {
             items.push_back(item);
             item.clear();
@@ -51,6 +51,14 @@ namespace Debond
       if (!item.empty() || !items.empty())
         items.push_back(item);
       return items;
+    }
+
+
+
+    std::vector<std::string>
+    split_at_bars(const std::string &text)
+    {
+      return split_at("|", text);
     }
 
 
@@ -271,10 +279,15 @@ namespace Debond
                           "/Values",
                         {section + "/Values"});
       for (const std::string &value : sweep.values)
-        check_setting(study.scene,
-                      sweep.parameter + "=" + value,
-                      section + "/Values",
-                      table);
+        try
+          {
+            for (const std::string &setting : sweep.settings(value))
+              check_setting(study.scene, setting, section + "/Values", table);
+          }
+        catch (const std::invalid_argument &error)
+          {
+            table.reject(section + "/Values", error.what());
+          }
       const std::set<std::string> distinct(sweep.values.begin(),
                                            sweep.values.end());
       if (distinct.size() < sweep.values.size())
@@ -350,6 +363,22 @@ namespace Debond
                             " is not one of Study/Columns");
     }
   } // namespace
+
+
+
+  std::vector<std::string>
+  Sweep::settings(const std::string &value) const
+  {
+    const std::vector<std::string> names = split_at("&", parameter);
+    const std::vector<std::string> parts = split_at("&", value);
+    if (names.size() != parts.size())
+      throw std::invalid_argument("'" + value + "' has not as many parts as " +
+                                  parameter);
+    std::vector<std::string> result;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      result.push_back(names[i] + "=" + parts[i]);
+    return result;
+  }
 
 
 

@@ -42,7 +42,8 @@ namespace Debond
         {
           text.precision(3);
           text << "\nFitted: best " << study.sweeps[1].label << " = "
-               << law->factor << " h^" << law->exponent << ".\n";
+               << law->factor << " h^" << law->exponent
+               << ", without those at an end of the values.\n";
         }
       return text.str();
     }
@@ -105,6 +106,7 @@ namespace Debond
     table.add_column("iterations", 1);
     table.add_column("smallest " + label + " within 10 %", 3);
     table.add_column("largest " + label + " within 10 %", 3);
+    table.add_column("at an end of the values", 1);
     for (const BestRow &row : best)
       {
         std::vector<Cell> cells = {row.value};
@@ -115,6 +117,7 @@ namespace Debond
         cells.emplace_back(static_cast<long>(row.best.iterations));
         cells.emplace_back(row.best.smallest_good);
         cells.emplace_back(row.best.largest_good);
+        cells.emplace_back(std::string(row.best.at_end ? "yes" : "no"));
         table.add_row(cells);
       }
     return table;

@@ -73,6 +73,16 @@ expect_code 2 "$debond" --study plots.prm
 grep -q "plots.prm:14: Plots/Kinds: the plot best needs a second sweep over" \
   errors || fail "$(cat errors)"
 
+# Parameters that vary together.
+sed -e 's/ratio/ratio \& Mesh\/Cells/' -e 's/0.6/0.4 \& 3, 1/' \
+  combination.prm >together.prm
+expect_code 2 "$debond" --study together.prm
+grep -q "together.prm:7: Sweep 1/Values = .*: '0.3' has not as many parts as" \
+  errors || fail "$(cat errors)"
+expect_code 0 "$debond" --study together.prm --validate \
+  --set "Sweep 1/Values=0.3 & 2, 1 | 0.4 & 3, 1"
+grep -q "valid, 4 cases" log || fail "$(cat log)"
+
 # The parameters that are printed can be read.
 "$debond" --study --print-parameters >all.prm
 expect_code 2 "$debond" --study all.prm

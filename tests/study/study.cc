@@ -98,12 +98,16 @@ namespace
       best_value({8., 4., 2., 1., 0.5}, {0., 105., 100., 109., 111.});
     check("the best value is 2, good are 1 to 4",
           best && best->value == 2. && best->iterations == 100. &&
-            best->smallest_good == 1. && best->largest_good == 4.);
+            best->smallest_good == 1. && best->largest_good == 4. &&
+            !best->at_end);
+    const auto last = best_value({4., 2.}, {9., 8.});
+    check("the last value may not be the best there is", last && last->at_end);
     check("none if all failed", !best_value({1., 2.}, {0., 0.}));
 
     std::vector<BestRow> rows;
     for (const double h : {0.02, 0.01, 0.005})
-      rows.push_back({"", "", h, {8. * h * h, 1., h, h}});
+      rows.push_back({"", "", h, {8. * h * h, 1., h, h, false}});
+    rows.push_back({"", "", 0.04, {1., 1., 1., 1., true}});
     const auto law = fit_best_values(rows);
     check("8 h^2",
           law && is_near(law->exponent, 2.) && is_near(law->factor, 8.));

@@ -27,8 +27,8 @@ namespace Debond
   find_best_values(const StudyParameters       &study,
                    const std::vector<StudyRow> &rows);
 
-  /// The best value as a power of the edge h of the cells; none if h is the
-  /// same for all.
+  /// The best value as a power of the edge h of the cells, without those at an
+  /// end of the values; none if h is the same for all.
   std::optional<PowerLaw>
   fit_best_values(const std::vector<BestRow> &rows);
 } // namespace Debond

@@ -51,6 +51,10 @@ namespace Debond
     /// The values next to each other that need at most 10 % more.
     double smallest_good;
     double largest_good;
+
+    /// Whether it is the first or the last value, so that the best may be
+    /// beyond it.
+    bool at_end;
   };
 
   /// @p iterations is positive, or zero where the case failed; the values

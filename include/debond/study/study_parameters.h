@@ -11,12 +11,18 @@
 
 namespace Debond
 {
-  /// A parameter of the scene, or the method, and the values it is given.
+  /// Parameters of the scene that vary together, mostly one, or the method,
+  /// and the values they are given.
   struct Sweep
   {
-    std::string              parameter; ///< "Section/Entry" as for --set
+    std::string              parameter; ///< "Section/Entry [& ...]"
     std::string              label;     ///< in tables and plots
-    std::vector<std::string> values;    ///< as in a scene
+    std::vector<std::string> values;    ///< as in a scene, "a [& ...]"
+
+    /// For --set. Throws std::invalid_argument if the value has not as many
+    /// parts as there are parameters.
+    std::vector<std::string>
+    settings(const std::string &value) const;
   };
 
 
