@@ -249,14 +249,15 @@ namespace Debond
   CaseResult
   CaseRunner::result(const Case &one) const
   {
+    CaseResult result;
     if (const auto failure = failures.find(one.directory);
         failure != failures.end())
-      {
-        CaseResult result;
-        result.status = failure->second;
-        return result;
-      }
-    return read_results(one);
+      result.status = failure->second;
+    else if (is_finished(one))
+      result = read_results(one);
+    else
+      result.status = "not run";
+    return result;
   }
 
 

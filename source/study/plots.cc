@@ -240,7 +240,7 @@ namespace Debond
           smallest.points.emplace_back(row.cell_edge, row.best.smallest_good);
           largest.points.emplace_back(row.cell_edge, row.best.largest_good);
         }
-      plot.curves = {points, smallest, largest};
+      plot.curves = {smallest, largest};
       if (const auto law = fit_best_values(view.best); law)
         {
           Curve line{"h^" + std::to_string(law->exponent).substr(0, 4), {}};
@@ -250,6 +250,7 @@ namespace Debond
                                        std::pow(row.cell_edge, law->exponent));
           plot.curves.push_back(line);
         }
+      plot.curves.push_back(points);
       return plot;
     }
 

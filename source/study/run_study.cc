@@ -86,6 +86,8 @@ namespace Debond
         lines.push_back(one.label + ": " + result.status +
                         (result.message.empty() ? "" : ": " + result.message));
       };
+      if (cases.preparation && !is_finished(*cases.preparation))
+        add(*cases.preparation, runner.result(*cases.preparation));
       for (const Case &one : cases.minima)
         if (const CaseResult result = runner.result(one);
             result.status != "success")

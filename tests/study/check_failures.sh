@@ -49,6 +49,36 @@ expect_code 0 "$debond" --study study.prm \
   --set "Sweep 1/Values=0; -0.1 | 0; if(x < 0.2, 0.69, -0.345)" \
   --set "Study/Accepted statuses=success | iteration limit"
 
+# A case before the others, from which they start; none is run if it fails.
+cat >prepared.prm <<'STUDY'
+subsection Study
+  set Scene    = bar.prm
+  set Columns  = status | iterations | J
+  set Settings = Loads/Traction top=0; -0.1 | Solver/Euclidean bundle/Start={preparation}/displacement.txt
+end
+subsection Preparation
+  set Settings = Loads/Traction top=0; -0.1 | Output/Displacement=true
+end
+subsection Sweep 1
+  set Parameter = Solver/Euclidean bundle/Proximal weight
+  set Label     = u_k
+  set Values    = 1e9
+end
+STUDY
+expect_code 0 "$debond" --study prepared.prm
+awk -v J="$(column output/prepared/table.csv J)" '
+  /"functional"/ && !n { n = 1; if (!(J < 0 && J == $2 + 0)) exit 1 }' \
+  output/prepared/preparation/summary.json &&
+  [ "$(column output/prepared/table.csv iterations)" = 0 ] ||
+  fail "not started there: $(cat output/prepared/table.csv)"
+expect_code 0 "$debond" --study prepared.prm
+grep -q "Cases run now: 0," log || fail "repeated: $(cat log)"
+expect_code 3 "$debond" --study prepared.prm --set "Study/Output directory=bad" \
+  --set "Preparation/Settings=Loads/Traction top=0; if(x < 0.2, 1/0, 1)"
+[ "$(column bad/table.csv status)" = "not run" ] || fail "$(cat bad/table.csv)"
+grep -q "^debond: case preparation: exit code 2: .* is inf" errors ||
+  fail "$(cat errors)"
+
 # A case that is killed; the next one is run all the same.
 "$debond" --study study.prm --jobs 1 --set "Study/Output directory=killed" \
   --set "Sweep 1/Parameter=Solver/Euclidean bundle/Stop tolerance" \
