@@ -41,6 +41,7 @@ namespace Debond
                              const std::string              &working_directory)
   {
     setenv("OPENBLAS_NUM_THREADS", "1", 1);
+    setenv("OMP_NUM_THREADS", "1", 1);
     std::vector<std::string> words = command;
     std::vector<char *>      argv;
     for (std::string &word : words)

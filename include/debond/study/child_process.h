@@ -11,8 +11,8 @@
 namespace Debond
 {
   /**
-   * A program that runs beside this one, with one thread of OpenBLAS and with
-   * its output in a file. It is killed when the object ends, and by the system
+   * A program that runs beside this one, with one thread and with its output
+   * in a file. It is killed when the object ends, and by the system
    * if this program is killed.
    */
   class ChildProcess
