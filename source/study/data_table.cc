@@ -31,7 +31,7 @@ namespace Debond
 
 
     std::string
-    number_text(const double number, const unsigned int digits)
+    readable_number(const double number, const unsigned int digits)
     {
       if (digits == all_digits)
         {
@@ -58,7 +58,7 @@ namespace Debond
       if (const auto *const count = std::get_if<long>(&cell))
         return std::to_string(*count);
       if (const auto *const number = std::get_if<double>(&cell))
-        return number_text(*number, digits);
+        return readable_number(*number, digits);
       return "";
     }
 
