@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/application/command_line.h>
 #include <debond/study/benchmarks.h>
+#include <debond/study/command_line.h>
 
 #include <exception>
 #include <iostream>
@@ -10,6 +11,8 @@ main(int argc, char *argv[])
 {
   try
     {
+      if (Debond::is_study_command_line(argc, argv))
+        return static_cast<int>(Debond::execute_study_command_line(argc, argv));
       return static_cast<int>(Debond::execute_command_line(
         argc,
         argv,

@@ -23,6 +23,7 @@ namespace Debond
 
     const char *const usage =
       "Usage: debond SCENE.prm [OPTIONS]\n"
+      "       debond --study STUDY.prm [OPTIONS]; see debond --study --help\n"
       "\n"
       "Solves the unilateral contact of an elastic body with an adhesive\n"
       "foundation as the scene describes it.\n\n";

@@ -185,11 +185,13 @@ namespace Debond
         whole_number(1, 1000000000),
         "Iterations after which the method gives up; the program then returns 3",
         "none");
-      declare("Start",
-              "zero",
-              one_of({"zero"}),
-              "The first iterate: zero is the undeformed body",
-              "none");
+      declare(
+        "Start",
+        "zero",
+        Pattern("zero or a path",
+                [](const std::string &value) { return !value.empty(); }),
+        "The first iterate: zero is the undeformed body; otherwise the path of the displacement.txt of a scene with the same mesh and boundary conditions",
+        "none");
     }
 
 
@@ -393,9 +395,10 @@ namespace Debond
       "Where files are written, relative to the working directory; created if missing. {scene} stands for the name of the scene file without its ending",
       "none");
     const auto declare_switch = [&](const std::string &name,
-                                    const std::string &documentation) {
+                                    const std::string &documentation,
+                                    const std::string &value = "true") {
       table.declare("Output/" + name,
-                    "true",
+                    value,
                     one_of({"true", "false"}),
                     documentation,
                     "none");
@@ -405,6 +408,10 @@ namespace Debond
     declare_switch("Contact profile",
                    "Write contact_profile.csv, a row for each contact node");
     declare_switch("History", "Write history.csv, a row for each iteration");
+    declare_switch(
+      "Displacement",
+      "Write displacement.txt, all degrees of freedom, from which another run can start",
+      "false");
     declare_switch(
       "Machine details",
       "Whether the log has what differs between machines: revision, times, paths, progress, numbers of iterations and figures that only rounding and the stop tolerance decide. Without them logs can be compared");
@@ -619,6 +626,8 @@ namespace Debond
     p.bundle.bundle_size = table.get_unsigned(bundle_section + "Bundle size");
     p.bundle.maximum_iterations =
       table.get_unsigned(bundle_section + "Maximum iterations");
+    const std::string start = table.get(bundle_section + "Start");
+    p.start                 = start == "zero" ? "" : start;
 
     p.verification_tolerance = table.get_double("Verification/Tolerance");
 
@@ -630,6 +639,7 @@ namespace Debond
     p.output.contact_vtu     = table.get_bool("Output/Contact VTU");
     p.output.contact_profile = table.get_bool("Output/Contact profile");
     p.output.history         = table.get_bool("Output/History");
+    p.output.displacement    = table.get_bool("Output/Displacement");
     p.output.machine_details = table.get_bool("Output/Machine details");
 
     check_consistency(table, p);

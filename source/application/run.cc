@@ -8,6 +8,7 @@
 #include <debond/application/solve.h>
 #include <debond/application/version.h>
 #include <debond/output/atomic_file.h>
+#include <debond/output/displacement.h>
 #include <debond/output/tables.h>
 #include <debond/output/vtu.h>
 
@@ -37,6 +38,7 @@ namespace Debond
                                "contact.vtu",
                                "contact_profile.csv",
                                "history.csv",
+                               "displacement.txt",
                                "summary.json"})
         if (std::filesystem::is_regular_file(directory / name, error))
           std::filesystem::remove(directory / name, error);
@@ -193,6 +195,11 @@ namespace Debond
             write_history(result.bundle_history, files.back());
           else
             write_history(result.majorise_history, files.back());
+        }
+      if (output.displacement)
+        {
+          files.push_back(path("displacement.txt"));
+          write_displacement(result.u, files.back());
         }
       return files;
     }

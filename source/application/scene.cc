@@ -3,6 +3,7 @@
 
 #include <debond/application/expression.h>
 #include <debond/application/scene.h>
+#include <debond/output/displacement.h>
 
 namespace Debond
 {
@@ -38,6 +39,27 @@ namespace Debond
         loads.tractions[boundary_names<dim>().at(side)] =
           make_function<dim>(expression, parameters.constants);
       return loads;
+    }
+
+
+
+    /// Throws std::invalid_argument if the file has no displacement that the
+    /// problem admits.
+    template <int dim>
+    dealii::Vector<double>
+    read_start(const std::string &file_name, const ElasticProblem<dim> &problem)
+    {
+      const dealii::Vector<double> u =
+        read_displacement(file_name, problem.n_dofs());
+      bool admissible = true;
+      for (unsigned int i = 0; i < problem.n_dofs(); ++i)
+        admissible = admissible && (u(i) == 0. || !problem.is_constrained(i));
+      for (const auto &node : problem.contact_boundary().nodes)
+        admissible = admissible && u(node.dof) <= 0.;
+      if (!admissible)
+        throw std::invalid_argument(
+          file_name + " does not satisfy the scene's boundary conditions");
+      return u;
     }
   } // namespace
 
@@ -90,6 +112,10 @@ namespace Debond
       make_functional(elastic_problem->matrix());
     else
       make_functional(elastic_problem->trilinos_matrix());
+    if (parameters.start.empty())
+      first_iterate.reinit(elastic_problem->n_dofs());
+    else
+      first_iterate = read_start(parameters.start, *elastic_problem);
     seconds_for_assembly = timer.wall_time();
   }
 
@@ -127,6 +153,15 @@ namespace Debond
   Scene<dim>::functional() const
   {
     return *energy;
+  }
+
+
+
+  template <int dim>
+  const dealii::Vector<double> &
+  Scene<dim>::start() const
+  {
+    return first_iterate;
   }
 
 

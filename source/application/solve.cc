@@ -107,7 +107,7 @@ namespace Debond
                               Watch            &watch,
                               SolveResult      &result)
     {
-      result.u.reinit(scene.problem().n_dofs());
+      result.u = scene.start();
       add_bundle_result(ProximalBundle<Vector>(parameters.bundle)
                           .minimize(scene.functional(),
                                     unilateral_constraint(

@@ -50,6 +50,7 @@ namespace Debond
     bool        contact_vtu     = true;
     bool        contact_profile = true;
     bool        history         = true;
+    bool        displacement    = false;
     bool        machine_details = true;
   };
 
@@ -86,6 +87,9 @@ namespace Debond
     std::string                 linear_solver;
     double                      memory_limit = 0.; ///< bytes, 0: what is there
     ProximalBundleParameters    bundle;
+
+    /// File with the first iterate of the Euclidean bundle; empty for zero.
+    std::string start;
 
     /// epsilon_s relative to the energy of the body without contact; u is
     /// not used.

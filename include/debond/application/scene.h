@@ -41,6 +41,10 @@ namespace Debond
     const Objective<dealii::Vector<double>> &
     functional() const;
 
+    /// The first iterate for methods on all degrees of freedom.
+    const dealii::Vector<double> &
+    start() const;
+
     /// Triangles or tetrahedra.
     unsigned int
     n_cells() const;
@@ -63,6 +67,7 @@ namespace Debond
     std::unique_ptr<ContactQuadrature<dim>>            quadrature;
     std::unique_ptr<AdhesionIntegral<dim>>             adhesion_integral;
     std::unique_ptr<Objective<dealii::Vector<double>>> energy;
+    dealii::Vector<double>                             first_iterate;
     double                                             seconds_for_mesh;
     double                                             seconds_for_assembly;
   };

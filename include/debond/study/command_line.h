@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_study_command_line_h
+#define debond_study_command_line_h
+
+#include <debond/application/exit_code.h>
+
+namespace Debond
+{
+  /// Whether the command line begins with --study.
+  bool
+  is_study_command_line(const int argc, const char *const argv[]);
+
+  /// Does what "debond --study ..." asks for. Bad input is reported on
+  /// std::cerr, a line for each error; faults of the program are thrown.
+  ExitCode
+  execute_study_command_line(const int argc, const char *const argv[]);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <debond/study/case_result.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace Debond
+{
+  namespace
+  {
+    std::string
+    summary_file(const Case &one)
+    {
+      return one.directory + "/summary.json";
+    }
+
+
+
+    /// Throws std::runtime_error naming the file.
+    nlohmann::json
+    read_summary(const std::string &file_name)
+    {
+      std::ifstream file(file_name);
+      try
+        {
+          return nlohmann::json::parse(file);
+        }
+      catch (const nlohmann::json::exception &error)
+        {
+          throw std::runtime_error("Cannot read " + file_name + ": " +
+                                   error.what());
+        }
+    }
+
+
+
+    /// The column `functional` of a history; empty if there is no such file.
+    std::vector<double>
+    read_functionals(const std::string &file_name)
+    {
+      std::ifstream       file(file_name);
+      std::vector<double> functionals;
+      std::string         line;
+      if (!std::getline(file, line))
+        return functionals;
+      const std::vector<std::string> titles =
+        dealii::Utilities::split_string_list(line, ',');
+      const std::size_t column =
+        std::find(titles.begin(), titles.end(), "functional") - titles.begin();
+      while (std::getline(file, line))
+        {
+          const std::vector<std::string> entries =
+            dealii::Utilities::split_string_list(line, ',');
+          if (entries.size() != titles.size() || column == titles.size())
+            throw std::runtime_error("Cannot read " + file_name +
+                                     ": its rows do not fit its titles");
+          functionals.push_back(std::stod(entries[column]));
+        }
+      return functionals;
+    }
+  } // namespace
+
+
+
+  double
+  CaseResult::number(const std::string &pointer) const
+  {
+    const auto entry = numbers.find(pointer);
+    if (entry == numbers.end())
+      throw std::runtime_error("summary.json has no number " + pointer);
+    return entry->second;
+  }
+
+
+
+  bool
+  is_finished(const Case &one)
+  {
+    std::ifstream      file(one.directory + "/parameters.prm");
+    std::ostringstream text;
+    text << file.rdbuf();
+    if (text.str() != one.effective_scene ||
+        !std::filesystem::is_regular_file(summary_file(one)))
+      return false;
+    try
+      {
+        return read_summary(summary_file(one)).at("status") != "interrupted";
+      }
+    catch (const std::exception &)
+      {
+        return false;
+      }
+  }
+
+
+
+  CaseResult
+  read_results(const Case &one)
+  {
+    const nlohmann::json summary = read_summary(summary_file(one));
+    CaseResult           result;
+    result.status             = summary.value("status", "");
+    result.message            = summary.value("message", "");
+    const nlohmann::json flat = summary.flatten();
+    for (const auto &[pointer, value] : flat.items())
+      if (value.is_number())
+        result.numbers[pointer] = value.get<double>();
+    result.history = read_functionals(one.directory + "/history.csv");
+    return result;
+  }
+} // namespace Debond

@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# check_interruption.sh DEBOND: an interrupted study stops its cases, and goes
+# on later with those that are not finished; the end is the same.
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+
+cat >bar.prm <<'SCENE'
+subsection Mesh
+  set Cells = 10, 1
+end
+subsection Loads
+  set Traction top = 0; if(x < 0.2, 0.69, -0.345)
+end
+SCENE
+cat >study.prm <<'STUDY'
+subsection Study
+  set Scene   = bar.prm
+  set Methods = euclidean bundle
+  set Columns = status | iterations | J
+end
+subsection Sweep 1
+  set Parameter = Solver/Euclidean bundle/Proximal weight
+  set Label     = u_k
+  set Values    = 0.05 | 0.01 | 0.1 | 0.5
+end
+STUDY
+
+expect_code 0 "$debond" --study study.prm
+cp output/study/table.csv uninterrupted.csv
+
+for signal in INT TERM; do
+  rm -rf output
+  # In a script background jobs ignore SIGINT, unless job control is on.
+  set -m
+  "$debond" --study study.prm --jobs 1 >log 2>errors &
+  process=$!
+  set +m
+  for _ in $(seq 300); do
+    [ -e "output/study/cases/u_k=0.05/summary.json" ] && break
+    sleep 0.02
+  done
+  kill -s $signal $process
+  code=0
+  wait $process || code=$?
+  [ $code -eq 4 ] || fail "exit code $code in place of 4: $(cat log errors)"
+  ! pgrep -P $process >/dev/null || fail "a case is still running"
+  ! [ -e output/study/index.md ] || fail "a report was written"
+  cp -p "output/study/cases/u_k=0.05/summary.json" finished.json
+
+  expect_code 0 "$debond" --study study.prm --jobs 2
+  run=$(sed -n 's/^Cases run now: \([0-9]*\),.*/\1/p' log)
+  [ "$run" -ge 1 ] && [ "$run" -le 3 ] || fail "$run cases were run again"
+  [ ! "output/study/cases/u_k=0.05/summary.json" -nt finished.json ] ||
+    fail "the finished case was repeated"
+  cmp uninterrupted.csv output/study/table.csv || fail "not the same end"
+done

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# For the checks of studies: an empty directory, and how to look at tables.
+set -euo pipefail
+export LC_ALL=C
+
+debond=$1
+directory=$(mktemp -d)
+trap 'rm -rf "$directory"' EXIT
+cd "$directory"
+
+fail() {
+  echo "$1" >&2
+  exit 1
+}
+
+# column TABLE.csv TITLE: the cells of a column, a line each.
+column() {
+  awk -F, -v title="$2" '
+    NR == 1 { for (i = 1; i <= NF; ++i) if ($i == title) n = i
+              if (!n) { print "no column " title > "/dev/stderr"; exit 1 } }
+    NR > 1 { print $n }' "$1"
+}
+
+# expect_code CODE COMMAND...: runs it, with its output in the files log and
+# errors.
+expect_code() {
+  local expected=$1 code=0
+  shift
+  "$@" >log 2>errors || code=$?
+  [ $code -eq "$expected" ] ||
+    fail "exit code $code in place of $expected: $(cat log errors)"
+}
