@@ -255,6 +255,7 @@ namespace Debond
                              const InterruptGuard &guard)
     {
       Parameters coarse = parameters;
+      coarse.start.clear(); // belongs to the finest mesh
       for (unsigned int d = 0; d < dim; ++d)
         coarse.box.cells[d] = (coarse.box.cells[d] + 1) / 2;
       if (coarse.box.cells == parameters.box.cells)
