@@ -107,6 +107,20 @@ namespace Debond
                           memory_with_multigrid(size, dim);
       }
 
+    const bool searches = parameters.search == BondSearchChoice::quick ||
+                          parameters.search == BondSearchChoice::full;
+    if ((searches || parameters.prove) &&
+        choice.linear_solver != LinearSolver::direct)
+      throw BadInput(
+        {parameters.scene + ": Solver/" + (searches ? "Search" : "Prove") +
+         " needs a method with a direct linear solver, not " + choice.method +
+         " with the linear solver " + choice.linear_solver});
+    if (parameters.prove &&
+        parameters.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
+      throw BadInput({parameters.scene +
+                      ": Solver/Prove needs Contact law/Quadrature = nodal, "
+                      "which gives each node a bond of its own"});
+
     if (choice.memory > limit)
       throw BadInput({parameters.scene + ": about " + rounded(size.unknowns) +
                       " unknowns need about " + in_gib(choice.memory) +

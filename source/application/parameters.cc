@@ -21,6 +21,12 @@ namespace Debond
     const std::string bundle_section   = "Solver/Euclidean bundle/";
     const std::string energy_section   = "Solver/Energy bundle/";
     const std::string majorise_section = "Solver/Majorise minimise/";
+    const std::string proof_section    = "Solver/Proof/";
+
+    const std::vector<std::string> search_names = {"automatic",
+                                                   "none",
+                                                   "quick",
+                                                   "full"};
 
 
 
@@ -237,6 +243,44 @@ namespace Debond
         "Iterations after which the method gives up; the program then returns 3",
         "none");
     }
+
+
+
+    void
+    declare_which_minimum(ParameterTable &table)
+    {
+      const Parameters defaults;
+      table.declare(
+        "Solver/Search",
+        search_names[0],
+        one_of(search_names),
+        "Whether a lower minimum than the one found is searched for by changing which bonds are broken, with a direct linear solver: quick starts from rest and from all bonds broken and moves the edges of the broken patches by a node, full moves them by up to four nodes and breaks, closes and splits patches; automatic is quick if the method is automatic and there are at most 200 contact nodes, and none otherwise",
+        "none");
+      table.declare(
+        "Solver/Prove",
+        "false",
+        one_of({"true", "false"}),
+        "Whether the result is proved to be the global minimum, or replaced by it, by branch and bound on the broken bonds. Needs a direct linear solver and nodal quadrature",
+        "none");
+      table.declare(
+        proof_section + "Tolerance",
+        to_text(defaults.proof.tolerance),
+        positive_number(),
+        "The gap between J and its lower bound that counts as a proof, relative to J",
+        "none");
+      table.declare(
+        proof_section + "Maximum nodes",
+        std::to_string(defaults.proof.maximum_nodes),
+        whole_number(1, 1000000000),
+        "Nodes of the branch and bound tree after which the proof ends with the gap that is left",
+        "none");
+      table.declare(
+        proof_section + "Maximum time",
+        to_text(defaults.proof.maximum_seconds),
+        positive_number(),
+        "Wall time after which the proof ends with the gap that is left",
+        "seconds");
+    }
   } // namespace
 
 
@@ -379,6 +423,7 @@ namespace Debond
       "GiB");
     declare_bundle(table);
     declare_condensed_methods(table);
+    declare_which_minimum(table);
 
     table.declare(
       "Verification/Tolerance",
@@ -620,6 +665,15 @@ namespace Debond
       table.get_double(majorise_section + "Stop tolerance");
     p.majorise_minimise.maximum_iterations =
       table.get_unsigned(majorise_section + "Maximum iterations");
+    const auto search = std::find(search_names.begin(),
+                                  search_names.end(),
+                                  table.get("Solver/Search"));
+    p.search          = static_cast<BondSearchChoice>(
+      std::distance(search_names.begin(), search));
+    p.prove               = table.get_bool("Solver/Prove");
+    p.proof.tolerance     = table.get_double(proof_section + "Tolerance");
+    p.proof.maximum_nodes = table.get_unsigned(proof_section + "Maximum nodes");
+    p.proof.maximum_seconds = table.get_double(proof_section + "Maximum time");
     p.bundle.line_search =
       parse_descent_rule(table.get(bundle_section + "Line search"));
     p.bundle.epsilon_s   = table.get_double(bundle_section + "Stop tolerance");

@@ -164,6 +164,22 @@ namespace Debond
     if (!success)
       line(out, "") << summary.message << '\n';
     line(out, "J") << scientific(summary.functional, 10) << '\n';
+    if (!summary.minimum.empty())
+      {
+        line(out, "minimum") << summary.minimum;
+        if (details && summary.search_trials > 0)
+          out << ", " << summary.search_trials << " states searched";
+        out << '\n';
+      }
+    if (!summary.proof.empty())
+      {
+        line(out, "proof") << summary.proof;
+        if (details)
+          out << " after " << summary.proof_nodes << " nodes, gap "
+              << scientific(summary.relative_gap, 1)
+              << " of J, J >= " << scientific(summary.lower_bound, 10);
+        out << '\n';
+      }
     if (details)
       {
         line(out, "iterations") << summary.total_iterations;

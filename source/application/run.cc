@@ -38,6 +38,7 @@ namespace Debond
                                "contact.vtu",
                                "contact_profile.csv",
                                "history.csv",
+                               "proof.csv",
                                "displacement.txt",
                                "summary.json"})
         if (std::filesystem::is_regular_file(directory / name, error))
@@ -76,9 +77,18 @@ namespace Debond
     void
     add_result(const SolveResult &result, Summary &summary)
     {
-      summary.status              = to_string(result.status);
-      summary.message             = result.message;
-      summary.functional          = result.functional;
+      summary.status     = to_string(result.status);
+      summary.message    = result.message;
+      summary.functional = result.functional;
+      if (result.status == SolverStatus::success)
+        summary.minimum = to_string(result.minimum.kind);
+      summary.search_trials       = result.minimum.search_trials;
+      summary.search_improvements = result.minimum.search_improvements;
+      if (result.minimum.proof_attempted)
+        summary.proof = to_string(result.minimum.proof_status);
+      summary.proof_nodes         = result.minimum.proof_nodes;
+      summary.lower_bound         = result.minimum.lower_bound;
+      summary.relative_gap        = result.minimum.relative_gap;
       summary.total_iterations    = result.iterations;
       summary.long_steps          = result.long_steps;
       summary.short_steps         = result.short_steps;
@@ -149,7 +159,8 @@ namespace Debond
            << error << ", required is at most "
            << parameters.verification_tolerance
            << ". Try a smaller stop tolerance.";
-      summary.status  = "not verified";
+      summary.status = "not verified";
+      summary.minimum.clear();
       summary.message = text.str();
     }
 
@@ -200,6 +211,11 @@ namespace Debond
         {
           files.push_back(path("displacement.txt"));
           write_displacement(result.u, files.back());
+        }
+      if (output.history && result.minimum.proof_attempted)
+        {
+          files.push_back(path("proof.csv"));
+          write_history(result.minimum.proof_history, files.back());
         }
       return files;
     }

@@ -73,6 +73,12 @@ namespace Debond
         return !guard.requested();
       }
 
+      bool
+      may_go_on() const
+      {
+        return !guard.requested();
+      }
+
     private:
       double                    offset = 0.;
       const InterruptGuard     &guard;
@@ -229,6 +235,20 @@ namespace Debond
           parameters, scene, condensed, watch, s, result);
       result.parts["contact"] = timer.wall_time();
 
+      if (result.status == SolverStatus::success)
+        {
+          timer.restart();
+          result.minimum = find_better_minimum(
+            parameters,
+            problem.contact_boundary(),
+            scene.law(),
+            scene.adhesion(),
+            condensed,
+            [&]() { return watch.may_go_on(); },
+            s);
+          result.parts["search and proof"] = timer.wall_time();
+        }
+
       timer.restart();
       result.u                  = condensed.expand(s);
       result.parts["expansion"] = timer.wall_time();
@@ -256,6 +276,8 @@ namespace Debond
     {
       Parameters coarse = parameters;
       coarse.start.clear(); // belongs to the finest mesh
+      coarse.search = BondSearchChoice::none;
+      coarse.prove  = false;
       for (unsigned int d = 0; d < dim; ++d)
         coarse.box.cells[d] = (coarse.box.cells[d] + 1) / 2;
       if (coarse.box.cells == parameters.box.cells)
@@ -350,6 +372,15 @@ namespace Debond
       else
         solve_condensed(choice.method, parameters, scene, *watch, result);
     }
+    if (choice.linear_solver != LinearSolver::direct)
+      {
+        const auto &nodes = scene.problem().contact_boundary().nodes;
+        Vector      s(nodes.size());
+        for (unsigned int i = 0; i < nodes.size(); ++i)
+          s(i) = result.u(nodes[i].dof);
+        result.minimum.kind =
+          kind_without_search(scene.law(), scene.adhesion(), s);
+      }
     result.functional = scene.functional().value(result.u);
     return result;
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/contact/boundary_coarsening.h>
+#include <debond/contact/boundary_graph.h>
 
 #include <set>
 
@@ -23,13 +24,7 @@ namespace Debond
       NodeGraph<dim> graph;
       for (const auto &node : boundary.nodes)
         graph.positions.push_back(node.position);
-      graph.neighbours.resize(boundary.nodes.size());
-      for (const auto &face : boundary.faces)
-        for (const unsigned int i : face.nodes)
-          for (const unsigned int j : face.nodes)
-            if (i != j && i != dealii::numbers::invalid_unsigned_int &&
-                j != dealii::numbers::invalid_unsigned_int)
-              graph.neighbours[i].insert(j);
+      graph.neighbours = neighbours(boundary);
       return graph;
     }
 

@@ -40,13 +40,21 @@ namespace Debond
   write_summary(const Summary &summary, const std::string &file_name)
   {
     Json json;
-    json["scene"]                    = summary.scene;
-    json["method"]                   = summary.method;
-    json["linear_solver"]            = summary.linear_solver;
-    json["status"]                   = summary.status;
-    json["message"]                  = summary.message;
-    json["dimension"]                = summary.dimension;
-    json["functional"]               = summary.functional;
+    json["scene"]         = summary.scene;
+    json["method"]        = summary.method;
+    json["linear_solver"] = summary.linear_solver;
+    json["status"]        = summary.status;
+    json["message"]       = summary.message;
+    json["dimension"]     = summary.dimension;
+    json["functional"]    = summary.functional;
+    json["minimum"]       = {{"state", summary.minimum},
+                             {"search_trials", summary.search_trials},
+                             {"search_improvements", summary.search_improvements}};
+    if (!summary.proof.empty())
+      json["proof"] = {{"status", summary.proof},
+                       {"nodes", summary.proof_nodes},
+                       {"lower_bound", summary.lower_bound},
+                       {"relative_gap", summary.relative_gap}};
     json["iterations"]               = {{"total", summary.total_iterations},
                                         {"long", summary.long_steps},
                                         {"short", summary.short_steps},

@@ -84,6 +84,21 @@ namespace Debond
 
 
 
+  void
+  write_history(const std::vector<ProofProgress> &history,
+                const std::string                &file_name)
+  {
+    write_atomically(file_name, [&](std::ostream &out) {
+      set_full_precision(out);
+      out << "nodes,open,lower_bound,functional,seconds\n";
+      for (const ProofProgress &step : history)
+        out << step.nodes << ',' << step.open << ',' << step.lower << ','
+            << step.upper << ',' << step.seconds << '\n';
+    });
+  }
+
+
+
   template void
   write_contact_profile(const ContactBoundary<2> &,
                         const Verification<2> &,

@@ -7,6 +7,7 @@
 #include <debond/contact/quadrature.h>
 #include <debond/elasticity/crossed_mesh.h>
 #include <debond/elasticity/material.h>
+#include <debond/optimization/branch_and_bound.h>
 #include <debond/optimization/majorise_minimise.h>
 #include <debond/optimization/proximal_bundle.h>
 
@@ -56,6 +57,29 @@ namespace Debond
 
 
 
+  /// How much a better minimum is searched for.
+  enum class BondSearchChoice
+  {
+    automatic, ///< quick if the method is chosen automatically, else none
+    none,
+    quick,
+    full
+  };
+
+
+
+  /// The proof's tolerance is relative to |J|.
+  inline BranchAndBoundParameters
+  proof_defaults()
+  {
+    BranchAndBoundParameters parameters;
+    parameters.tolerance       = 1e-9;
+    parameters.maximum_seconds = 600.;
+    return parameters;
+  }
+
+
+
   /// In the energy norm the method needs few iterations and little choice.
   inline ProximalBundleParameters
   energy_bundle_defaults()
@@ -96,6 +120,9 @@ namespace Debond
     ProximalBundleParameters energy_bundle = energy_bundle_defaults();
 
     MajoriseMinimiseParameters majorise_minimise;
+    BondSearchChoice           search = BondSearchChoice::automatic;
+    bool                       prove  = false;
+    BranchAndBoundParameters   proof  = proof_defaults();
     OutputParameters           output;
 
     /// Largest Verification::error() of a result that counts.

@@ -5,6 +5,7 @@
 #include <debond/application/method_choice.h>
 #include <debond/application/parameters.h>
 #include <debond/application/scene.h>
+#include <debond/application/which_minimum.h>
 #include <debond/optimization/majorise_minimise.h>
 #include <debond/optimization/proximal_bundle.h>
 
@@ -36,6 +37,9 @@ namespace Debond
     double largest_qp_residual = 0.; ///< of bundle methods
 
     unsigned int linear_iterations = 0; ///< of conjugate gradients
+
+    /// Of a success.
+    WhichMinimum minimum;
 
     /// Wall seconds by part.
     std::map<std::string, double> parts;

@@ -16,8 +16,19 @@ namespace Debond
     std::string  linear_solver; ///< direct, multigrid or none
     std::string  status;        ///< to_string(SolverStatus)
     std::string  message;
-    unsigned int dimension        = 2;
-    double       functional       = 0.;
+    unsigned int dimension  = 2;
+    double       functional = 0.;
+
+    /// stationary, local minimum, best known or global; empty if there is no
+    /// verified result.
+    std::string  minimum;
+    unsigned int search_trials       = 0;
+    unsigned int search_improvements = 0;
+    std::string  proof; ///< to_string(ProofStatus), empty if none was tried
+    unsigned int proof_nodes  = 0;
+    double       lower_bound  = 0.; ///< of J, by the proof
+    double       relative_gap = 0.;
+
     unsigned int total_iterations = 0;
     unsigned int long_steps       = 0;
     unsigned int short_steps      = 0;

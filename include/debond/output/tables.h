@@ -2,6 +2,7 @@
 #ifndef debond_output_tables_h
 #define debond_output_tables_h
 
+#include <debond/optimization/branch_and_bound.h>
 #include <debond/optimization/majorise_minimise.h>
 #include <debond/optimization/proximal_bundle.h>
 #include <debond/output/verification.h>
@@ -34,6 +35,11 @@ namespace Debond
   void
   write_history(const std::vector<MajoriseMinimiseIteration> &history,
                 const std::string                            &file_name);
+
+  /// The same for a proof: nodes, open nodes, lower bound, J, seconds.
+  void
+  write_history(const std::vector<ProofProgress> &history,
+                const std::string                &file_name);
 } // namespace Debond
 
 #endif

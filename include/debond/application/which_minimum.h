@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_application_which_minimum_h
+#define debond_application_which_minimum_h
+
+#include <debond/application/parameters.h>
+#include <debond/contact/adhesion_integral.h>
+#include <debond/elasticity/condensation.h>
+#include <debond/optimization/branch_and_bound.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// What is known of a result among the stationary points of J.
+  enum class MinimumKind
+  {
+    stationary,    ///< it satisfies the contact law
+    local_minimum, ///< and no bond is on the kink, so that J rises around it
+    best_known,    ///< and no move of the search lowers J
+    global         ///< and no point is lower, but for the gap
+  };
+
+  std::string
+  to_string(const MinimumKind kind);
+
+
+
+  struct WhichMinimum
+  {
+    MinimumKind kind = MinimumKind::stationary;
+
+    unsigned int search_trials       = 0;
+    unsigned int search_improvements = 0;
+
+    bool         proof_attempted = false;
+    ProofStatus  proof_status    = ProofStatus::no_bound;
+    double       lower_bound     = 0.; ///< of J
+    double       relative_gap    = 0.; ///< (J - lower bound) / |J|
+    unsigned int proof_nodes     = 0;
+
+    /// With J in place of the condensed functional.
+    std::vector<ProofProgress> proof_history;
+  };
+
+
+
+  /// stationary, local minimum, or global if there is no adhesion and J is
+  /// convex.
+  template <int dim>
+  MinimumKind
+  kind_without_search(const AdhesiveLaw            &law,
+                      const AdhesionIntegral<dim>  &adhesion,
+                      const dealii::Vector<double> &s);
+
+  /// The search and the proof that the scene asks for, from the stationary
+  /// point @p s, which moves if they find a better one.
+  template <int dim>
+  WhichMinimum
+  find_better_minimum(const Parameters            &parameters,
+                      const ContactBoundary<dim>  &boundary,
+                      const AdhesiveLaw           &law,
+                      const AdhesionIntegral<dim> &adhesion,
+                      const Condensation          &condensed,
+                      const std::function<bool()> &may_go_on,
+                      dealii::Vector<double>      &s);
+} // namespace Debond
+
+#endif

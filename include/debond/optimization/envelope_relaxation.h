@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_envelope_relaxation_h
+#define debond_optimization_envelope_relaxation_h
+
+#include <debond/optimization/convex_envelope.h>
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace Debond
+{
+  /// q(s) = 1/2 s'A s - g's + sum_i f_i(s_i) on the box lower <= s <= upper,
+  /// A symmetric and positive definite.
+  struct BoxProblem
+  {
+    Eigen::MatrixXd         A;
+    Eigen::VectorXd         g;
+    std::vector<BondEnergy> f;
+    Eigen::VectorXd         lower, upper;
+  };
+
+  /**
+   * Moves s towards the minimum of q with the convex envelopes of f_i in place
+   * of f_i, by a Newton method for s = prox(s - D^{-1}(A s - g)), D = diag A,
+   * with sweeps over the unknowns where it cycles. Returns the number of
+   * factorisations. Whatever s is in the end, LowerBound holds there.
+   */
+  unsigned int
+  minimise_relaxation(const BoxProblem                  &problem,
+                      const std::vector<ConvexEnvelope> &envelopes,
+                      Eigen::VectorXd                   &s);
+
+
+
+  /**
+   * A lower bound of q on the box from any point x:
+   *
+   *     q(s) = 1/2 (s - x)'A (s - x) - 1/2 x'A x + sum_i r_i s_i + f_i(s_i)
+   *
+   * with r = A x - g, and each term of the sum has a least value where its
+   * bond is bonded and where it is broken. At the minimum of the relaxation
+   * the bound is the minimum. `value` accounts for the rounding in its own
+   * evaluation.
+   */
+  struct LowerBound
+  {
+    double value;
+
+    /// How much more q is at least if bond i is bonded, and if it is broken,
+    /// not counting the quadratic term.
+    Eigen::VectorXd bonded_excess, broken_excess;
+
+    LowerBound(const BoxProblem &problem, const Eigen::VectorXd &x);
+  };
+} // namespace Debond
+
+#endif

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/contact/boundary_graph.h>
+
+namespace Debond
+{
+  template <int dim>
+  std::vector<std::set<unsigned int>>
+  neighbours(const ContactBoundary<dim> &boundary)
+  {
+    std::vector<std::set<unsigned int>> result(boundary.nodes.size());
+    for (const auto &face : boundary.faces)
+      for (const unsigned int i : face.nodes)
+        for (const unsigned int j : face.nodes)
+          if (i != j && i != dealii::numbers::invalid_unsigned_int &&
+              j != dealii::numbers::invalid_unsigned_int)
+            result[i].insert(j);
+    return result;
+  }
+
+
+
+  template std::vector<std::set<unsigned int>>
+  neighbours(const ContactBoundary<2> &);
+  template std::vector<std::set<unsigned int>>
+  neighbours(const ContactBoundary<3> &);
+} // namespace Debond

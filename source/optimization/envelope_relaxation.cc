@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/optimization/envelope_relaxation.h>
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <limits>
+
+namespace Debond
+{
+  namespace
+  {
+    constexpr unsigned int maximum_newton_steps = 100;
+
+    /// Full Newton steps; further ones must not rise, and have sweeps between
+    /// them.
+    constexpr unsigned int n_full_steps = 12;
+    constexpr unsigned int n_sweeps     = 3;
+
+    constexpr unsigned int maximum_halvings = 10;
+
+    enum Place
+    {
+      at_lower,
+      on_piece, ///< the first of three
+      at_upper = on_piece + 3
+    };
+
+
+
+    /// Where the minimum of weight/2 (s - z)^2 + e(s) is.
+    int
+    place_of_minimum(const ConvexEnvelope &e,
+                     const double          weight,
+                     const double          z)
+    {
+      bool first = true;
+      for (int p = 0; p < 3; ++p)
+        {
+          const ConvexEnvelope::Piece &piece = e.pieces[p];
+          if (piece.lower >= piece.upper)
+            continue;
+          const auto image = [&](const double s) {
+            return s + (piece.slope + piece.curvature * s) / weight;
+          };
+          if (first && z <= image(piece.lower))
+            return at_lower;
+          first = false;
+          if (z < image(piece.upper))
+            return on_piece + p;
+        }
+      return first ? at_lower : at_upper;
+    }
+
+
+
+    void
+    sweep(const BoxProblem                  &problem,
+          const std::vector<ConvexEnvelope> &envelopes,
+          Eigen::VectorXd                   &s)
+    {
+      for (unsigned int i = 0; i < s.size(); ++i)
+        {
+          const double weight = problem.A(i, i);
+          const double z =
+            s(i) - (problem.A.col(i).dot(s) - problem.g(i)) / weight;
+          const int place = place_of_minimum(envelopes[i], weight, z);
+          if (place == at_lower)
+            s(i) = problem.lower(i);
+          else if (place == at_upper)
+            s(i) = problem.upper(i);
+          else
+            {
+              const auto &piece = envelopes[i].pieces[place - on_piece];
+              s(i) = (weight * z - piece.slope) / (weight + piece.curvature);
+            }
+        }
+    }
+
+
+
+    /// The point that is stationary if each unknown stays where it is.
+    void
+    solve_for(const std::vector<int>            &places,
+              const BoxProblem                  &problem,
+              const std::vector<ConvexEnvelope> &envelopes,
+              Eigen::VectorXd                   &s)
+    {
+      std::vector<int> free;
+      for (unsigned int i = 0; i < places.size(); ++i)
+        if (places[i] == at_lower)
+          s(i) = problem.lower(i);
+        else if (places[i] == at_upper)
+          s(i) = problem.upper(i);
+        else
+          {
+            s(i) = 0.;
+            free.push_back(i);
+          }
+      if (free.empty())
+        return;
+      const Eigen::VectorXd load = problem.g - problem.A * s;
+      Eigen::MatrixXd       K(free.size(), free.size());
+      Eigen::VectorXd       r(free.size());
+      for (unsigned int k = 0; k < free.size(); ++k)
+        {
+          const int   i     = free[k];
+          const auto &piece = envelopes[i].pieces[places[i] - on_piece];
+          for (unsigned int l = k; l < free.size(); ++l)
+            K(l, k) = problem.A(free[l], i);
+          K(k, k) += piece.curvature;
+          r(k) = load(i) - piece.slope;
+        }
+      const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(K);
+      factor.solveInPlace(r);
+      for (unsigned int k = 0; k < free.size(); ++k)
+        s(free[k]) = r(k);
+    }
+
+
+
+    double
+    value(const BoxProblem                  &problem,
+          const std::vector<ConvexEnvelope> &envelopes,
+          const Eigen::VectorXd             &s)
+    {
+      double sum = s.dot(0.5 * (problem.A * s) - problem.g);
+      for (unsigned int i = 0; i < s.size(); ++i)
+        sum += envelopes[i].value(s(i));
+      return sum;
+    }
+
+
+
+    /// Takes s into the box, and back towards old_s, which is in it, until the
+    /// relaxation does not rise.
+    void
+    step_back(const BoxProblem                  &problem,
+              const std::vector<ConvexEnvelope> &envelopes,
+              Eigen::VectorXd                    old_s,
+              Eigen::VectorXd                   &s)
+    {
+      old_s = old_s.cwiseMax(problem.lower).cwiseMin(problem.upper);
+      s     = s.cwiseMax(problem.lower).cwiseMin(problem.upper);
+      const double old_value = value(problem, envelopes, old_s);
+      for (unsigned int k = 0;
+           k < maximum_halvings && value(problem, envelopes, s) > old_value;
+           ++k)
+        s = 0.5 * (old_s + s);
+    }
+  } // namespace
+
+
+
+  unsigned int
+  minimise_relaxation(const BoxProblem                  &problem,
+                      const std::vector<ConvexEnvelope> &envelopes,
+                      Eigen::VectorXd                   &s)
+  {
+    s = s.cwiseMax(problem.lower).cwiseMin(problem.upper);
+    std::vector<int> places, old_places;
+    for (unsigned int step = 0; step < maximum_newton_steps; ++step)
+      {
+        const Eigen::VectorXd gradient = problem.A * s - problem.g;
+        old_places.swap(places);
+        places.resize(s.size());
+        for (unsigned int i = 0; i < s.size(); ++i)
+          places[i] = place_of_minimum(envelopes[i],
+                                       problem.A(i, i),
+                                       s(i) - gradient(i) / problem.A(i, i));
+        if (places == old_places)
+          return step;
+        const Eigen::VectorXd old_s = s;
+        solve_for(places, problem, envelopes, s);
+        if (step < n_full_steps)
+          continue;
+        step_back(problem, envelopes, old_s, s);
+        for (unsigned int k = 0; k < n_sweeps; ++k)
+          sweep(problem, envelopes, s);
+      }
+    return maximum_newton_steps;
+  }
+
+
+
+  LowerBound::LowerBound(const BoxProblem &problem, const Eigen::VectorXd &x)
+    : bonded_excess(x.size())
+    , broken_excess(x.size())
+  {
+    const unsigned int    n         = x.size();
+    const Eigen::VectorXd product   = problem.A * x;
+    const Eigen::VectorXd magnitude = problem.A.cwiseAbs() * x.cwiseAbs();
+
+    value       = -0.5 * x.dot(product);
+    double size = 0.5 * x.cwiseAbs().dot(magnitude);
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const double r = product(i) - problem.g(i);
+        const double bonded =
+          problem.f[i].least_bonded(r, problem.lower(i), problem.upper(i));
+        const double broken =
+          problem.f[i].least_broken(r, problem.lower(i), problem.upper(i));
+        const double least = std::min(bonded, broken);
+        bonded_excess(i)   = bonded - least;
+        broken_excess(i)   = broken - least;
+        value += least;
+        size += std::abs(least) + (magnitude(i) + std::abs(problem.g(i))) *
+                                    std::max(std::abs(problem.lower(i)),
+                                             std::abs(problem.upper(i)));
+      }
+    // Sums of n terms lose at most n units of their absolute sum.
+    value -= (n + 16.) * std::numeric_limits<double>::epsilon() * size;
+  }
+} // namespace Debond
