@@ -35,7 +35,7 @@ for signal in INT TERM; do
   "$debond" --study study.prm --jobs 1 >log 2>errors &
   process=$!
   set +m
-  for _ in $(seq 300); do
+  for _ in $(seq 6000); do
     [ -e "output/study/cases/u_k=0.05/summary.json" ] && break
     sleep 0.02
   done
