@@ -233,6 +233,9 @@ namespace Debond
     Eigen::VectorXd right_side(n);
     for (unsigned int k = 0; k < n; ++k)
       right_side(k) = bounded.col(cuts[k]).dot(b_active) - beta(cuts[k]);
+    // What all entries share goes into v; left in, it would be lost against
+    // sum lambda = 1 where it is large beside H.
+    right_side.array() -= right_side.mean();
 
     // With K = H + kappa 1 1', H lambda + v 1 = r becomes
     // K lambda = r + (kappa sum lambda - v) 1.
@@ -255,16 +258,20 @@ namespace Debond
         const Eigen::VectorXd product = h_times(refined);
         Eigen::VectorXd       rest    = right_side - product;
         rest.array() -= rest.mean();
-        const double norm = rest.lpNorm<Eigen::Infinity>();
-        if (!(norm < previous))
+        const double terms = product.lpNorm<Eigen::Infinity>() +
+                             right_side.lpNorm<Eigen::Infinity>() +
+                             std::numeric_limits<double>::min();
+        // Both parts count: with cuts of very different lengths the sum of
+        // lambda is the last to be right.
+        const double error = std::max(rest.lpNorm<Eigen::Infinity>() / terms,
+                                      std::abs(1. - refined.sum()));
+        if (!(error < previous))
           break;
         target.lambda = refined;
         residual      = rest;
         missing       = 1. - refined.sum();
-        previous      = norm;
-        if (norm <=
-            refinement_tolerance * (product.lpNorm<Eigen::Infinity>() +
-                                    right_side.lpNorm<Eigen::Infinity>()))
+        previous      = error;
+        if (error <= refinement_tolerance)
           break;
       }
 
