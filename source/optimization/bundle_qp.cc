@@ -496,7 +496,7 @@ namespace Debond
       if (!in_set[j])
         {
           const double excess   = solution.slopes(j) - beta(j) - v;
-          const double rounding = 4. * epsilon *
+          const double rounding = 64. * epsilon *
                                   (std::sqrt(gram(j, j)) * longest_cut / u +
                                    bounded.col(j).norm() * d_norm + beta(j));
           if (excess > cut_tolerance * std::abs(v) + rounding)
@@ -519,7 +519,7 @@ namespace Debond
           double       rounding = 0.;
           for (unsigned int k = 0; k < cuts.size(); ++k)
             rounding += lambda(k) * std::abs(bounded(i, cuts[k]));
-          rounding *= 4. * epsilon / u;
+          rounding *= 64. * epsilon / u;
           if (excess > bound_tolerance * d_largest + rounding)
             {
               const double gain = excess * excess * u;

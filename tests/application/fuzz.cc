@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Mutations of the shipped scenes: each is rejected with the entry or the line
+// named, or read; what is small is also solved. An argument gives the number
+// of cases. A case that crashes or hangs is printed before the test ends.
+
+#include <debond/application/method_choice.h>
+#include <debond/application/parameters.h>
+#include <debond/application/run.h>
+#include <debond/application/scene_size.h>
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <random>
+#include <regex>
+#include <sstream>
+
+using namespace Debond;
+
+namespace
+{
+  constexpr unsigned int seconds_for_a_case     = 60;
+  constexpr double       largest_scene_to_solve = 1500.; // unknowns
+
+  std::string current_case;
+
+
+
+  /// Only what is allowed in a signal handler.
+  extern "C" void
+  report_signal(const int number)
+  {
+    const char *const text =
+      number == SIGALRM ? "HANG in the case\n" : "CRASH in the case\n";
+    ssize_t written = write(STDERR_FILENO, text, std::strlen(text));
+    written = write(STDERR_FILENO, current_case.data(), current_case.size());
+    _exit(written < 0 ? 2 : 1);
+  }
+
+
+
+  class Mutator
+  {
+  public:
+    std::string
+    operator()(const std::string &scene)
+    {
+      std::vector<std::string> lines;
+      std::istringstream       input(scene);
+      for (std::string line; std::getline(input, line);)
+        lines.push_back(line);
+      for (unsigned int k = below(3) + 1; k > 0 && !lines.empty(); --k)
+        mutate(lines);
+      std::string result;
+      for (const std::string &line : lines)
+        result += line + '\n';
+      return result;
+    }
+
+    unsigned int
+    below(const unsigned int n)
+    {
+      return std::uniform_int_distribution<unsigned int>(0, n - 1)(engine);
+    }
+
+  private:
+    void
+    mutate(std::vector<std::string> &lines)
+    {
+      const unsigned int at     = below(lines.size());
+      std::string       &line   = lines[at];
+      const std::size_t  equals = line.find('=');
+      switch (below(12))
+        {
+          case 0:
+            lines.erase(lines.begin() + at);
+            break;
+          case 1:
+            lines.insert(lines.begin() + at, lines[below(lines.size())]);
+            break;
+          case 2:
+            if (!line.empty())
+              line.erase(below(line.size()), 1);
+            break;
+          case 3:
+            line.insert(below(line.size() + 1), 1, char(below(255) + 1));
+            break;
+          case 4:
+            line.resize(below(line.size() + 1));
+            break;
+          case 5:
+            std::swap(line, lines[below(lines.size())]);
+            break;
+          default:
+            if (equals != std::string::npos)
+              line = line.substr(0, equals + 2) + value();
+        }
+    }
+
+    std::string
+    value()
+    {
+      static const std::vector<std::string> values = {
+        "",
+        "0",
+        "-0",
+        "1",
+        "-1",
+        "2",
+        "3",
+        "1e-300",
+        "1e300",
+        "1e308",
+        "-1e308",
+        "1e-12",
+        "1e12",
+        "nan",
+        "inf",
+        "-inf",
+        "1e",
+        "0x10",
+        "1,5",
+        "1, 1",
+        "2, 1",
+        "3, 2, 1",
+        "1, 1, 1",
+        "1e-9, 1e9",
+        "999999999999",
+        "4294967296",
+        "0.5",
+        "0.4999999",
+        "-0.999",
+        "left",
+        "right, right",
+        "bottom",
+        "bottom, top",
+        "left, right, bottom, top",
+        "front",
+        "free",
+        "fixed",
+        "none",
+        "winkler",
+        "exact",
+        "midpoint",
+        "gauss 1",
+        "gauss 99",
+        "gauss 100",
+        "gauss -1",
+        "plane strain",
+        "true",
+        "automatic",
+        "energy bundle",
+        "majorise minimise",
+        "multigrid",
+        "direct",
+        "0; 0",
+        "0; 1/x",
+        "0; 1/(x-0.2)",
+        "0; log(-1)",
+        "0; sqrt(x-0.2)",
+        "0; rint(1e9*x)",
+        "0; x",
+        "0; 0; 0",
+        "0; 1e300",
+        "0; sin(1e6*x)",
+        "0; if(x<0.2,1,",
+        "0; y z",
+        ";",
+        "0;",
+        "a=1",
+        "a=1, a=2",
+        "x=1",
+        "pi=3",
+        "a=nan",
+        "{scene}",
+        "/",
+        "\\",
+        "#",
+        "end",
+        "0; rand()",
+        "0; rand_seed(1)",
+        "0; x=1",
+        "0; 0.69*(x^-1)",
+        "..",
+        std::string(5000, '9'),
+        "0; " + std::string(2000, '(')};
+      return values[below(values.size())];
+    }
+
+    std::mt19937 engine{20260702};
+  };
+
+
+
+  std::vector<std::string>
+  shipped_scenes(const std::filesystem::path &directory)
+  {
+    std::vector<std::string> files, scenes;
+    for (const char *folder : {"", "hard"})
+      for (const auto &entry :
+           std::filesystem::directory_iterator(directory / folder))
+        if (entry.path().extension() == ".prm")
+          files.push_back(entry.path().string());
+    std::sort(files.begin(), files.end());
+    for (const std::string &file : files)
+      {
+        std::ostringstream text;
+        text << std::ifstream(file).rdbuf();
+        scenes.push_back(text.str());
+      }
+    return scenes;
+  }
+
+
+
+  struct Counts
+  {
+    unsigned int rejected = 0, read = 0, solved = 0, not_converged = 0;
+    unsigned int unnamed = 0, failed = 0;
+  };
+
+
+
+  /// Whether an error says where the mistake is: the line, an entry, or the
+  /// load and the point.
+  bool
+  is_named(const std::string &error)
+  {
+    static const std::regex named(
+      "^fuzz\\.prm:[0-9]+: [^]*|[^]*(Dimension|[A-Z][A-Za-z ]*/[A-Z][a-z]+|"
+      "traction|body force|clamped|contact boundary)[^]*");
+    return std::regex_match(error, named);
+  }
+
+
+
+  void
+  try_case(const std::string &directory, Counts &counts)
+  {
+    try
+      {
+        ParameterTable table;
+        declare_parameters(table);
+        std::istringstream input(current_case);
+        table.read(input, "fuzz.prm");
+        Parameters         parameters = to_parameters("fuzz.prm", table);
+        const MethodChoice choice     = choose_method(parameters);
+        ++counts.read;
+        // MPI, which multigrid needs, starts only once in a process.
+        if (scene_size(parameters).unknowns > largest_scene_to_solve ||
+            choice.linear_solver == LinearSolver::multigrid)
+          return;
+
+        parameters.output.directory = directory;
+        for (auto *method : {&parameters.bundle, &parameters.energy_bundle})
+          method->maximum_iterations =
+            std::min(method->maximum_iterations, 50U);
+        std::ostringstream log;
+        const ExitCode     code = parameters.dimension == 2 ?
+                                    run<2>(parameters, log, false) :
+                                    run<3>(parameters, log, false);
+        ++counts.solved;
+        counts.not_converged += code == ExitCode::not_converged;
+        if (code != ExitCode::success && code != ExitCode::not_converged)
+          {
+            ++counts.failed;
+            std::cout << "exit code " << static_cast<int>(code)
+                      << " of the case\n"
+                      << current_case;
+          }
+      }
+    catch (const BadInput &error)
+      {
+        ++counts.rejected;
+        for (const std::string &line : error.lines)
+          if (!is_named(line))
+            {
+              ++counts.unnamed;
+              std::cout << "no entry is named: " << line << '\n';
+            }
+      }
+    catch (const std::exception &error)
+      {
+        ++counts.failed;
+        std::cout << "exception " << error.what() << "\nin the case\n"
+                  << current_case;
+      }
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *argv[])
+{
+  const unsigned int n_cases = argc > 1 ? std::stoul(argv[1]) : 500;
+  for (const int number : {SIGSEGV, SIGFPE, SIGABRT, SIGBUS, SIGILL, SIGALRM})
+    std::signal(number, report_signal);
+
+  const std::vector<std::string> scenes =
+    shipped_scenes(SOURCE_DIR "/../../prm");
+  const std::string directory = (std::filesystem::temp_directory_path() /
+                                 ("debond-fuzz-" + std::to_string(getpid())))
+                                  .string();
+
+  std::ostringstream    messages;
+  std::streambuf *const errors = std::cerr.rdbuf(messages.rdbuf());
+  Mutator               mutator;
+  Counts                counts;
+  for (unsigned int k = 0; k < n_cases; ++k)
+    {
+      current_case = mutator(scenes[mutator.below(scenes.size())]);
+      alarm(seconds_for_a_case);
+      try_case(directory, counts);
+      alarm(0);
+      messages.str("");
+    }
+  std::cerr.rdbuf(errors);
+  std::filesystem::remove_all(directory);
+
+  std::cout << "failures: " << counts.failed
+            << "\nrejections that name nothing: " << counts.unnamed
+            << "\nsome of each: "
+            << (counts.rejected > 0 && counts.solved > 0 ? "yes" : "NO")
+            << '\n';
+  if (argc > 1)
+    std::cout << n_cases << " cases: " << counts.rejected << " rejected, "
+              << counts.read << " read, " << counts.solved << " solved, "
+              << counts.not_converged << " not converged\n";
+  return counts.failed + counts.unnamed > 0 ? 1 : 0;
+}
