@@ -232,7 +232,7 @@ namespace
   {
     static const std::regex named(
       "^fuzz\\.prm:[0-9]+: [^]*|[^]*(Dimension|[A-Z][A-Za-z ]*/[A-Z][a-z]+|"
-      "traction|body force|clamped|contact boundary)[^]*");
+      "traction|body force|Boundary conditions|clamped|contact boundary)[^]*");
     return std::regex_match(error, named);
   }
 

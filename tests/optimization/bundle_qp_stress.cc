@@ -338,6 +338,14 @@ namespace
       std::max(record.steps, double(cold.steps) / (p.beta.size() + p.b.size()));
     record.moved += qp.solve(p.beta, p.b, p.u).steps > 0;
 
+    // The factor of one u must not serve another.
+    Problem heavier = p;
+    heavier.u *= 3.;
+    record.residual =
+      std::max(record.residual,
+               residual(heavier, qp.solve(p.beta, p.b, heavier.u)));
+
+
     const auto    bound_order = generator.permutation(p.b.size());
     const Problem q =
       permuted(p, generator.permutation(p.beta.size()), bound_order);
