@@ -111,7 +111,7 @@ namespace
     check("same work",
           std::abs(fine.problem->load() * v - coarse.problem->load() * u) /
             (coarse.problem->load().l2_norm() * u.l2_norm()),
-          1e-4);
+          1e-11);
 
     const dealii::Vector<double> back =
       interpolate_displacement(fine_box, *fine.problem, v, *coarse.problem);
