@@ -2,8 +2,8 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/application/interrupt.h>
+#include <debond/output/child_process.h>
 #include <debond/study/case_runner.h>
-#include <debond/study/child_process.h>
 
 #include <algorithm>
 #include <chrono>

@@ -2,9 +2,9 @@
 #ifndef debond_study_study_report_h
 #define debond_study_study_report_h
 
+#include <debond/output/gnuplot.h>
 #include <debond/study/best_values.h>
 #include <debond/study/columns.h>
-#include <debond/study/gnuplot.h>
 #include <debond/study/reference.h>
 #include <debond/study/study_parameters.h>
 

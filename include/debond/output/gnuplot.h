@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_study_gnuplot_h
-#define debond_study_gnuplot_h
+#ifndef debond_output_gnuplot_h
+#define debond_output_gnuplot_h
 
 #include <string>
 #include <utility>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/study/child_process.h>
+#include <debond/output/child_process.h>
 
 #include <fcntl.h>
 #include <sys/prctl.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/output/atomic_file.h>
-#include <debond/study/child_process.h>
-#include <debond/study/gnuplot.h>
+#include <debond/output/child_process.h>
+#include <debond/output/gnuplot.h>
 
 #include <algorithm>
 #include <filesystem>

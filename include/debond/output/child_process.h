@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_study_child_process_h
-#define debond_study_child_process_h
+#ifndef debond_output_child_process_h
+#define debond_output_child_process_h
 
 #include <sys/types.h>
 
