@@ -41,7 +41,7 @@ namespace Debond
   make_function(const std::string                   &expressions,
                 const std::map<std::string, double> &constants)
   {
-    const unsigned int n_components =
+    const std::size_t n_components =
       dealii::Utilities::split_string_list(expressions, ';').size();
     if (n_components != dim)
       throw std::invalid_argument("expected " + std::to_string(dim) +

@@ -13,7 +13,8 @@ namespace Debond
     lower_case(std::string word)
     {
       for (char &letter : word)
-        letter = std::tolower(static_cast<unsigned char>(letter));
+        letter =
+          static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
       return word;
     }
   } // namespace
@@ -27,8 +28,8 @@ namespace Debond
     const std::string t = lower_case(b);
 
     // distance[i][j] is that of the first i letters of s and j of t.
-    std::vector<std::vector<unsigned int>> distance(
-      s.size() + 1, std::vector<unsigned int>(t.size() + 1));
+    std::vector<std::vector<std::size_t>> distance(
+      s.size() + 1, std::vector<std::size_t>(t.size() + 1));
     for (std::size_t i = 0; i <= s.size(); ++i)
       for (std::size_t j = 0; j <= t.size(); ++j)
         {
@@ -37,10 +38,10 @@ namespace Debond
               distance[i][j] = i + j;
               continue;
             }
-          const unsigned int substitution = s[i - 1] == t[j - 1] ? 0 : 1;
-          distance[i][j]                  = std::min({distance[i - 1][j] + 1,
-                                                      distance[i][j - 1] + 1,
-                                                      distance[i - 1][j - 1] + substitution});
+          const std::size_t substitution = s[i - 1] == t[j - 1] ? 0 : 1;
+          distance[i][j]                 = std::min({distance[i - 1][j] + 1,
+                                                     distance[i][j - 1] + 1,
+                                                     distance[i - 1][j - 1] + substitution});
           if (i > 1 && j > 1 && s[i - 1] == t[j - 2] && s[i - 2] == t[j - 1])
             distance[i][j] =
               std::min(distance[i][j], distance[i - 2][j - 2] + 1);

@@ -168,7 +168,8 @@ namespace Debond
 
         std::string keyword = text.substr(0, text.find(' '));
         for (char &letter : keyword)
-          letter = std::tolower(static_cast<unsigned char>(letter));
+          letter =
+            static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
         const std::string rest = trim(text.substr(keyword.size()));
 
         if (keyword == "subsection" && !rest.empty())
@@ -268,7 +269,7 @@ namespace Debond
   ParameterTable::get_unsigned(const std::string &path) const
   {
     const auto [sections, name] = split_path(path);
-    return handler.get_integer(sections, name);
+    return static_cast<unsigned int>(handler.get_integer(sections, name));
   }
 
 

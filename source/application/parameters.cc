@@ -620,7 +620,7 @@ namespace Debond
       read_number(lengths[d], p.box.lengths[d]);
     const std::vector<std::string> cells = table.get_list("Mesh/Cells");
     for (std::size_t d = 0; d < cells.size(); ++d)
-      p.box.cells[d] = std::stoul(cells[d]);
+      p.box.cells[d] = static_cast<unsigned int>(std::stoul(cells[d]));
     p.box.rotation = table.get_double("Mesh/Rotation");
 
     p.material.young_modulus = table.get_double("Material/Young modulus");

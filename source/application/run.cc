@@ -63,7 +63,8 @@ namespace Debond
       summary.cells                    = scene.n_cells();
       summary.degrees_of_freedom       = scene.problem().n_free_dofs();
       summary.degrees_of_freedom_paper = scene.problem().n_dofs_paper();
-      summary.contact_nodes = scene.problem().contact_boundary().nodes.size();
+      summary.contact_nodes            = static_cast<unsigned int>(
+        scene.problem().contact_boundary().nodes.size());
       summary.timings_s["mesh"]     = scene.mesh_seconds();
       summary.timings_s["assembly"] = scene.assembly_seconds();
       summary.revision              = git_revision();
@@ -128,7 +129,7 @@ namespace Debond
     {
       dealii::Utilities::System::MemoryStats memory;
       dealii::Utilities::System::get_memory_stats(memory);
-      return 1024. * memory.VmHWM;
+      return 1024. * static_cast<double>(memory.VmHWM);
     }
 
 

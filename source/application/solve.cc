@@ -166,10 +166,10 @@ namespace Debond
     add_majorise_result(const MajoriseMinimiseResult &minimum,
                         SolveResult                  &result)
     {
-      result.status           = minimum.status;
-      result.message          = minimum.message;
-      result.iterations       = minimum.history.size();
-      result.criterion        = minimum.residual;
+      result.status     = minimum.status;
+      result.message    = minimum.message;
+      result.iterations = static_cast<unsigned int>(minimum.history.size());
+      result.criterion  = minimum.residual;
       result.majorise_history = minimum.history;
       for (const MajoriseMinimiseIteration &iteration : minimum.history)
         result.linear_iterations += iteration.linear_iterations;
@@ -227,8 +227,9 @@ namespace Debond
 
       watch.add_energy(condensed.energy_at_zero());
       timer.restart();
-      Vector s(normals.size());
-      if (method == SolverMethod::energy_bundle)
+      Vector s(static_cast<unsigned int>(normals.size()));
+      // If no contact node is free, there is no metric either.
+      if (method == SolverMethod::energy_bundle && !normals.empty())
         solve_by_energy_bundle(parameters, scene, condensed, watch, s, result);
       else
         solve_by_majorise_minimise(
@@ -375,7 +376,7 @@ namespace Debond
     if (choice.linear_solver != LinearSolver::direct)
       {
         const auto &nodes = scene.problem().contact_boundary().nodes;
-        Vector      s(nodes.size());
+        Vector      s(static_cast<unsigned int>(nodes.size()));
         for (unsigned int i = 0; i < nodes.size(); ++i)
           s(i) = result.u(nodes[i].dof);
         result.minimum.kind =

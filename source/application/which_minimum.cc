@@ -123,7 +123,8 @@ namespace Debond
                       const AdhesionIntegral<dim>  &adhesion,
                       const dealii::Vector<double> &s)
   {
-    if (law.bond_threshold() == 0.)
+    // Without bonds J is convex.
+    if (law.bond_threshold() == 0. || s.size() == 0)
       return MinimumKind::global;
 
     // No quadrature point is so close to the kink that it changes its branch.

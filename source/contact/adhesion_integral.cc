@@ -16,7 +16,8 @@ namespace Debond
   {
     if (!quadrature.depends_on_trace())
       {
-        collect_points(dealii::Vector<double>(boundary.nodes.size()));
+        collect_points(dealii::Vector<double>(
+          static_cast<unsigned int>(boundary.nodes.size())));
         lump_nodal_points();
       }
   }

@@ -124,7 +124,7 @@ namespace Debond
   {
     A.vmult(eta, v);
     eta -= f;
-    dealii::Vector<double> xi(boundary.nodes.size());
+    dealii::Vector<double> xi(static_cast<unsigned int>(boundary.nodes.size()));
     adhesion.subgradient(normal_trace(v), xi);
     for (unsigned int i = 0; i < xi.size(); ++i)
       eta(boundary.nodes[i].dof) += xi(i);
@@ -147,7 +147,7 @@ namespace Debond
   Functional<dim, MatrixType, VectorType>::normal_trace(
     const VectorType &v) const
   {
-    dealii::Vector<double> s(boundary.nodes.size());
+    dealii::Vector<double> s(static_cast<unsigned int>(boundary.nodes.size()));
     for (unsigned int i = 0; i < s.size(); ++i)
       s(i) = v(boundary.nodes[i].dof);
     return s;

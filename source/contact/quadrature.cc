@@ -147,7 +147,7 @@ namespace Debond
             std::to_string(max_gauss_points_2d) + ", in 3D at most " +
             std::to_string(max_gauss_points_3d) + "), exact");
         parameters.rule         = Rule::gauss;
-        parameters.gauss_points = std::stoul(number);
+        parameters.gauss_points = static_cast<unsigned int>(std::stoul(number));
       }
     return parameters;
   }

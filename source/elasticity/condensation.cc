@@ -63,7 +63,7 @@ namespace Debond
     Factor(const dealii::SparseMatrix<double> &A,
            const std::vector<unsigned int>    &unknowns,
            const unsigned int                  n_kept)
-      : n(unknowns.size())
+      : n(static_cast<int>(unknowns.size()))
       , n_kept(n_kept)
     {
       cholmod_start(&common);
@@ -152,7 +152,7 @@ namespace Debond
       std::size_t  next   = 0;
       for (int i = 0; i < n; ++i)
         {
-          starts[i] = next;
+          starts[i] = static_cast<int>(next);
           for (auto entry = A.begin(unknowns[i]); entry != A.end(unknowns[i]);
                ++entry)
             if (const int j = position[entry->column()]; j >= 0 && j <= i)
@@ -161,7 +161,7 @@ namespace Debond
                 values[next++] = entry->value();
               }
         }
-      starts[n] = next;
+      starts[n] = static_cast<int>(next);
 
       std::vector<int> group(n, 0), permutation(n);
       std::fill(group.end() - n_kept, group.end(), 1);
@@ -230,14 +230,15 @@ namespace Debond
       y[i] = f(unknowns[i]);
     y = factor->solve(CHOLMOD_L, factor->solve(CHOLMOD_P, y));
 
-    const unsigned int n_eliminated = unknowns.size() - kept.size();
-    c_0                             = 0.;
+    const unsigned int n_eliminated =
+      static_cast<unsigned int>(unknowns.size() - kept.size());
+    c_0 = 0.;
     for (unsigned int i = 0; i < n_eliminated; ++i)
       c_0 -= 0.5 * y[i] * y[i];
 
     L_ss = factor->trailing_block();
     S.reinit(kept.size(), kept.size());
-    g.reinit(kept.size());
+    g.reinit(static_cast<unsigned int>(kept.size()));
     if (!kept.empty())
       L_ss.mTmult(S, L_ss);
     for (unsigned int i = 0; i < kept.size(); ++i)
@@ -289,8 +290,9 @@ namespace Debond
   dealii::Vector<double>
   Condensation::expand(const dealii::Vector<double> &s) const
   {
-    const unsigned int  n_eliminated = unknowns.size() - s.size();
-    std::vector<double> x            = y;
+    const unsigned int n_eliminated =
+      static_cast<unsigned int>(unknowns.size()) - s.size();
+    std::vector<double> x = y;
     for (unsigned int j = 0; j < s.size(); ++j)
       {
         double sum = 0.;

@@ -36,7 +36,7 @@ namespace Debond
   unsigned int
   VertexNormals<dim>::n_groups() const
   {
-    return measures.size();
+    return static_cast<unsigned int>(measures.size());
   }
 
 

@@ -92,7 +92,8 @@ namespace Debond
 
     for (const auto &cell : coarse.active_cell_iterators())
       {
-        const unsigned int cell_centre = vertices.size();
+        const unsigned int cell_centre =
+          static_cast<unsigned int>(vertices.size());
         vertices.push_back(cell->center());
 
         // A simplex on the edge ab of a face, (a, b, cell_centre) in 2D and
@@ -143,7 +144,7 @@ namespace Debond
                   face_centre == dealii::numbers::invalid_unsigned_int;
                 if (is_new)
                   {
-                    face_centre = vertices.size();
+                    face_centre = static_cast<unsigned int>(vertices.size());
                     vertices.push_back(face->center());
                   }
 

@@ -239,7 +239,7 @@ namespace Debond
         frame.dofs             = vertex.dofs;
         frame.to_frame         = contact_frame(normals);
         frame.to_cartesian     = dealii::invert(frame.to_frame);
-        frame_of_vertex[index] = frames.size();
+        frame_of_vertex[index] = static_cast<unsigned int>(frames.size());
         frames.push_back(frame);
 
         if (conditions.tangential_displacement_fixed)
@@ -250,7 +250,7 @@ namespace Debond
               ++n_fixed_tangential_dofs;
             }
 
-        vertex.first_node = nodes.size();
+        vertex.first_node = static_cast<unsigned int>(nodes.size());
         for (unsigned int k = 0; k < n_normals; ++k)
           nodes.push_back({vertex.dofs[k],
                            vertex.position,

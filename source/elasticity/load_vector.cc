@@ -111,9 +111,9 @@ namespace Debond
         : traction(load)
         , name(load_name)
         , rule(4)
-        , minimum_depth(std::max(0.,
-                                 std::ceil(std::log2(
-                                   64. / std::pow(n_faces, 1. / (dim - 1))))))
+        , minimum_depth(static_cast<unsigned int>(std::max(
+            0.,
+            std::ceil(std::log2(64. / std::pow(n_faces, 1. / (dim - 1)))))))
       {}
 
       /// The nodal forces on the face with the given vertices.

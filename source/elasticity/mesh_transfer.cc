@@ -41,7 +41,7 @@ namespace Debond
         const dealii::Point<dim>      position = in_cells(vertex);
         std::array<unsigned int, dim> lattice;
         for (unsigned int d = 0; d < dim; ++d)
-          lattice[d] = std::lround(2. * position[d]);
+          lattice[d] = static_cast<unsigned int>(std::lround(2. * position[d]));
         return values[index(lattice)];
       }
 

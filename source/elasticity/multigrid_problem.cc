@@ -243,7 +243,7 @@ namespace Debond
   dealii::Vector<double>
   MultigridProblem<dim>::normal_trace(const dealii::Vector<double> &v) const
   {
-    dealii::Vector<double> s(normals.size());
+    dealii::Vector<double> s(static_cast<unsigned int>(normals.size()));
     for (unsigned int i = 0; i < normals.size(); ++i)
       s(i) = v(normals[i]);
     return s;

@@ -52,7 +52,7 @@ namespace Debond
       }
 
     const Eigen::SelfAdjointEigenSolver<Gram> eigen(gram);
-    const double threshold = 1e-12 * supports.size();
+    const double threshold = 1e-12 * static_cast<double>(supports.size());
 
     Gram    null_projector = Gram::Zero();
     Motions null_vector    = Motions::Zero();

@@ -47,11 +47,10 @@ namespace Debond
   unsigned int
   Verification<dim>::count(const BondState state) const
   {
-    return std::count_if(nodes.begin(),
-                         nodes.end(),
-                         [&](const ContactNodeState &node) {
-                           return node.state == state;
-                         });
+    return static_cast<unsigned int>(std::count_if(
+      nodes.begin(), nodes.end(), [&](const ContactNodeState &node) {
+        return node.state == state;
+      }));
   }
 
 
@@ -162,7 +161,7 @@ namespace Debond
                        const LawScales               &scales,
                        std::vector<ContactNodeState> &nodes)
     {
-      const unsigned int n = nodes.size();
+      const unsigned int n = static_cast<unsigned int>(nodes.size());
 
       // What is needed at fixed displacements is enough. It is exactly zero
       // for a node on the graph.
@@ -320,7 +319,7 @@ namespace Debond
     const ContactBoundary<dim>  &boundary = problem.contact_boundary();
     const dealii::Vector<double> residual = problem.residual(u);
 
-    dealii::Vector<double> s(boundary.nodes.size());
+    dealii::Vector<double> s(static_cast<unsigned int>(boundary.nodes.size()));
     for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
       s(i) = u(boundary.nodes[i].dof);
     const std::vector<Interval> forces = adhesion.force_intervals(s, 0.);

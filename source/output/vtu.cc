@@ -104,9 +104,11 @@ namespace Debond
         const dealii::SymmetricTensor<2, dim> stress =
           problem.stress(cell, displacement);
         for (unsigned int c = 0; c < stresses.size(); ++c)
-          stresses[c](index) = stress.access_raw_entry(c);
-        von_mises(index) = problem.material().template von_mises<dim>(stress);
-        energy_density(index) = 0.5 * (stress * (compliance * stress));
+          stresses[c](index) = static_cast<float>(stress.access_raw_entry(c));
+        von_mises(index) = static_cast<float>(
+          problem.material().template von_mises<dim>(stress));
+        energy_density(index) =
+          static_cast<float>(0.5 * (stress * (compliance * stress)));
       }
 
     for (unsigned int c = 0; c < stresses.size(); ++c)
@@ -163,13 +165,13 @@ namespace Debond
 
             const ContactNodeState &state = verification.nodes[node];
             for (unsigned int d = 0; d < dim; ++d)
-              patch.data(d, k) = displacements[node][d];
-            patch.data(dim, k)     = state.u_nu;
-            patch.data(dim + 1, k) = -state.u_nu;
-            patch.data(dim + 2, k) =
-              state.normal_force / boundary.nodes[node].measure;
+              patch.data(d, k) = static_cast<float>(displacements[node][d]);
+            patch.data(dim, k)     = static_cast<float>(state.u_nu);
+            patch.data(dim + 1, k) = static_cast<float>(-state.u_nu);
+            patch.data(dim + 2, k) = static_cast<float>(
+              state.normal_force / boundary.nodes[node].measure);
             patch.data(dim + 3, k) = static_cast<float>(state.state);
-            patch.data(dim + 4, k) = state.violation;
+            patch.data(dim + 4, k) = static_cast<float>(state.violation);
           }
       }
 

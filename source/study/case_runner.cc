@@ -143,7 +143,7 @@ namespace Debond
         std::ostringstream text;
         text << n_done << " of " << n_cases << " cases done, " << n_running
              << " running, ";
-        const double left = n_cases - n_done;
+        const double left = static_cast<double>(n_cases - n_done);
         if (n_timed == 0 && left > 0)
           text << "time left not known yet";
         else
@@ -205,7 +205,7 @@ namespace Debond
     for (const Case *const one : cases)
       if (afresh || !is_finished(*one))
         waiting.push_back(one);
-    run_count += waiting.size();
+    run_count += static_cast<unsigned int>(waiting.size());
     CaseCounter counter(
       cases.size(), cases.size() - waiting.size(), jobs, out, terminal);
 

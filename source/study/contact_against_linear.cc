@@ -2,10 +2,10 @@
 #include <debond/application/scene.h>
 #include <debond/application/solve.h>
 #include <debond/study/contact_against_linear.h>
+#include <debond/study/convergence.h>
 #include <debond/study/linear_baselines.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <memory>
 #include <sstream>
@@ -56,27 +56,6 @@ namespace Debond
                 return {{"iterations", result->iterations},
                         {"energy", 0.5 * (result->u * scene.problem().load())}};
               }};
-    }
-
-
-
-    /// The exponent of a fitted power law y = c x^p.
-    double
-    fit_exponent(const std::vector<double> &x, const std::vector<double> &y)
-    {
-      double mean_x = 0., mean_y = 0.;
-      for (std::size_t k = 0; k < x.size(); ++k)
-        {
-          mean_x += std::log(x[k]) / x.size();
-          mean_y += std::log(y[k]) / x.size();
-        }
-      double covariance = 0., variance = 0.;
-      for (std::size_t k = 0; k < x.size(); ++k)
-        {
-          covariance += (std::log(x[k]) - mean_x) * (std::log(y[k]) - mean_y);
-          variance += std::pow(std::log(x[k]) - mean_x, 2);
-        }
-      return covariance / variance;
     }
   } // namespace
 
@@ -181,15 +160,17 @@ namespace Debond
               seconds.push_back(row["seconds"]);
               bytes.push_back(row["peak_bytes"]);
             }
-        if (unknowns.size() < 2)
+        const auto time   = fit_power_law(unknowns, seconds);
+        const auto memory = fit_power_law(unknowns, bytes);
+        if (!time || !memory)
           continue;
         BenchmarkRow row;
         row["path"]            = path;
         row["scenes"]          = unknowns.size();
         row["unknowns_from"]   = static_cast<unsigned int>(unknowns.front());
         row["unknowns_to"]     = static_cast<unsigned int>(unknowns.back());
-        row["time_exponent"]   = fit_exponent(unknowns, seconds);
-        row["memory_exponent"] = fit_exponent(unknowns, bytes);
+        row["time_exponent"]   = time->exponent;
+        row["memory_exponent"] = memory->exponent;
         result.push_back(row);
       }
     return result;

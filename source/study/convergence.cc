@@ -20,7 +20,7 @@ namespace Debond
   fit_power_law(const std::vector<double> &x, const std::vector<double> &y)
   {
     AssertDimension(x.size(), y.size());
-    const double n      = x.size();
+    const double n      = static_cast<double>(x.size());
     double       mean_x = 0., mean_y = 0.;
     for (std::size_t i = 0; i < x.size(); ++i)
       {
@@ -63,7 +63,7 @@ namespace Debond
          ++error)
       if (*error > 0.)
         {
-          k.push_back(error - relative_errors.begin() + 1);
+          k.push_back(static_cast<double>(error - relative_errors.begin() + 1));
           errors.push_back(*error);
         }
     if (k.size() < 3)

@@ -35,20 +35,20 @@ namespace Debond
       int        *rows   = static_cast<int *>(result->i);
       double     *values = static_cast<double *>(result->x);
       std::size_t next   = 0;
-      for (std::size_t i = 0; i < n; ++i)
+      for (unsigned int i = 0; i < n; ++i)
         {
-          starts[i] = next;
+          starts[i] = static_cast<int>(next);
           // deal.II has the diagonal first.
           for (auto entry = ++A.begin(i); entry != A.end(i); ++entry)
             if (entry->column() < i)
               {
-                rows[next]     = entry->column();
+                rows[next]     = static_cast<int>(entry->column());
                 values[next++] = entry->value();
               }
-          rows[next]     = i;
+          rows[next]     = static_cast<int>(i);
           values[next++] = A.diag_element(i);
         }
-      starts[n] = next;
+      starts[n] = static_cast<int>(next);
       return result;
     }
   } // namespace

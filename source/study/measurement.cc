@@ -27,7 +27,8 @@ namespace Debond
     {
       timespec time;
       clock_gettime(clock, &time);
-      return time.tv_sec + 1e-9 * time.tv_nsec;
+      return static_cast<double>(time.tv_sec) +
+             1e-9 * static_cast<double>(time.tv_nsec);
     }
 
 

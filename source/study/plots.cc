@@ -25,12 +25,12 @@ namespace Debond
 
     /// Iterations that a curve is drawn through: all at first, then one in
     /// each percent.
-    std::vector<unsigned int>
-    drawn_iterations(const unsigned int n_iterations)
+    std::vector<std::size_t>
+    drawn_iterations(const std::size_t n_iterations)
     {
-      std::vector<unsigned int> iterations;
-      for (unsigned int k = 1; k < n_iterations;
-           k              = std::max<unsigned int>(k + 1, std::ceil(1.01 * k)))
+      std::vector<std::size_t> iterations;
+      for (std::size_t k = 1; k < n_iterations;
+           k             = std::max(k + 1, k + k / 100))
         iterations.push_back(k);
       if (n_iterations > 0)
         iterations.push_back(n_iterations);
@@ -49,9 +49,10 @@ namespace Debond
       for (const StudyRow &row : view.rows)
         {
           Curve curve{row.one->label, {}};
-          for (const unsigned int k :
+          for (const std::size_t k :
                drawn_iterations(row.result.history.size()))
-            curve.points.emplace_back(k, row.result.history[k - 1]);
+            curve.points.emplace_back(static_cast<double>(k),
+                                      row.result.history[k - 1]);
           plot.curves.push_back(curve);
         }
       return plot;
@@ -65,8 +66,8 @@ namespace Debond
       const std::vector<double> errors =
         relative_errors(row.result.history, *row.minimum);
       Curve curve{row.one->label, {}};
-      for (const unsigned int k : drawn_iterations(errors.size()))
-        curve.points.emplace_back(k, errors[k - 1]);
+      for (const std::size_t k : drawn_iterations(errors.size()))
+        curve.points.emplace_back(static_cast<double>(k), errors[k - 1]);
       return curve;
     }
 

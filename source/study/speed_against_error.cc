@@ -151,8 +151,8 @@ namespace Debond
       const auto           add = [&](const auto &history) {
         for (const auto &iteration : history)
           {
-            const double done =
-              static_cast<double>(iteration.iteration) / history.size();
+            const double done = static_cast<double>(iteration.iteration) /
+                                static_cast<double>(history.size());
             iterates.push_back({iteration.iteration,
                                 (condensation + done * contact) / seconds,
                                 iteration.functional});

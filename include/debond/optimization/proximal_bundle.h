@@ -93,7 +93,7 @@ namespace Debond
     unsigned int
     iterations() const
     {
-      return history.size();
+      return static_cast<unsigned int>(history.size());
     }
   };
 
