@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/optimization/archive.h>
 #include <debond/optimization/cholesky.h>
 
 #include <Eigen/Dense>
@@ -145,5 +146,25 @@ namespace Debond
     const auto L = factor.topLeftCorner(n, n).triangularView<Eigen::Lower>();
     L.solveInPlace(b);
     L.transpose().solveInPlace(b);
+  }
+
+
+
+  void
+  UpdatableCholesky::save(OutArchive &archive) const
+  {
+    save_matrix(archive,
+                factor.topLeftCorner(n, n).triangularView<Eigen::Lower>());
+  }
+
+
+
+  void
+  UpdatableCholesky::load(InArchive &archive)
+  {
+    const Eigen::MatrixXd loaded = load_matrix(archive);
+    require_fit(loaded.rows() <= factor.rows());
+    n                          = loaded.rows();
+    factor.topLeftCorner(n, n) = loaded;
   }
 } // namespace Debond

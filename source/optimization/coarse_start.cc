@@ -84,7 +84,9 @@ namespace Debond
                    const PiecewiseQuadratic         &phi,
                    const Level                       level,
                    const Level                       end,
-                   const MajoriseMinimise           &method)
+                   const MajoriseMinimise           &method,
+                   std::vector<std::string>         &failures,
+                   const MajoriseMinimise::Monitor  &monitor)
     {
       if (level == end)
         return dealii::Vector<double>(g.size());
@@ -94,10 +96,19 @@ namespace Debond
       const dealii::Vector<double>       coarse_g = times(P.transpose(), g);
       const Restricted                   coarse_phi(phi, P);
 
-      dealii::Vector<double> s =
-        start_on_level(coarse_S, coarse_g, coarse_phi, level + 1, end, method);
-      CondensedProblem problem(coarse_S, coarse_g, coarse_phi, s);
-      method.minimize(problem);
+      dealii::Vector<double>       s = start_on_level(coarse_S,
+                                                coarse_g,
+                                                coarse_phi,
+                                                level + 1,
+                                                end,
+                                                method,
+                                                failures,
+                                                monitor);
+      CondensedProblem             problem(coarse_S, coarse_g, coarse_phi, s);
+      const MajoriseMinimiseResult result = method.minimize(problem, monitor);
+      if (result.status != SolverStatus::success)
+        failures.push_back("start on " + std::to_string(s.size()) +
+                           " of the contact nodes: " + result.message);
       return times(P, s);
     }
   } // namespace
@@ -109,9 +120,17 @@ namespace Debond
                const dealii::Vector<double>                   &g,
                const PiecewiseQuadratic                       &phi,
                const std::vector<Eigen::SparseMatrix<double>> &prolongations,
-               const MajoriseMinimise                         &method)
+               const MajoriseMinimise                         &method,
+               std::vector<std::string>                       &failures,
+               const MajoriseMinimise::Monitor                &monitor)
   {
-    return start_on_level(
-      S, g, phi, prolongations.begin(), prolongations.end(), method);
+    return start_on_level(S,
+                          g,
+                          phi,
+                          prolongations.begin(),
+                          prolongations.end(),
+                          method,
+                          failures,
+                          monitor);
   }
 } // namespace Debond

@@ -2,6 +2,7 @@
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/vector.h>
 
+#include <debond/optimization/archive.h>
 #include <debond/optimization/euclidean_direction.h>
 
 #include <algorithm>
@@ -140,6 +141,28 @@ namespace Debond
     for (unsigned int i = 0; i < bounds.indices.size(); ++i)
       x(bounds.indices[i]) =
         std::min<double>(x(bounds.indices[i]), bounds.upper[i]);
+  }
+
+
+
+  template <typename VectorType>
+  void
+  EuclideanDirection<VectorType>::save(OutArchive &archive) const
+  {
+    qp.save(archive);
+    for (unsigned int j = 0; j < size(); ++j)
+      save_values(archive, subgradients[j]);
+  }
+
+
+
+  template <typename VectorType>
+  void
+  EuclideanDirection<VectorType>::load(InArchive &archive)
+  {
+    qp.load(archive);
+    for (unsigned int j = 0; j < size(); ++j)
+      load_values(archive, subgradients[j]);
   }
 
 

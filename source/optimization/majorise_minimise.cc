@@ -12,6 +12,19 @@ namespace Debond
   {
     /// What an inexact minimisation of the majorant may leave of the residual.
     constexpr double forcing = 0.1;
+
+
+
+    std::string
+    what_is_left(const MajoriseMinimiseResult &result, const double required)
+    {
+      std::ostringstream text;
+      text.precision(3);
+      text << "majorise-minimise: relative residual " << result.residual
+           << " after " << result.history.size() << " iterations, required is "
+           << required << '.';
+      return text.str();
+    }
   } // namespace
 
 
@@ -65,6 +78,12 @@ namespace Debond
               problem.minimise(inner_tolerance);
             iteration.active_set_steps += inner.active_set_steps;
             iteration.linear_iterations += inner.linear_iterations;
+            if (inner.interrupted)
+              {
+                result.status  = SolverStatus::interrupted;
+                result.message = what_is_left(result, parameters.tolerance);
+                return result;
+              }
             if (!inner.converged)
               {
                 std::ostringstream text;
@@ -82,11 +101,29 @@ namespace Debond
           }
         while (state.functional > upper + state.functional_rounding &&
                inner_tolerance > 0.01 * tolerance);
+        // Where the optimality conditions hold, J has no more to fall.
+        const bool risen =
+          state.functional > upper + state.functional_rounding &&
+          state.residual >
+            std::max(parameters.tolerance, state.residual_rounding);
 
         iteration.functional = result.functional = state.functional;
         iteration.residual = result.residual = state.residual;
         iteration.n_active                   = state.n_active;
         result.history.push_back(iteration);
+        if (risen)
+          {
+            std::ostringstream text;
+            text.precision(3);
+            text << "majorise-minimise: J rose by " << state.functional - upper
+                 << " in iteration " << iteration.iteration
+                 << ", with the relative residual " << state.residual
+                 << ", required is " << parameters.tolerance
+                 << ". Try a larger stop tolerance or another method.";
+            result.status  = SolverStatus::no_descent;
+            result.message = text.str();
+            return result;
+          }
         if (monitor && !monitor(iteration))
           {
             result.status = SolverStatus::interrupted;
@@ -94,14 +131,9 @@ namespace Debond
           }
       }
 
-    std::ostringstream text;
-    text.precision(3);
-    text << "majorise-minimise: relative residual " << result.residual
-         << " after " << result.history.size() << " iterations, required is "
-         << parameters.tolerance << '.';
+    result.message = what_is_left(result, parameters.tolerance);
     if (result.status == SolverStatus::iteration_limit)
-      text << " Try more iterations.";
-    result.message = text.str();
+      result.message += " Try more iterations.";
     return result;
   }
 } // namespace Debond

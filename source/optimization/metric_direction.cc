@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/full_matrix.h>
 
+#include <debond/optimization/archive.h>
 #include <debond/optimization/bundle_qp.h>
 #include <debond/optimization/metric_direction.h>
 
@@ -170,5 +171,30 @@ namespace Debond
   {
     for (double &s : x)
       s = std::min(s, 0.);
+  }
+
+
+
+  void
+  MetricDirection::save(OutArchive &archive) const
+  {
+    save_matrix(archive, eta.leftCols(m));
+    archive << active;
+  }
+
+
+
+  void
+  MetricDirection::load(InArchive &archive)
+  {
+    const Eigen::MatrixXd subgradients = load_matrix(archive);
+    ActiveSet             bounds;
+    archive >> bounds;
+    require_fit(subgradients.rows() == eta.rows() &&
+                subgradients.cols() <= eta.cols() &&
+                bounds.size() == active.size());
+    m               = subgradients.cols();
+    eta.leftCols(m) = subgradients;
+    active          = bounds;
   }
 } // namespace Debond

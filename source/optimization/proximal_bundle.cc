@@ -3,6 +3,8 @@
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/vector.h>
 
+#include <debond/optimization/archive.h>
+#include <debond/optimization/bundle.h>
 #include <debond/optimization/euclidean_direction.h>
 #include <debond/optimization/proximal_bundle.h>
 
@@ -84,86 +86,45 @@ namespace Debond
             text << "proximal bundle method: predicted descent " << v
                  << ", required is at least " << -parameters.epsilon_s << '.';
             break;
+          case SolverStatus::no_descent: // the line search sees to it
           case SolverStatus::success:
             break;
         }
       return text.str();
     }
-
-
-
-    /// The subgradients, which the direction problem holds, with their
-    /// linearisation errors and distances at x_k.
-    template <typename VectorType>
-    class Bundle
-    {
-    public:
-      using Solution = typename DirectionProblem<VectorType>::Solution;
-
-      Bundle(DirectionProblem<VectorType> &direction_problem,
-             const unsigned int            capacity)
-        : problem(direction_problem)
-        , alpha(capacity)
-        , distance(capacity)
-      {
-        problem.clear();
-      }
-
-      unsigned int
-      size() const
-      {
-        return problem.size();
-      }
-
-      bool
-      full() const
-      {
-        return size() == alpha.size();
-      }
-
-      void
-      clear()
-      {
-        problem.clear();
-      }
-
-      void
-      add(const VectorType &eta,
-          const double      new_alpha,
-          const double      new_distance)
-      {
-        alpha(size())    = new_alpha;
-        distance(size()) = new_distance;
-        problem.add(eta);
-      }
-
-      const Solution &
-      solve(const VectorType &x, const double gamma)
-      {
-        const unsigned int m = size();
-        return problem.solve(x,
-                             alpha.head(m).cwiseAbs().cwiseMax(
-                               gamma * distance.head(m).cwiseAbs2()));
-      }
-
-      /// Accounts for x_{k+1} = x_k + t_L d.
-      void
-      move(const Solution         &solution,
-           const LineSearchResult &step,
-           const double            d_length)
-      {
-        const unsigned int m = size();
-        alpha.head(m) +=
-          (step.change - step.t_L * solution.slopes.array()).matrix();
-        distance.head(m).array() += step.t_L * d_length;
-      }
-
-    private:
-      DirectionProblem<VectorType> &problem;
-      Eigen::VectorXd               alpha;    ///< linearisation errors
-      Eigen::VectorXd               distance; ///< s_j^k
-    };
   } // namespace
+
+
+
+  // Not in an unnamed namespace, where the archive would not find them.
+  template <typename Archive>
+  void
+  serialize(Archive &archive, BundleIteration &iteration, const unsigned int)
+  {
+    archive &iteration.iteration;
+    archive &iteration.functional;
+    archive &iteration.v;
+    archive &iteration.t_L;
+    archive &iteration.t_R;
+    archive &iteration.bundle_size;
+    archive &iteration.qp_steps;
+    archive &iteration.kind;
+  }
+
+
+
+  /// What a state has of a result: the rest is found at the end of a run.
+  template <typename Archive>
+  void
+  serialize(Archive &archive, ProximalBundleResult &result, const unsigned int)
+  {
+    archive &result.functional;
+    archive &result.long_steps;
+    archive &result.short_steps;
+    archive &result.null_steps;
+    archive &result.largest_qp_residual;
+    archive &result.history;
+  }
 
 
 
@@ -205,13 +166,14 @@ namespace Debond
   ProximalBundle<VectorType>::minimize(const Objective<VectorType> &objective,
                                        const UpperBounds           &bounds,
                                        VectorType                  &x,
-                                       const Monitor &monitor) const
+                                       const Monitor               &monitor,
+                                       Checkpoints *checkpoints) const
   {
     EuclideanDirection<VectorType> direction_problem(parameters.u,
                                                      bounds,
                                                      parameters.bundle_size,
                                                      x);
-    return minimize(objective, direction_problem, x, monitor);
+    return minimize(objective, direction_problem, x, monitor, checkpoints);
   }
 
 
@@ -222,7 +184,8 @@ namespace Debond
     const Objective<VectorType>  &objective,
     DirectionProblem<VectorType> &direction_problem,
     VectorType                   &x,
-    const Monitor                &monitor) const
+    const Monitor                &monitor,
+    Checkpoints                  *checkpoints) const
   {
     if (!direction_problem.is_feasible(x))
       throw std::invalid_argument(
@@ -250,7 +213,23 @@ namespace Debond
       if (is_usable(eta))
         bundle.add(eta, 0., 0.);
     };
-    restart();
+    const auto save = [&](OutArchive &archive) {
+      save_values(archive, x);
+      save_values(archive, eta);
+      bundle.save(archive);
+      archive << result;
+    };
+    if (InArchive *const state =
+          checkpoints != nullptr ? checkpoints->resume_from() : nullptr;
+        state != nullptr)
+      {
+        load_values(*state, x);
+        load_values(*state, eta);
+        bundle.load(*state);
+        *state >> result;
+      }
+    else
+      restart();
 
     const typename Bundle<VectorType>::Solution *direction = nullptr;
     while (true)
@@ -291,7 +270,7 @@ namespace Debond
           }
         result.largest_qp_residual =
           std::max(result.largest_qp_residual, direction->residual);
-        if (result.iterations() == parameters.maximum_iterations)
+        if (result.iterations() >= parameters.maximum_iterations)
           {
             result.status = SolverStatus::iteration_limit;
             break;
@@ -357,7 +336,13 @@ namespace Debond
           }
         iteration.functional = result.functional;
         result.history.push_back(iteration);
-        if (monitor && !monitor(iteration))
+        const bool go_on = !monitor || monitor(iteration);
+        if (checkpoints != nullptr)
+          checkpoints->offer(save,
+                             result.iterations(),
+                             !go_on || result.iterations() >=
+                                         parameters.maximum_iterations);
+        if (!go_on)
           {
             result.status = SolverStatus::interrupted;
             break;

@@ -16,6 +16,8 @@ namespace Debond
           return "line search failed";
         case SolverStatus::quadratic_program:
           return "quadratic program failed";
+        case SolverStatus::no_descent:
+          return "no descent";
         case SolverStatus::not_finite:
           return "not finite";
         case SolverStatus::interrupted:

@@ -355,7 +355,8 @@ namespace
   test_coarse_start(std::mt19937_64 &engine)
   {
     bool         feasible = true, below_rest = true, converged = true;
-    unsigned int n_problems = 50;
+    bool         all_named  = true;
+    unsigned int n_problems = 50, n_failed = 0;
     for (unsigned int k = 0; k < n_problems; ++k)
       {
         const Problem                            p = random_problem(engine, 16);
@@ -367,8 +368,22 @@ namespace
               P.insert(i, i / 2) = 1.;
             prolongations.push_back(P);
           }
-        const MajoriseMinimise method({});
-        Vector       s = coarse_start(p.S, p.g, p.bonds, prolongations, method);
+        const MajoriseMinimise   method({});
+        std::vector<std::string> failures;
+        coarse_start(p.S,
+                     p.g,
+                     p.bonds,
+                     prolongations,
+                     MajoriseMinimise({1e-10, 1}),
+                     failures);
+        n_failed += failures.size();
+        for (const std::string &failure : failures)
+          all_named = all_named &&
+                      failure.find(" after 1 iterations") != std::string::npos;
+        failures.clear();
+        Vector s =
+          coarse_start(p.S, p.g, p.bonds, prolongations, method, failures);
+        converged = converged && failures.empty();
         const Energy energy(p.S, p.g, p.bonds);
         for (const double entry : s)
           feasible = feasible && entry <= 0.;
@@ -380,7 +395,9 @@ namespace
     std::cout << "start from coarser spaces on " << n_problems
               << " problems: feasible: " << verdict(feasible)
               << ", not above rest: " << verdict(below_rest)
-              << ", converged from there: " << verdict(converged) << '\n';
+              << ", converged from there: " << verdict(converged)
+              << ", failures of levels are told: "
+              << verdict(all_named && n_failed > 0) << '\n';
   }
 } // namespace
 

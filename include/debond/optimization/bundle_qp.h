@@ -46,6 +46,7 @@ namespace Debond
     enum class Status
     {
       optimal,
+      inaccurate,      ///< the working set is right, but not the residual
       iteration_limit, ///< the working set kept changing
       breakdown        ///< no multiplier blocks a step along a null direction
     };
@@ -102,6 +103,16 @@ namespace Debond
           const Eigen::Ref<const Eigen::VectorXd> &b,
           const double                             u);
 
+    /// Cuts, working set and factor, so that the next solve() takes the same
+    /// steps.
+    void
+    save(OutArchive &archive) const;
+
+    /// Throws std::invalid_argument if the state is not one of as many bounds
+    /// or there is no room for its cuts.
+    void
+    load(InArchive &archive);
+
   private:
     /// lambda of the working set and mu of all bounds, as a point of the dual
     /// problem or as a direction in it.
@@ -144,6 +155,8 @@ namespace Debond
     enter_bound(const unsigned int i);
     void
     evaluate();
+    double
+    dual_objective() const;
     std::pair<Entering, unsigned int>
     most_violated() const;
     void
@@ -168,6 +181,7 @@ namespace Debond
     double                    kappa    = 0.;
     double                    factor_u = 0.; ///< the u that the factor is for
     bool                      factor_valid = false;
+    unsigned int              step_limit   = 0; ///< for solution.steps
 
     Solution solution;
   };

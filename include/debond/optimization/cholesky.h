@@ -2,6 +2,8 @@
 #ifndef debond_optimization_cholesky_h
 #define debond_optimization_cholesky_h
 
+#include <debond/optimization/checkpoints.h>
+
 #include <Eigen/Core>
 
 namespace Debond
@@ -51,6 +53,13 @@ namespace Debond
     /// b <- K^{-1} b.
     void
     solve_in_place(Eigen::Ref<Eigen::VectorXd> b) const;
+
+    void
+    save(OutArchive &archive) const;
+
+    /// A factor for which there is room.
+    void
+    load(InArchive &archive);
 
   private:
     /// Rank-one update of the trailing block that starts at row @p first; w

@@ -18,14 +18,18 @@ namespace Debond
    * iteration). The prolongations, finest first, must have entries >= 0, so
    * that s_k <= 0 gives s <= 0.
    *
-   * A level on which @p method does not converge passes on what it reached.
+   * A level on which @p method does not converge passes on what it reached, and
+   * is named in @p failures. The method is called with @p monitor on each
+   * level.
    */
   dealii::Vector<double>
   coarse_start(const dealii::FullMatrix<double>               &S,
                const dealii::Vector<double>                   &g,
                const PiecewiseQuadratic                       &phi,
                const std::vector<Eigen::SparseMatrix<double>> &prolongations,
-               const MajoriseMinimise                         &method);
+               const MajoriseMinimise                         &method,
+               std::vector<std::string>                       &failures,
+               const MajoriseMinimise::Monitor                &monitor = {});
 } // namespace Debond
 
 #endif

@@ -2,6 +2,8 @@
 #ifndef debond_optimization_direction_problem_h
 #define debond_optimization_direction_problem_h
 
+#include <debond/optimization/checkpoints.h>
+
 #include <Eigen/Core>
 
 #include <string>
@@ -75,6 +77,14 @@ namespace Debond
     /// Takes rounding back that may have taken x out of K.
     virtual void
     project(VectorType &x) const = 0;
+
+    /// Subgradients and all that the next solve() starts from.
+    virtual void
+    save(OutArchive &archive) const = 0;
+
+    /// Throws std::invalid_argument if the state does not fit this problem.
+    virtual void
+    load(InArchive &archive) = 0;
   };
 } // namespace Debond
 

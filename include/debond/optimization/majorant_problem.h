@@ -45,6 +45,9 @@ namespace Debond
       bool         converged;
       unsigned int active_set_steps;  ///< linear systems
       unsigned int linear_iterations; ///< for all of them, 0 if factorised
+
+      /// Ended from outside, with the current point as it was before.
+      bool interrupted = false;
     };
 
     /// Moves the current point towards the minimum of the majorant until the

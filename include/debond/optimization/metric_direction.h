@@ -52,6 +52,12 @@ namespace Debond
     void
     project(dealii::Vector<double> &x) const override;
 
+    void
+    save(OutArchive &archive) const override;
+
+    void
+    load(InArchive &archive) override;
+
   private:
     const dealii::FullMatrix<double> &S;
     const PiecewiseQuadratic         &phi;

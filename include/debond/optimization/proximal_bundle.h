@@ -2,6 +2,7 @@
 #ifndef debond_optimization_proximal_bundle_h
 #define debond_optimization_proximal_bundle_h
 
+#include <debond/optimization/checkpoints.h>
 #include <debond/optimization/direction_problem.h>
 #include <debond/optimization/line_search.h>
 #include <debond/optimization/objective.h>
@@ -118,12 +119,16 @@ namespace Debond
     /// Throws std::invalid_argument for parameters out of range.
     explicit ProximalBundle(const ProximalBundleParameters &parameters);
 
-    /// Improves x. Throws std::invalid_argument if x is not in K.
+    /// Improves x. Throws std::invalid_argument if x is not in K. If
+    /// @p checkpoints have a state to go on from, the run goes on with the same
+    /// iterates as the one that left it, and x as it is given does not count;
+    /// throws std::invalid_argument if that state does not fit.
     ProximalBundleResult
     minimize(const Objective<VectorType> &objective,
              const UpperBounds           &bounds,
              VectorType                  &x,
-             const Monitor               &monitor = {}) const;
+             const Monitor               &monitor     = {},
+             Checkpoints                 *checkpoints = nullptr) const;
 
     /// The same in the metric of @p direction_problem, which also knows K and
     /// has to have room for `bundle_size` subgradients; the parameter u is not
@@ -132,7 +137,8 @@ namespace Debond
     minimize(const Objective<VectorType>  &objective,
              DirectionProblem<VectorType> &direction_problem,
              VectorType                   &x,
-             const Monitor                &monitor = {}) const;
+             const Monitor                &monitor     = {},
+             Checkpoints                  *checkpoints = nullptr) const;
 
   private:
     ProximalBundleParameters parameters;

@@ -13,6 +13,7 @@ namespace Debond
     iteration_limit,   ///< the iteration cap was reached first
     line_search,       ///< no point with the required subgradient was found
     quadratic_program, ///< the direction-finding problem could not be solved
+    no_descent,        ///< the objective rose by more than rounding
     not_finite,        ///< the objective or a subgradient is NaN or infinite
     interrupted        ///< stopped from outside, the last iterate is kept
   };
