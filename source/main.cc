@@ -3,12 +3,15 @@
 #include <debond/study/benchmarks.h>
 #include <debond/study/command_line.h>
 
+#include <csignal>
 #include <exception>
 #include <iostream>
 
 int
 main(int argc, char *argv[])
 {
+  // A file beyond the limit of the shell is then an error like a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
   try
     {
       if (Debond::is_study_command_line(argc, argv))

@@ -48,7 +48,10 @@ namespace Debond
         ("version", "print versions and the build type") //
         ("print-parameters",
          "print all parameters with their documentation as a scene, with the "
-         "defaults or the values of SCENE.prm and --set")   //
+         "defaults or the values of SCENE.prm and --set") //
+        ("restart",
+         "go on from the checkpoint in the output directory, see "
+         "Solver/Checkpoint interval")                      //
         ("validate", "read and check the scene, then stop") //
         ("set",
          po::value<std::vector<std::string>>()->value_name(
@@ -157,9 +160,10 @@ namespace Debond
       if (options.count("scene") == 0)
         throw BadInput({"no scene is given; see debond --help"});
 
-      const bool       only_validate = options.count("validate") > 0;
-      const Parameters parameters =
+      const bool only_validate = options.count("validate") > 0;
+      Parameters parameters =
         to_parameters(options["scene"].as<std::string>(), table);
+      parameters.restart = options.count("restart") > 0;
       return parameters.dimension == 2 ?
                run_or_validate<2>(parameters, only_validate) :
                run_or_validate<3>(parameters, only_validate);

@@ -291,6 +291,15 @@ namespace Debond
 
 
 
+  std::string
+  ParameterTable::location(const std::string &path) const
+  {
+    const auto location = locations.find(path);
+    return location != locations.end() ? location->second : file_name;
+  }
+
+
+
   void
   ParameterTable::add_error(const std::string              &path,
                             const std::string              &message,
@@ -303,10 +312,7 @@ namespace Debond
         std::any_of(others.begin(), others.end(), is_rejected))
       return;
 
-    const auto location = locations.find(path);
-    lines.push_back(
-      (location != locations.end() ? location->second : file_name) + ": " +
-      message);
+    lines.push_back(location(path) + ": " + message);
   }
 
 
@@ -321,6 +327,17 @@ namespace Debond
               path + " = " + get(path) + (is_default ? " (default): " : ": ") +
                 reason,
               others);
+  }
+
+
+
+  std::map<std::string, std::string>
+  ParameterTable::values() const
+  {
+    std::map<std::string, std::string> result;
+    for (const auto &[path, unused] : expected)
+      result[path] = get(path);
+    return result;
   }
 
 

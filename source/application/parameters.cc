@@ -318,7 +318,7 @@ namespace Debond
     table.declare(
       "Mesh/Rotation",
       to_text(defaults.box.rotation),
-      any_number(),
+      number("in [-360, 360]", [](double x) { return std::abs(x) <= 360.; }),
       "Turns the box about the origin in the x-y plane. The sides keep their names; loads are not turned",
       "degrees");
 
@@ -421,6 +421,12 @@ namespace Debond
               }),
       "The memory that a scene may take by the program's estimate; available is what the system can give at the start",
       "GiB");
+    table.declare(
+      "Solver/Checkpoint interval",
+      to_text(defaults.checkpoint_interval),
+      number(">= 0", [](double x) { return x >= 0; }),
+      "Wall time after which the bundle methods write their state again, into the file checkpoint in the output directory, and when they end without success; 'debond SCENE.prm --restart' goes on from it with the same iterates. 0 writes none",
+      "seconds");
     declare_bundle(table);
     declare_condensed_methods(table);
     declare_which_minimum(table);
@@ -648,6 +654,7 @@ namespace Debond
     p.linear_solver = table.get("Solver/Linear solver");
     if (table.get("Solver/Memory limit") != "available")
       p.memory_limit = table.get_double("Solver/Memory limit") * (1 << 30);
+    p.checkpoint_interval = table.get_double("Solver/Checkpoint interval");
     p.bundle.u     = table.get_double(bundle_section + "Proximal weight");
     p.bundle.gamma = table.get_double(bundle_section + "Distance weight");
     p.bundle.t_bar = table.get_double(bundle_section + "Long step threshold");
@@ -703,6 +710,9 @@ namespace Debond
     std::ostringstream effective;
     table.print(effective, false);
     p.effective_scene = effective.str();
+    p.values          = table.values();
+    for (const auto &[path, unused] : p.values)
+      p.locations[path] = table.location(path);
     return p;
   }
 } // namespace Debond

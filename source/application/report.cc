@@ -163,6 +163,8 @@ namespace Debond
                         << '\n';
     if (!success)
       line(out, "") << summary.message << '\n';
+    for (const std::string &note : summary.notes)
+      line(out, "note") << note << '\n';
     line(out, "J") << scientific(summary.functional, 10) << '\n';
     if (!summary.minimum.empty())
       {

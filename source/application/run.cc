@@ -5,6 +5,7 @@
 
 #include <debond/application/report.h>
 #include <debond/application/run.h>
+#include <debond/application/run_checkpoints.h>
 #include <debond/application/solve.h>
 #include <debond/application/version.h>
 #include <debond/output/atomic_file.h>
@@ -80,6 +81,7 @@ namespace Debond
     {
       summary.status     = to_string(result.status);
       summary.message    = result.message;
+      summary.notes      = result.notes;
       summary.functional = result.functional;
       if (result.status == SolverStatus::success)
         summary.minimum = to_string(result.minimum.kind);
@@ -249,10 +251,12 @@ namespace Debond
     const MethodChoice choice = choose_method(parameters);
     // Trilinos needs MPI, even in one process; others need not wait for it.
     std::unique_ptr<dealii::Utilities::MPI::MPI_InitFinalize> mpi;
-    if (choice.linear_solver == LinearSolver::multigrid)
+    if (choice.linear_solver == LinearSolver::multigrid &&
+        !dealii::Utilities::MPI::job_supports_mpi())
       mpi = initialize_mpi();
     const Scene<dim> scene(parameters, matrix_storage(choice));
 
+    RunCheckpoints           checkpoints(parameters, choice);
     std::vector<std::string> files;
     try
       {
@@ -269,9 +273,12 @@ namespace Debond
     summary.linear_solver   = choice.linear_solver;
     summary.memory_estimate = choice.memory;
     report_problem(parameters, summary, choice.reason, out);
+    if (parameters.output.machine_details && !checkpoints.description().empty())
+      out << "Checkpoints\n  " << checkpoints.description() << std::endl;
 
     dealii::Timer     timer;
-    const SolveResult result = solve(choice, parameters, scene, out, terminal);
+    const SolveResult result =
+      solve(choice, parameters, scene, out, terminal, &checkpoints);
     summary.timings_s["solve"] = timer.wall_time();
 
     timer.restart();
@@ -286,6 +293,17 @@ namespace Debond
       reject_result(verification.error(), parameters, summary);
 
     std::string output_error;
+    if (result.status == SolverStatus::success && verified)
+      checkpoints.remove();
+    else
+      {
+        output_error = checkpoints.error();
+        if (checkpoints.written())
+          {
+            files.push_back(checkpoints.file_name());
+            summary.message += " The run goes on with --restart.";
+          }
+      }
     timer.restart();
     try
       {

@@ -61,6 +61,18 @@ namespace Debond
           file_name + " does not satisfy the scene's boundary conditions");
       return u;
     }
+
+
+
+    /// The load that a message of the assembly speaks of.
+    std::string
+    load_entry(const LoadParameters &loads, const std::string &message)
+    {
+      for (const auto &[side, unused] : loads.tractions)
+        if (message.find("traction on " + side + " ") != std::string::npos)
+          return "Loads/Traction " + side;
+      return "Loads/Body force";
+    }
   } // namespace
 
 
@@ -68,32 +80,46 @@ namespace Debond
   template <int dim>
   Scene<dim>::Scene(const Parameters &parameters, const MatrixStorage storage)
   {
+    dealii::Timer timer;
+    std::string   entry = "Mesh/Lengths"; // that errors belong to
     try
       {
-        build(parameters, storage);
+        make_box<dim>(parameters.box, triangulation);
+        seconds_for_mesh = timer.wall_time();
+
+        timer.restart();
+        entry           = "Boundary conditions/Clamped boundaries";
+        elastic_problem = std::make_unique<ElasticProblem<dim>>(
+          triangulation, boundary_conditions<dim>(parameters));
+        entry.clear(); // one of the loads
+        elastic_problem->assemble(parameters.material,
+                                  make_loads<dim>(parameters.loads),
+                                  storage);
+        entry = "Contact law/Quadrature";
+        add_contact(parameters, storage);
+        entry = "Solver/Euclidean bundle/Start";
+        // A run that restarts has its start already.
+        if (parameters.start.empty() || parameters.restart)
+          first_iterate.reinit(elastic_problem->n_dofs());
+        else
+          first_iterate = read_start(parameters.start, *elastic_problem);
       }
     catch (const std::invalid_argument &error)
       {
-        throw BadInput({parameters.scene + ": " + error.what()});
+        if (entry.empty())
+          entry = load_entry(parameters.loads, error.what());
+        throw BadInput({parameters.locations.at(entry) + ": " + error.what()});
       }
+    seconds_for_assembly = timer.wall_time();
   }
 
 
 
   template <int dim>
   void
-  Scene<dim>::build(const Parameters &parameters, const MatrixStorage storage)
+  Scene<dim>::add_contact(const Parameters   &parameters,
+                          const MatrixStorage storage)
   {
-    dealii::Timer timer;
-    make_box<dim>(parameters.box, triangulation);
-    seconds_for_mesh = timer.wall_time();
-
-    timer.restart();
-    elastic_problem = std::make_unique<ElasticProblem<dim>>(
-      triangulation, boundary_conditions<dim>(parameters));
-    elastic_problem->assemble(parameters.material,
-                              make_loads<dim>(parameters.loads),
-                              storage);
     adhesive_law = make_law(parameters.law);
     quadrature =
       std::make_unique<ContactQuadrature<dim>>(parameters.quadrature,
@@ -112,11 +138,6 @@ namespace Debond
       make_functional(elastic_problem->matrix());
     else
       make_functional(elastic_problem->trilinos_matrix());
-    if (parameters.start.empty())
-      first_iterate.reinit(elastic_problem->n_dofs());
-    else
-      first_iterate = read_start(parameters.start, *elastic_problem);
-    seconds_for_assembly = timer.wall_time();
   }
 
 

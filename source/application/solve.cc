@@ -110,6 +110,7 @@ namespace Debond
     void
     solve_by_euclidean_bundle(const Parameters &parameters,
                               const Scene<dim> &scene,
+                              Checkpoints      *checkpoints,
                               Watch            &watch,
                               SolveResult      &result)
     {
@@ -119,7 +120,8 @@ namespace Debond
                                     unilateral_constraint(
                                       scene.problem().contact_boundary()),
                                     result.u,
-                                    std::ref(watch)),
+                                    std::ref(watch),
+                                    checkpoints),
                         result);
     }
 
@@ -130,6 +132,7 @@ namespace Debond
     solve_by_energy_bundle(const Parameters   &parameters,
                            const Scene<dim>   &scene,
                            const Condensation &condensed,
+                           Checkpoints        *checkpoints,
                            Watch              &watch,
                            Vector             &s,
                            SolveResult        &result)
@@ -152,8 +155,11 @@ namespace Debond
       MetricDirection direction(condensed.schur_complement(),
                                 scene.adhesion(),
                                 bundle.bundle_size);
-      add_bundle_result(ProximalBundle<Vector>(bundle).minimize(
-                          functional, direction, s, std::ref(watch)),
+      add_bundle_result(ProximalBundle<Vector>(bundle).minimize(functional,
+                                                                direction,
+                                                                s,
+                                                                std::ref(watch),
+                                                                checkpoints),
                         result);
       // The functional differs from J by the energy at s = 0.
       for (BundleIteration &iteration : result.bundle_history)
@@ -192,7 +198,11 @@ namespace Debond
                        scene.adhesion(),
                        coarsen(scene.problem().contact_boundary(),
                                coarsest_contact_nodes),
-                       method);
+                       method,
+                       result.notes,
+                       [&watch](const MajoriseMinimiseIteration &) {
+                         return watch.may_go_on();
+                       });
       CondensedProblem problem(condensed.schur_complement(),
                                condensed.load(),
                                scene.adhesion(),
@@ -209,6 +219,7 @@ namespace Debond
     solve_condensed(const std::string &method,
                     const Parameters  &parameters,
                     const Scene<dim>  &scene,
+                    Checkpoints       *checkpoints,
                     Watch             &watch,
                     SolveResult       &result)
     {
@@ -230,7 +241,8 @@ namespace Debond
       Vector s(static_cast<unsigned int>(normals.size()));
       // If no contact node is free, there is no metric either.
       if (method == SolverMethod::energy_bundle && !normals.empty())
-        solve_by_energy_bundle(parameters, scene, condensed, watch, s, result);
+        solve_by_energy_bundle(
+          parameters, scene, condensed, checkpoints, watch, s, result);
       else
         solve_by_majorise_minimise(
           parameters, scene, condensed, watch, s, result);
@@ -271,9 +283,10 @@ namespace Debond
     /// nodes of the scene's mesh; zero if that mesh is the coarsest.
     template <int dim>
     Vector
-    solution_on_coarser_mesh(const Parameters     &parameters,
-                             const Scene<dim>     &scene,
-                             const InterruptGuard &guard)
+    solution_on_coarser_mesh(const Parameters         &parameters,
+                             const Scene<dim>         &scene,
+                             const InterruptGuard     &guard,
+                             std::vector<std::string> &notes)
     {
       Parameters coarse = parameters;
       coarse.start.clear(); // belongs to the finest mesh
@@ -292,10 +305,19 @@ namespace Debond
       Watch            watch(guard);
       SolveResult      result;
       if (factorised)
-        solve_condensed(
-          SolverMethod::majorise_minimise, coarse, coarse_scene, watch, result);
+        solve_condensed(SolverMethod::majorise_minimise,
+                        coarse,
+                        coarse_scene,
+                        nullptr,
+                        watch,
+                        result);
       else
         solve_by_multigrid(coarse, coarse_scene, guard, watch, result);
+      notes.insert(notes.end(), result.notes.begin(), result.notes.end());
+      if (result.status != SolverStatus::success)
+        notes.push_back(
+          "start on the mesh of " + std::to_string(coarse_scene.n_cells()) +
+          (dim == 2 ? " triangles: " : " tetrahedra: ") + result.message);
       return interpolate_displacement(coarse.box,
                                       coarse_scene.problem(),
                                       result.u,
@@ -313,8 +335,16 @@ namespace Debond
                        SolveResult          &result)
     {
       dealii::Timer timer;
-      result.u = solution_on_coarser_mesh(parameters, scene, guard);
+      result.u =
+        solution_on_coarser_mesh(parameters, scene, guard, result.notes);
       result.parts["coarser meshes"] = timer.wall_time();
+      if (!watch.may_go_on())
+        {
+          result.status  = SolverStatus::interrupted;
+          result.message = "multigrid: the start from coarser meshes was "
+                           "interrupted, and is the result.";
+          return;
+        }
 
       timer.restart();
       // Most of the nodes that are in contact on the coarser mesh will be here.
@@ -332,7 +362,8 @@ namespace Debond
       MultigridProblem<dim> problem(scene.problem(),
                                     scene.adhesion(),
                                     multigrid,
-                                    result.u);
+                                    result.u,
+                                    [&watch]() { return watch.may_go_on(); });
       add_majorise_result(MajoriseMinimise(parameters.majorise_minimise)
                             .minimize(problem, std::ref(watch)),
                           result);
@@ -358,7 +389,8 @@ namespace Debond
         const Parameters   &parameters,
         const Scene<dim>   &scene,
         std::ostream       &out,
-        const bool          terminal)
+        const bool          terminal,
+        Checkpoints        *checkpoints)
   {
     SolveResult result;
     {
@@ -367,11 +399,13 @@ namespace Debond
                                      std::make_unique<Watch>(guard, out, terminal) :
                                      std::make_unique<Watch>(guard);
       if (choice.method == SolverMethod::euclidean_bundle)
-        solve_by_euclidean_bundle(parameters, scene, *watch, result);
+        solve_by_euclidean_bundle(
+          parameters, scene, checkpoints, *watch, result);
       else if (choice.linear_solver == LinearSolver::multigrid)
         solve_by_multigrid(parameters, scene, guard, *watch, result);
       else
-        solve_condensed(choice.method, parameters, scene, *watch, result);
+        solve_condensed(
+          choice.method, parameters, scene, checkpoints, *watch, result);
     }
     if (choice.linear_solver != LinearSolver::direct)
       {
@@ -393,11 +427,13 @@ namespace Debond
         const Parameters &,
         const Scene<2> &,
         std::ostream &,
-        const bool);
+        const bool,
+        Checkpoints *);
   template SolveResult
   solve(const MethodChoice &,
         const Parameters &,
         const Scene<3> &,
         std::ostream &,
-        const bool);
+        const bool,
+        Checkpoints *);
 } // namespace Debond

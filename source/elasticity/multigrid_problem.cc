@@ -73,15 +73,17 @@ namespace Debond
 
   template <int dim>
   MultigridProblem<dim>::MultigridProblem(
-    const ElasticProblem<dim> &elastic_problem,
-    const PiecewiseQuadratic  &nonsmooth,
-    const Multigrid           &preconditioner,
-    dealii::Vector<double>    &start)
+    const ElasticProblem<dim>   &elastic_problem,
+    const PiecewiseQuadratic    &nonsmooth,
+    const Multigrid             &preconditioner,
+    dealii::Vector<double>      &start,
+    const std::function<bool()> &go_on)
     : A(elastic_problem.trilinos_matrix())
     , f(elastic_problem.load())
     , phi(nonsmooth)
     , multigrid(preconditioner)
     , u(start)
+    , may_go_on(go_on ? go_on : []() { return true; })
     , active(elastic_problem.contact_boundary().nodes.size())
   {
     diagonal.reinit(u);
@@ -175,6 +177,9 @@ namespace Debond
     ActiveSetRule        rule;
     Minimisation         result = {};
 
+    // Between active sets u may be outside K.
+    const dealii::Vector<double> previous_u = u;
+
     dealii::Vector<double> force(u.size()), free_force(u.size()),
       correction(u.size());
     Eigen::VectorXd excess(normals.size()), mu(normals.size());
@@ -202,14 +207,25 @@ namespace Debond
             required :
             std::max(required, linear_reduction * free_force.l2_norm()));
         correction = 0.;
+        dealii::SolverCG<dealii::Vector<double>> cg(control);
+        cg.connect([this](const unsigned int,
+                          const double,
+                          const dealii::Vector<double> &) {
+          return may_go_on() ? dealii::SolverControl::success :
+                               dealii::SolverControl::failure;
+        });
         try
           {
-            dealii::SolverCG<dealii::Vector<double>>(control).solve(
-              restricted, correction, free_force, preconditioner);
+            cg.solve(restricted, correction, free_force, preconditioner);
           }
         catch (const dealii::SolverControl::NoConvergence &)
           {
             result.linear_iterations += control.last_step();
+            if (!may_go_on())
+              {
+                result.interrupted = true;
+                u                  = previous_u;
+              }
             return result;
           }
         result.linear_iterations += control.last_step();

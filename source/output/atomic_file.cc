@@ -49,7 +49,17 @@ namespace Debond
       fail(file_name);
 
     Remover remover = {partial};
-    write(out);
+    try
+      {
+        write(out);
+      }
+    catch (...)
+      {
+        // deal.II throws on its own if its stream fails, and knows no reason.
+        if (!out)
+          fail(file_name);
+        throw;
+      }
     out.close();
     if (!out)
       fail(file_name);

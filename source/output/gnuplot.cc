@@ -127,10 +127,13 @@ namespace Debond
   std::string
   run_gnuplot(const Plot &plot, const std::string &directory)
   {
-    const std::string path = directory + "/" + plot.name;
+    const std::string path            = directory + "/" + plot.name;
+    const auto        remove_pictures = [&path]() {
+      std::filesystem::remove(path + ".png");
+      std::filesystem::remove(path + ".svg");
+    };
     // What an earlier run drew must not stand beside new data.
-    std::filesystem::remove(path + ".png");
-    std::filesystem::remove(path + ".svg");
+    remove_pictures();
     ChildProcess      gnuplot({"gnuplot", plot.name + ".gp"},
                          path + ".log",
                          directory);
@@ -140,6 +143,8 @@ namespace Debond
         std::filesystem::remove(path + ".log");
         return "";
       }
+    // Gnuplot draws into the file itself.
+    remove_pictures();
     if (ending == "exit code 127")
       return "gnuplot is not installed";
     return "gnuplot ended with " + ending + ", see " + path + ".log";

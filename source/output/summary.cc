@@ -45,6 +45,7 @@ namespace Debond
     json["linear_solver"] = summary.linear_solver;
     json["status"]        = summary.status;
     json["message"]       = summary.message;
+    json["notes"]         = summary.notes;
     json["dimension"]     = summary.dimension;
     json["functional"]    = summary.functional;
     json["minimum"]       = {{"state", summary.minimum},

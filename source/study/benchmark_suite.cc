@@ -23,26 +23,43 @@ namespace Debond
 
 
 
+    /// nlohmann::json would wrap a negative number and cut a fraction.
+    unsigned int
+    to_repetitions(const nlohmann::json &json)
+    {
+      if (!json.is_number_unsigned() || json < 1 || json > 1000)
+        throw std::invalid_argument("repetitions = " + json.dump() +
+                                    ": expected a whole number from 1 to 1000");
+      return json;
+    }
+
+
+
     BenchmarkSuite
     to_benchmark_suite(const nlohmann::json        &json,
                        const std::filesystem::path &directory)
     {
       BenchmarkSuite     suite;
-      const unsigned int repetitions = json.at("repetitions");
-      suite.output                   = json.at("output");
+      const unsigned int repetitions = to_repetitions(json.at("repetitions"));
+      const auto         repetitions_of = [&](const nlohmann::json &row) {
+        return row.contains("repetitions") ?
+                         to_repetitions(row["repetitions"]) :
+                         repetitions;
+      };
+      suite.output = json.at("output");
 
       const nlohmann::json &start_up = json.at("start-up");
       suite.start_up                 = to_benchmark_scene(start_up, directory);
-      suite.start_up_repetitions = start_up.value("repetitions", repetitions);
+      suite.start_up_repetitions     = repetitions_of(start_up);
 
       for (const nlohmann::json &row : json.at("contact solves"))
         suite.contact_solves.push_back({to_benchmark_scene(row, directory),
                                         row.at("linear solvers"),
-                                        row.value("repetitions", repetitions)});
+                                        repetitions_of(row)});
       for (const nlohmann::json &row : json.at("meshes"))
         suite.meshes.push_back({to_benchmark_scene(row, directory),
                                 row.at("methods"),
-                                row.value("repetitions", repetitions)});
+                                repetitions_of(row)});
       return suite;
     }
   } // namespace
@@ -70,12 +87,24 @@ namespace Debond
     std::ifstream stream(file);
     if (!stream)
       throw BadInput({"cannot read " + file});
+    return read_benchmark_suite(stream, file);
+  }
+
+
+
+  BenchmarkSuite
+  read_benchmark_suite(std::istream &stream, const std::string &file)
+  {
     try
       {
         return to_benchmark_suite(nlohmann::json::parse(stream),
                                   std::filesystem::path(file).parent_path());
       }
     catch (const nlohmann::json::exception &error)
+      {
+        throw BadInput({file + ": " + error.what()});
+      }
+    catch (const std::invalid_argument &error)
       {
         throw BadInput({file + ": " + error.what()});
       }

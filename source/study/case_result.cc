@@ -41,6 +41,17 @@ namespace Debond
 
 
 
+    bool
+    has_parameters_of(const Case &one)
+    {
+      std::ifstream      file(one.directory + "/parameters.prm");
+      std::ostringstream text;
+      text << file.rdbuf();
+      return text.str() == one.effective_scene;
+    }
+
+
+
     /// The column `functional` of a history; empty if there is no such file.
     std::vector<double>
     read_functionals(const std::string &file_name)
@@ -83,10 +94,7 @@ namespace Debond
   bool
   is_finished(const Case &one)
   {
-    std::ifstream      file(one.directory + "/parameters.prm");
-    std::ostringstream text;
-    text << file.rdbuf();
-    if (text.str() != one.effective_scene ||
+    if (!has_parameters_of(one) ||
         !std::filesystem::is_regular_file(summary_file(one)))
       return false;
     try
@@ -97,6 +105,15 @@ namespace Debond
       {
         return false;
       }
+  }
+
+
+
+  bool
+  can_restart(const Case &one)
+  {
+    return has_parameters_of(one) &&
+           std::filesystem::is_regular_file(one.directory + "/checkpoint");
   }
 
 

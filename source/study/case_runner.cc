@@ -42,7 +42,7 @@ namespace Debond
 
 
     std::unique_ptr<RunningCase>
-    start_case(const std::string &scene, const Case &one)
+    start_case(const std::string &scene, const Case &one, const bool afresh)
     {
       std::filesystem::create_directories(one.directory);
       // A case that ends before it writes anything must not inherit this.
@@ -53,6 +53,8 @@ namespace Debond
           command.emplace_back("--set");
           command.push_back(setting);
         }
+      if (!afresh && can_restart(one))
+        command.emplace_back("--restart");
       return std::make_unique<RunningCase>(one, command);
     }
 
@@ -221,7 +223,7 @@ namespace Debond
             return false;
           }
         while (next != waiting.end() && running.size() < jobs)
-          running.push_back(start_case(scene, **next++));
+          running.push_back(start_case(scene, **next++, afresh));
         std::this_thread::sleep_for(pause_between_polls);
 
         for (auto child = running.begin(); child != running.end();)

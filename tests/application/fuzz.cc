@@ -3,215 +3,122 @@
 // named, or read; what is small is also solved. An argument gives the number
 // of cases. A case that crashes or hangs is printed before the test ends.
 
+#include <deal.II/base/mpi.h>
+
 #include <debond/application/method_choice.h>
 #include <debond/application/parameters.h>
 #include <debond/application/run.h>
 #include <debond/application/scene_size.h>
 
-#include <unistd.h>
-
-#include <csignal>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <random>
 #include <regex>
 #include <sstream>
 
+#include "mutator.h"
+
 using namespace Debond;
+using namespace Fuzz;
 
 namespace
 {
-  constexpr unsigned int seconds_for_a_case     = 60;
-  constexpr double       largest_scene_to_solve = 1500.; // unknowns
-
-  std::string current_case;
+  constexpr double largest_scene_to_solve = 1500.; // unknowns
 
 
 
-  /// Only what is allowed in a signal handler.
-  extern "C" void
-  report_signal(const int number)
-  {
-    const char *const text =
-      number == SIGALRM ? "HANG in the case\n" : "CRASH in the case\n";
-    ssize_t written = write(STDERR_FILENO, text, std::strlen(text));
-    written = write(STDERR_FILENO, current_case.data(), current_case.size());
-    _exit(written < 0 ? 2 : 1);
-  }
-
-
-
-  class Mutator
-  {
-  public:
-    std::string
-    operator()(const std::string &scene)
-    {
-      std::vector<std::string> lines;
-      std::istringstream       input(scene);
-      for (std::string line; std::getline(input, line);)
-        lines.push_back(line);
-      for (unsigned int k = below(3) + 1; k > 0 && !lines.empty(); --k)
-        mutate(lines);
-      std::string result;
-      for (const std::string &line : lines)
-        result += line + '\n';
-      return result;
-    }
-
-    unsigned int
-    below(const unsigned int n)
-    {
-      return std::uniform_int_distribution<unsigned int>(0, n - 1)(engine);
-    }
-
-  private:
-    void
-    mutate(std::vector<std::string> &lines)
-    {
-      const unsigned int at     = below(lines.size());
-      std::string       &line   = lines[at];
-      const std::size_t  equals = line.find('=');
-      switch (below(12))
-        {
-          case 0:
-            lines.erase(lines.begin() + at);
-            break;
-          case 1:
-            lines.insert(lines.begin() + at, lines[below(lines.size())]);
-            break;
-          case 2:
-            if (!line.empty())
-              line.erase(below(line.size()), 1);
-            break;
-          case 3:
-            line.insert(below(line.size() + 1), 1, char(below(255) + 1));
-            break;
-          case 4:
-            line.resize(below(line.size() + 1));
-            break;
-          case 5:
-            std::swap(line, lines[below(lines.size())]);
-            break;
-          default:
-            if (equals != std::string::npos)
-              line = line.substr(0, equals + 2) + value();
-        }
-    }
-
-    std::string
-    value()
-    {
-      static const std::vector<std::string> values = {
-        "",
-        "0",
-        "-0",
-        "1",
-        "-1",
-        "2",
-        "3",
-        "1e-300",
-        "1e300",
-        "1e308",
-        "-1e308",
-        "1e-12",
-        "1e12",
-        "nan",
-        "inf",
-        "-inf",
-        "1e",
-        "0x10",
-        "1,5",
-        "1, 1",
-        "2, 1",
-        "3, 2, 1",
-        "1, 1, 1",
-        "1e-9, 1e9",
-        "999999999999",
-        "4294967296",
-        "0.5",
-        "0.4999999",
-        "-0.999",
-        "left",
-        "right, right",
-        "bottom",
-        "bottom, top",
-        "left, right, bottom, top",
-        "front",
-        "free",
-        "fixed",
-        "none",
-        "winkler",
-        "exact",
-        "midpoint",
-        "gauss 1",
-        "gauss 99",
-        "gauss 100",
-        "gauss -1",
-        "plane strain",
-        "true",
-        "automatic",
-        "energy bundle",
-        "majorise minimise",
-        "multigrid",
-        "direct",
-        "0; 0",
-        "0; 1/x",
-        "0; 1/(x-0.2)",
-        "0; log(-1)",
-        "0; sqrt(x-0.2)",
-        "0; rint(1e9*x)",
-        "0; x",
-        "0; 0; 0",
-        "0; 1e300",
-        "0; sin(1e6*x)",
-        "0; if(x<0.2,1,",
-        "0; y z",
-        ";",
-        "0;",
-        "a=1",
-        "a=1, a=2",
-        "x=1",
-        "pi=3",
-        "a=nan",
-        "{scene}",
-        "/",
-        "\\",
-        "#",
-        "end",
-        "0; rand()",
-        "0; rand_seed(1)",
-        "0; x=1",
-        "0; 0.69*(x^-1)",
-        "..",
-        std::string(5000, '9'),
-        "0; " + std::string(2000, '(')};
-      return values[below(values.size())];
-    }
-
-    std::mt19937 engine{20260702};
-  };
+  const std::vector<std::string> hostile_values = {"",
+                                                   "0",
+                                                   "-0",
+                                                   "1",
+                                                   "-1",
+                                                   "2",
+                                                   "3",
+                                                   "1e-300",
+                                                   "1e300",
+                                                   "1e308",
+                                                   "-1e308",
+                                                   "1e-12",
+                                                   "1e12",
+                                                   "nan",
+                                                   "inf",
+                                                   "-inf",
+                                                   "1e",
+                                                   "0x10",
+                                                   "1,5",
+                                                   "1, 1",
+                                                   "2, 1",
+                                                   "3, 2, 1",
+                                                   "1, 1, 1",
+                                                   "1e-9, 1e9",
+                                                   "999999999999",
+                                                   "4294967296",
+                                                   "0.5",
+                                                   "0.4999999",
+                                                   "-0.999",
+                                                   "left",
+                                                   "right, right",
+                                                   "bottom",
+                                                   "bottom, top",
+                                                   "left, right, bottom, top",
+                                                   "front",
+                                                   "free",
+                                                   "fixed",
+                                                   "none",
+                                                   "winkler",
+                                                   "exact",
+                                                   "midpoint",
+                                                   "gauss 1",
+                                                   "gauss 99",
+                                                   "gauss 100",
+                                                   "gauss -1",
+                                                   "plane strain",
+                                                   "true",
+                                                   "automatic",
+                                                   "energy bundle",
+                                                   "majorise minimise",
+                                                   "multigrid",
+                                                   "direct",
+                                                   "0; 0",
+                                                   "0; 1/x",
+                                                   "0; 1/(x-0.2)",
+                                                   "0; log(-1)",
+                                                   "0; sqrt(x-0.2)",
+                                                   "0; rint(1e9*x)",
+                                                   "0; x",
+                                                   "0; 0; 0",
+                                                   "0; 1e300",
+                                                   "0; sin(1e6*x)",
+                                                   "0; if(x<0.2,1,",
+                                                   "0; y z",
+                                                   ";",
+                                                   "0;",
+                                                   "a=1",
+                                                   "a=1, a=2",
+                                                   "x=1",
+                                                   "pi=3",
+                                                   "a=nan",
+                                                   "{scene}",
+                                                   "/",
+                                                   "\\",
+                                                   "#",
+                                                   "end",
+                                                   "0; rand()",
+                                                   "0; rand_seed(1)",
+                                                   "0; x=1",
+                                                   "0; 0.69*(x^-1)",
+                                                   "..",
+                                                   std::string(5000, '9'),
+                                                   "0; " +
+                                                     std::string(2000, '(')};
 
 
 
   std::vector<std::string>
   shipped_scenes(const std::filesystem::path &directory)
   {
-    std::vector<std::string> files, scenes;
-    for (const char *folder : {"", "hard"})
-      for (const auto &entry :
-           std::filesystem::directory_iterator(directory / folder))
-        if (entry.path().extension() == ".prm")
-          files.push_back(entry.path().string());
-    std::sort(files.begin(), files.end());
-    for (const std::string &file : files)
-      {
-        std::ostringstream text;
-        text << std::ifstream(file).rdbuf();
-        scenes.push_back(text.str());
-      }
+    std::vector<std::string> scenes = read_files(directory, ".prm");
+    const auto               hard   = read_files(directory / "hard", ".prm");
+    scenes.insert(scenes.end(), hard.begin(), hard.end());
     return scenes;
   }
 
@@ -220,7 +127,7 @@ namespace
   struct Counts
   {
     unsigned int rejected = 0, read = 0, solved = 0, not_converged = 0;
-    unsigned int unnamed = 0, failed = 0;
+    unsigned int multigrid = 0, unnamed = 0, failed = 0;
   };
 
 
@@ -250,10 +157,17 @@ namespace
         Parameters         parameters = to_parameters("fuzz.prm", table);
         const MethodChoice choice     = choose_method(parameters);
         ++counts.read;
-        // MPI, which multigrid needs, starts only once in a process.
-        if (scene_size(parameters).unknowns > largest_scene_to_solve ||
-            choice.linear_solver == LinearSolver::multigrid)
+        if (scene_size(parameters).unknowns > largest_scene_to_solve)
           return;
+        // Which is chosen for large scenes only.
+        if (counts.read % 4 == 0 &&
+            choice.linear_solver == LinearSolver::direct)
+          {
+            parameters.method        = SolverMethod::majorise_minimise;
+            parameters.linear_solver = LinearSolver::multigrid;
+            parameters.prove         = false;
+            ++counts.multigrid;
+          }
 
         parameters.output.directory = directory;
         for (auto *method : {&parameters.bundle, &parameters.energy_bundle})
@@ -298,8 +212,13 @@ int
 main(int argc, char *argv[])
 {
   const unsigned int n_cases = argc > 1 ? std::stoul(argv[1]) : 500;
-  for (const int number : {SIGSEGV, SIGFPE, SIGABRT, SIGBUS, SIGILL, SIGALRM})
-    std::signal(number, report_signal);
+  // Multigrid needs MPI, which starts only once in a process.
+  int                                            no_arguments = 0;
+  char                                         **no_argument  = nullptr;
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(no_arguments,
+                                                     no_argument,
+                                                     1);
+  catch_signals();
 
   const std::vector<std::string> scenes =
     shipped_scenes(SOURCE_DIR "/../../prm");
@@ -309,7 +228,7 @@ main(int argc, char *argv[])
 
   std::ostringstream    messages;
   std::streambuf *const errors = std::cerr.rdbuf(messages.rdbuf());
-  Mutator               mutator;
+  Mutator               mutator(hostile_values);
   Counts                counts;
   for (unsigned int k = 0; k < n_cases; ++k)
     {
@@ -329,7 +248,8 @@ main(int argc, char *argv[])
             << '\n';
   if (argc > 1)
     std::cout << n_cases << " cases: " << counts.rejected << " rejected, "
-              << counts.read << " read, " << counts.solved << " solved, "
-              << counts.not_converged << " not converged\n";
+              << counts.read << " read, " << counts.solved << " solved ("
+              << counts.multigrid << " by multigrid), " << counts.not_converged
+              << " not converged\n";
   return counts.failed + counts.unnamed > 0 ? 1 : 0;
 }

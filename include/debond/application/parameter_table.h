@@ -58,6 +58,14 @@ namespace Debond
     std::vector<std::string>
     get_list(const std::string &path) const;
 
+    /// All values by path, as they were written.
+    std::map<std::string, std::string>
+    values() const;
+
+    /// Where the entry was set, "FILE:LINE"; the file if it was not.
+    std::string
+    location(const std::string &path) const;
+
     /// Adds an error that concerns the entry @p path, and others; nothing if
     /// one of them was rejected before.
     void

@@ -120,9 +120,11 @@ namespace Debond
     ProximalBundleParameters energy_bundle = energy_bundle_defaults();
 
     MajoriseMinimiseParameters majorise_minimise;
-    BondSearchChoice           search = BondSearchChoice::automatic;
-    bool                       prove  = false;
-    BranchAndBoundParameters   proof  = proof_defaults();
+    double                     checkpoint_interval = 0.; ///< s, 0 for none
+    bool                       restart = false;          ///< from a checkpoint
+    BondSearchChoice           search  = BondSearchChoice::automatic;
+    bool                       prove   = false;
+    BranchAndBoundParameters   proof   = proof_defaults();
     OutputParameters           output;
 
     /// Largest Verification::error() of a result that counts.
@@ -130,6 +132,9 @@ namespace Debond
 
     /// The scene with all entries that it leaves to their defaults.
     std::string effective_scene;
+
+    /// The same by path, and where they were set.
+    std::map<std::string, std::string> values, locations;
   };
 
   /// Declares all entries with defaults (the paper's benchmark on the mesh

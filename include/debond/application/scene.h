@@ -59,7 +59,7 @@ namespace Debond
 
   private:
     void
-    build(const Parameters &parameters, const MatrixStorage storage);
+    add_contact(const Parameters &parameters, const MatrixStorage storage);
 
     dealii::Triangulation<dim>                         triangulation;
     std::unique_ptr<ElasticProblem<dim>>               elastic_problem;

@@ -41,6 +41,9 @@ namespace Debond
     /// Of a success.
     WhichMinimum minimum;
 
+    /// What did not go as it should without keeping the method from its end.
+    std::vector<std::string> notes;
+
     /// Wall seconds by part.
     std::map<std::string, double> parts;
 
@@ -50,15 +53,17 @@ namespace Debond
   };
 
   /// Minimises the functional of the scene, whose matrix must be stored as
-  /// matrix_storage() says, by the given method. Iterations are printed to
-  /// @p out unless the scene wants no machine details.
+  /// matrix_storage() says, by the given method, the bundle methods with
+  /// @p checkpoints if there are any. Iterations are printed to @p out unless
+  /// the scene wants no machine details.
   template <int dim>
   SolveResult
   solve(const MethodChoice &choice,
         const Parameters   &parameters,
         const Scene<dim>   &scene,
         std::ostream       &out,
-        const bool          terminal);
+        const bool          terminal,
+        Checkpoints        *checkpoints = nullptr);
 
   /// How a method needs A.
   MatrixStorage

@@ -13,6 +13,8 @@
 
 #include <Eigen/SparseCore>
 
+#include <functional>
+
 namespace Debond
 {
   /**
@@ -31,11 +33,14 @@ namespace Debond
   {
   public:
     /// Keeps references; @p u is the current point, of which the normal
-    /// displacements have to be <= 0.
-    MultigridProblem(const ElasticProblem<dim> &problem,
-                     const PiecewiseQuadratic  &phi,
-                     const Multigrid           &multigrid,
-                     dealii::Vector<double>    &u);
+    /// displacements have to be <= 0. As soon as @p may_go_on returns false,
+    /// which each linear iteration asks, minimise() ends and leaves u as it was
+    /// before.
+    MultigridProblem(const ElasticProblem<dim>   &problem,
+                     const PiecewiseQuadratic    &phi,
+                     const Multigrid             &multigrid,
+                     dealii::Vector<double>      &u,
+                     const std::function<bool()> &may_go_on = {});
 
     State
     evaluate() override;
@@ -66,6 +71,7 @@ namespace Debond
     const PiecewiseQuadratic                     &phi;
     const Multigrid                              &multigrid;
     dealii::Vector<double>                       &u;
+    std::function<bool()>                         may_go_on;
     std::vector<dealii::types::global_dof_index>  normals;
 
     dealii::Vector<double> diagonal; ///< of A

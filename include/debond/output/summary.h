@@ -11,11 +11,15 @@ namespace Debond
   /// What a run reports, for the log and for summary.json.
   struct Summary
   {
-    std::string  scene;         ///< path of the .prm as given
-    std::string  method;        ///< Solver/Method
-    std::string  linear_solver; ///< direct, multigrid or none
-    std::string  status;        ///< to_string(SolverStatus)
-    std::string  message;
+    std::string scene;         ///< path of the .prm as given
+    std::string method;        ///< Solver/Method
+    std::string linear_solver; ///< direct, multigrid or none
+    std::string status;        ///< to_string(SolverStatus)
+    std::string message;
+
+    /// What did not go as it should, and did not decide on the status.
+    std::vector<std::string> notes;
+
     unsigned int dimension  = 2;
     double       functional = 0.;
 

@@ -60,6 +60,10 @@ namespace Debond
   /// cannot be used.
   BenchmarkSuite
   read_benchmark_suite(const std::string &file);
+
+  /// The same from a stream; @p file is used in messages and for the paths.
+  BenchmarkSuite
+  read_benchmark_suite(std::istream &stream, const std::string &file);
 } // namespace Debond
 
 #endif

@@ -39,6 +39,10 @@ namespace Debond
   bool
   is_finished(const Case &one);
 
+  /// Whether there is a checkpoint of exactly this case.
+  bool
+  can_restart(const Case &one);
+
   /// Reads summary.json and history.csv of a case. Throws std::runtime_error
   /// naming the file that cannot be read.
   CaseResult

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Mutations of the shipped studies and benchmarks: each is rejected with the
+// entry or the line named, or read, with all its cases and scenes. An argument
+// gives the number of cases.
+
+#include <debond/study/benchmark_suite.h>
+#include <debond/study/cases.h>
+#include <debond/study/study_parameters.h>
+
+#include <functional>
+#include <iostream>
+#include <regex>
+
+#include "../application/mutator.h"
+
+using namespace Debond;
+using namespace Fuzz;
+
+namespace
+{
+  const std::vector<std::string> hostile_values = {
+    "",
+    "0",
+    "-1",
+    "1.5",
+    "1e308",
+    "nan",
+    "4294967297",
+    "99999999999999999999",
+    "true",
+    "null",
+    "[]",
+    "{}",
+    "[1, 2]",
+    "\"\"",
+    "\"x\"",
+    "\"x\",",
+    "[\"Mesh/Cells=40, 4\"],",
+    "[\"Mesh/Cells=40\"],",
+    "[\"Mesh/Cell=40, 4\"],",
+    "[\"=\"],",
+    "|",
+    " | | ",
+    "1 | 1",
+    "0.1 | nan",
+    "geometric 1 10 3",
+    "geometric 1 10",
+    "geometric 0 10 3",
+    "geometric 1 10 -3",
+    "geometric 1 10 4000000000",
+    "geometric 1 1e400 3",
+    "Mesh/Cells",
+    "Mesh/Cells=40, 4",
+    "Mesh/Cells=40",
+    "Mesh/Cells = 40, 4 | Mesh/Cells = 80, 8",
+    "Study/Scene=x",
+    "Solver/Method",
+    "euclidean bundle | energy bundle",
+    "{preparation}",
+    "{study}",
+    "status",
+    "status | status",
+    "1, 2",
+    "2, 1",
+    "../benchmark-40x4.prm",
+    "..",
+    "/",
+    "end",
+    "#",
+    std::string(5000, '|'),
+    std::string(5000, '[')};
+
+
+
+  struct Counts
+  {
+    unsigned int rejected = 0, read = 0, unnamed = 0, failed = 0;
+  };
+
+
+
+  /// Whether an error says where the mistake is: the line, an entry, or for
+  /// JSON the place or the key.
+  bool
+  is_named(const std::string &error)
+  {
+    static const std::regex named(
+      "^[^ ]*fuzz\\.(prm:[0-9]+|json): [^]*|"
+      "[^]*(Dimension|[A-Z][A-Za-z ]*/[A-Z][a-z]+|[a-z]\\.prm: )[^]*");
+    return std::regex_match(error, named);
+  }
+
+
+
+  void
+  try_case(const std::function<void()> &read, Counts &counts)
+  {
+    try
+      {
+        read();
+        ++counts.read;
+      }
+    catch (const BadInput &error)
+      {
+        ++counts.rejected;
+        for (const std::string &line : error.lines)
+          if (!is_named(line))
+            {
+              ++counts.unnamed;
+              std::cout << "no entry is named: " << line << '\n';
+            }
+      }
+    catch (const std::exception &error)
+      {
+        ++counts.failed;
+        std::cout << "exception " << error.what() << "\nin the case\n"
+                  << current_case;
+      }
+  }
+
+
+
+  /// Runs @p read on mutations of the texts.
+  void
+  fuzz(const std::string              &what,
+       const std::vector<std::string> &texts,
+       const unsigned int              n_cases,
+       const bool                      print_figures,
+       const std::function<void()>    &read)
+  {
+    Mutator mutator(hostile_values);
+    Counts  counts;
+    for (unsigned int k = 0; k < n_cases; ++k)
+      {
+        current_case = mutator(texts[mutator.below(texts.size())]);
+        alarm(seconds_for_a_case);
+        try_case(read, counts);
+        alarm(0);
+      }
+    std::cout << what << ": failures: " << counts.failed
+              << ", rejections that name nothing: " << counts.unnamed
+              << ", some of each: "
+              << (counts.rejected > 0 && counts.read > 0 ? "yes" : "NO")
+              << '\n';
+    if (print_figures)
+      std::cout << n_cases << " cases: " << counts.rejected << " rejected, "
+                << counts.read << " read\n";
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *argv[])
+{
+  const unsigned int n_cases = argc > 1 ? std::stoul(argv[1]) : 300;
+  catch_signals();
+
+  const std::filesystem::path prm(SOURCE_DIR "/../../prm");
+  fuzz(
+    "studies", read_files(prm / "studies", ".prm"), n_cases, argc > 1, [&]() {
+      const std::string file = (prm / "studies" / "fuzz.prm").string();
+      ParameterTable    table;
+      declare_study_parameters(table);
+      std::istringstream input(current_case);
+      table.read(input, file);
+      make_cases(to_study_parameters(file, table));
+    });
+  fuzz("benchmarks",
+       read_files(prm / "benchmarks", ".json"),
+       n_cases,
+       argc > 1,
+       [&]() {
+         std::istringstream   input(current_case);
+         const BenchmarkSuite suite =
+           read_benchmark_suite(input,
+                                (prm / "benchmarks" / "fuzz.json").string());
+         suite.start_up.parameters();
+         for (const auto &contact : suite.contact_solves)
+           contact.scene.parameters();
+         for (const auto &mesh : suite.meshes)
+           mesh.scene.parameters();
+       });
+}
