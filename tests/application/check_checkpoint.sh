@@ -63,9 +63,11 @@ for method in "euclidean bundle" "energy bundle"; do
   section=${method^}
   settings=(--set "Solver/Method=$method" --set "Output/Displacement=true"
     --set "Solver/Search=none")
+  # The energy bundle has few iterations on small meshes.
+  [ "$method" != "energy bundle" ] || settings+=(--set "Mesh/Cells=40, 4")
   run 0 "${settings[@]}" --set "Output/Directory=whole"
   iterations=$(($(wc -l <whole/history.csv) - 1))
-  [ $iterations -gt 5 ] || fail "$iterations iterations are too few to see"
+  [ $iterations -ge 5 ] || fail "$iterations iterations are too few to see"
 
   # At one iteration, and between two and the end: with and without an emptied
   # bundle, and twice in one run.
@@ -84,19 +86,21 @@ for method in "euclidean bundle" "energy bundle"; do
 done
 
 # Killed at any time, and interrupted. The tolerance, which cannot be met, makes
-# the run last; where a run ends may change, as may what it writes.
+# the run last.
+long=(--set "Mesh/Cells=40, 4" --set "Output/Displacement=true"
+  --set "Solver/Euclidean bundle/Stop tolerance=1e-300"
+  --set "Solver/Euclidean bundle/Bundle size=100")
 for signal in KILL INT TERM; do
   interval=1e6
   [ $signal != KILL ] || interval=1e-9
+  rm -f log # of a run before, which has the line that is waited for
   set -m
-  "$debond" bar.prm --set "Output/Directory=$signal" --set \
-    "Solver/Checkpoint interval=$interval" --set "Output/Displacement=true" \
-    --set "Solver/Euclidean bundle/Stop tolerance=1e-300" \
-    --set "Solver/Euclidean bundle/Proximal weight=5" >log 2>errors &
+  "$debond" bar.prm "${long[@]}" --set "Output/Directory=$signal" --set \
+    "Solver/Checkpoint interval=$interval" >log 2>errors &
   process=$!
   set +m
   for _ in $(seq 1200); do
-    grep -qE '^ +100 ' log && break
+    grep -sqE '^ +100 ' log && break
     sleep 0.05
   done
   kill -s $signal $process
@@ -109,17 +113,14 @@ for signal in KILL INT TERM; do
   [ "$first" = 1 ] || fail "The first line is not what the manual says."
 
   # Until an iteration that lies behind all that was done.
-  behind=(--set "Output/Displacement=true"
-    --set "Solver/Euclidean bundle/Stop tolerance=1e-300"
-    --set "Solver/Euclidean bundle/Proximal weight=5")
   cp -r $signal before
-  run 3 "${behind[@]}" --set "Output/Directory=before" --restart \
+  run 3 "${long[@]}" --set "Output/Directory=before" --restart \
     --set "Solver/Euclidean bundle/Maximum iterations=1"
   reached=$(sed -n 's/.*"total": \([0-9]*\),.*/\1/p' before/summary.json)
   rm -r before
   limit=(--set "Solver/Euclidean bundle/Maximum iterations=$((reached + 50))")
-  run 3 "${behind[@]}" "${limit[@]}" --set "Output/Directory=$signal" --restart
-  run 3 "${behind[@]}" "${limit[@]}" --set "Output/Directory=uninterrupted"
+  run 3 "${long[@]}" "${limit[@]}" --set "Output/Directory=$signal" --restart
+  run 3 "${long[@]}" "${limit[@]}" --set "Output/Directory=uninterrupted"
   cmp $signal/history.csv uninterrupted/history.csv || fail "another history"
   cmp $signal/displacement.txt uninterrupted/displacement.txt ||
     fail "another displacement"

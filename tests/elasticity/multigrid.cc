@@ -205,6 +205,32 @@ namespace
                           iterated.history[k].functional -
                             iterated.history[k - 1].functional);
         check("no rise, relative", rise / std::abs(J), 1e-12);
+
+        // From rest, ended in the middle of a linear solve.
+        bool ended = true, kept = true;
+        for (const unsigned int allowed : {0, 1, 10, 30})
+          {
+            u                            = 0.;
+            unsigned int           asked = 0;
+            dealii::Vector<double> last(u);
+            MultigridProblem<dim>  stopped(*body.problem,
+                                          adhesion,
+                                          multigrid,
+                                          u,
+                                          [&]() { return ++asked <= allowed; });
+            const auto             result = MajoriseMinimise({}).minimize(
+              stopped, [&](const MajoriseMinimiseIteration &) {
+                last = u;
+                return true;
+              });
+            ended = ended && result.status == SolverStatus::interrupted &&
+                    asked <= allowed + 2;
+            kept = kept && u == last;
+          }
+        std::cout << "  an interruption ends it within a linear iteration: "
+                  << (ended ? "yes" : "NO")
+                  << ", with what the last iteration left: "
+                  << (kept ? "yes" : "NO") << '\n';
       }
   }
 } // namespace

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <random>
 #include <string>
 
@@ -235,6 +236,25 @@ namespace
                 << ", warm steps " << record.warm_steps << ", order "
                 << record.order_change << '\n';
   }
+
+
+
+  /// Data that are not finite have no solution, whatever the working set.
+  bool
+  is_told_from_optimal(const double product,
+                       const double component,
+                       const double beta,
+                       const double b)
+  {
+    BundleQP qp(2, 1);
+    qp.add_cut(Eigen::VectorXd::Ones(1), Eigen::VectorXd::Ones(1));
+    qp.add_cut(Eigen::Vector2d(0.5, product),
+               Eigen::VectorXd::Constant(1, component));
+    return qp.solve(Eigen::Vector2d(0., beta),
+                    Eigen::VectorXd::Constant(1, b),
+                    1.)
+             .status != BundleQP::Status::optimal;
+  }
 } // namespace
 
 
@@ -279,4 +299,15 @@ main(int argc, char *[])
   print("every cut repeated with a difference of 1e-10", nearly_repeated, 1e-6);
   print("all bounds active", bounds_only, 1e-8);
   print("200 cuts, 100 bounds", many_cuts, 1e-8);
+
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::cout << "finite data are optimal: "
+            << (is_told_from_optimal(2., 1., 0.1, 0.1) ? "NO" : "yes")
+            << ", NaN in products, components, beta, b is not:";
+  for (const bool told : {is_told_from_optimal(nan, 1., 0.1, 0.1),
+                          is_told_from_optimal(2., nan, 0.1, 0.1),
+                          is_told_from_optimal(2., 1., nan, 0.1),
+                          is_told_from_optimal(2., 1., 0.1, nan)})
+    std::cout << (told ? " yes" : " NO");
+  std::cout << '\n';
 }

@@ -54,3 +54,40 @@ for signal in INT TERM; do
     fail "the finished case was repeated"
   cmp uninterrupted.csv output/study/table.csv || fail "not the same end"
 done
+
+# A case with checkpoints goes on where it was.
+cat >long.prm <<'STUDY'
+subsection Study
+  set Scene             = bar.prm
+  set Methods           = euclidean bundle
+  set Columns           = status | iterations | J
+  set Settings          = Mesh/Cells = 40, 4 | Solver/Checkpoint interval = 1e6 | Solver/Euclidean bundle/Stop tolerance = 1e-300 | Solver/Euclidean bundle/Maximum iterations = 1500
+  set Accepted statuses = iteration limit
+end
+subsection Sweep 1
+  set Parameter = Solver/Euclidean bundle/Proximal weight
+  set Label     = u_k
+  set Values    = 0.05
+end
+STUDY
+case=output/long/cases/u_k=0.05
+set -m
+"$debond" --study long.prm >log 2>errors &
+process=$!
+set +m
+for _ in $(seq 6000); do
+  grep -sqE '^ +100 ' $case/log && break
+  sleep 0.02
+done
+kill -s INT $process
+code=0
+wait $process || code=$?
+[ $code -eq 4 ] || fail "exit code $code in place of 4: $(cat log errors)"
+[ -s $case/checkpoint ] || fail "no checkpoint"
+expect_code 0 "$debond" --study long.prm
+grep -q "goes on after iteration" $case/log || fail "not from the checkpoint"
+cp $case/history.csv continued.csv
+rm -r output/long
+expect_code 0 "$debond" --study long.prm
+! grep -q "goes on after iteration" $case/log || fail "not from the beginning"
+cmp continued.csv $case/history.csv || fail "another history"
