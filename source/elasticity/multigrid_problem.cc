@@ -214,21 +214,25 @@ namespace Debond
           return may_go_on() ? dealii::SolverControl::success :
                                dealii::SolverControl::failure;
         });
+        bool solved = true;
         try
           {
             cg.solve(restricted, correction, free_force, preconditioner);
           }
         catch (const dealii::SolverControl::NoConvergence &)
           {
-            result.linear_iterations += control.last_step();
-            if (!may_go_on())
-              {
-                result.interrupted = true;
-                u                  = previous_u;
-              }
-            return result;
+            solved = false;
           }
         result.linear_iterations += control.last_step();
+        // A failure before the first step is not told by an exception.
+        if (!may_go_on())
+          {
+            result.interrupted = true;
+            u                  = previous_u;
+            return result;
+          }
+        if (!solved)
+          return result;
         u += correction;
 
         majorant_force(force);

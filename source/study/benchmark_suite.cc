@@ -69,14 +69,24 @@ namespace Debond
   Parameters
   BenchmarkScene::parameters() const
   {
-    ParameterTable table;
-    declare_parameters(table);
-    read_scene(scene, table);
-    for (const std::string &setting : settings)
-      table.assign(setting);
-    // No iterations in the log.
-    table.assign("Output/Machine details=false");
-    return to_parameters(scene, table);
+    try
+      {
+        ParameterTable table;
+        declare_parameters(table);
+        read_scene(scene, table);
+        for (const std::string &setting : settings)
+          table.assign(setting);
+        // No iterations in the log.
+        table.assign("Output/Machine details=false");
+        return to_parameters(scene, table);
+      }
+    catch (const BadInput &error)
+      {
+        std::vector<std::string> lines;
+        for (const std::string &line : error.lines)
+          lines.push_back("benchmark \"" + name + "\": " + line);
+        throw BadInput(lines);
+      }
   }
 
 

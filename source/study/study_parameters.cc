@@ -504,7 +504,8 @@ namespace Debond
     if (study.title.empty())
       study.title = std::filesystem::path(file).stem().string();
 
-    if (!std::filesystem::is_regular_file(study.scene))
+    std::error_code error; // of a name that no file can have
+    if (!std::filesystem::is_regular_file(study.scene, error))
       {
         table.add_error("Study/Scene",
                         "Study/Scene: there is no file " + study.scene);

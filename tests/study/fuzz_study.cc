@@ -86,7 +86,8 @@ namespace
   {
     static const std::regex named(
       "^[^ ]*fuzz\\.(prm:[0-9]+|json): [^]*|"
-      "[^]*(Dimension|[A-Z][A-Za-z ]*/[A-Z][a-z]+|[a-z]\\.prm: )[^]*");
+      "[^]*(Dimension|[A-Z][A-Za-z ]*/[A-Z][a-z]+|[a-z]\\.prm: )[^]*|"
+      "benchmark \"[^]*");
     return std::regex_match(error, named);
   }
 
