@@ -36,7 +36,7 @@ namespace Debond
       follow(const LoadPathObserver<dim> &observer)
       {
         dealii::Timer timer;
-        print_titles("J", "broken");
+        print_titles("broken part");
         for (const double factor : parameters.load_path.factors)
           {
             if (!steps.empty() && guard.requested())
@@ -81,7 +81,7 @@ namespace Debond
           out << "  global branch\n";
         const bool proves =
           parameters.load_path.global_branch == GlobalBranch::prove;
-        print_titles("J", proves ? "gap" : "searched");
+        print_titles(proves ? "gap" : "states tried");
         const Branch branch = global_branch(
           parameters,
           scene,
@@ -263,11 +263,11 @@ namespace Debond
       }
 
       void
-      print_titles(const std::string &third, const std::string &fourth) const
+      print_titles(const std::string &third) const
       {
         if (parameters.output.machine_details)
-          out << std::setw(11) << "factor" << std::setw(17) << third
-              << std::setw(12) << fourth << "  state" << std::endl;
+          out << std::setw(11) << "factor" << std::setw(17) << "J"
+              << std::setw(14) << third << "  state" << std::endl;
       }
 
       void
@@ -279,9 +279,8 @@ namespace Debond
         if (parameters.output.machine_details)
           out << std::setw(11) << factor << std::scientific
               << std::setprecision(8) << std::setw(17) << functional
-              << std::setprecision(2) << std::setw(12) << number
-              << std::defaultfloat << std::setprecision(6) << "  " << word
-              << std::endl;
+              << std::defaultfloat << std::setprecision(3) << std::setw(14)
+              << number << std::setprecision(6) << "  " << word << std::endl;
       }
 
       const Parameters               &parameters;

@@ -3,9 +3,9 @@
 #include <debond/output/load_path.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <iomanip>
-#include <limits>
 
 namespace Debond
 {
@@ -69,6 +69,18 @@ namespace Debond
 
   namespace
   {
+    /// The shortest text that reads back as the same number.
+    std::string
+    shortest(const double number)
+    {
+      std::array<char, 32> text;
+      const auto           end =
+        std::to_chars(text.data(), text.data() + text.size(), number).ptr;
+      return {text.data(), end};
+    }
+
+
+
     /// The titles of write_state() with @p prefix.
     template <int dim>
     void
@@ -112,15 +124,15 @@ namespace Debond
                                   state.mean_gap,
                                   state.largest_gap,
                                   state.normal_force})
-        out << ',' << number;
+        out << ',' << shortest(number);
       for (const auto &reaction :
            {state.contact_reaction, state.clamped_reaction})
         for (unsigned int d = 0; d < dim; ++d)
-          out << ',' << reaction[d];
+          out << ',' << shortest(reaction[d]);
       for (const double number : {state.law_violation,
                                   state.equilibrium_residual,
                                   state.force_imbalance})
-        out << ',' << number;
+        out << ',' << shortest(number);
     }
 
 
@@ -130,7 +142,7 @@ namespace Debond
     {
       out << ',';
       if (number)
-        out << *number;
+        out << shortest(*number);
     }
   } // namespace
 
@@ -149,10 +161,10 @@ namespace Debond
       write_titles<dim>("global_", out);
       out << ",global_relative_gap\n";
 
-      out.precision(std::numeric_limits<double>::max_digits10);
       for (const LoadPathStep<dim> &step : steps)
         {
-          out << step.step << ',' << step.factor << ',' << step.status;
+          out << step.step << ',' << shortest(step.factor) << ','
+              << step.status;
           write_state(step.state, out);
           out << ',' << step.iterations;
           write_optional(step.change_factor, out);
