@@ -46,6 +46,37 @@ namespace Debond
       return parameters.memory_limit > 0. ? parameters.memory_limit :
                                             available_memory();
     }
+
+
+
+    /// A path needs S for its many loads.
+    void
+    check_load_path(const Parameters &parameters, const MethodChoice &choice)
+    {
+      const auto refuse = [&parameters](const std::string &entry,
+                                        const std::string &reason) {
+        throw BadInput(
+          {parameters.scene + ": Load path/" + entry + " " + reason});
+      };
+      if (choice.method != SolverMethod::majorise_minimise)
+        refuse("Factors",
+               "needs Solver/Method = majorise minimise or automatic, not " +
+                 choice.method);
+      if (choice.linear_solver != LinearSolver::direct)
+        refuse("Factors",
+               "needs Solver/Linear solver = direct, not " +
+                 choice.linear_solver);
+      if (parameters.prove)
+        refuse("Factors",
+               "follows minima that need not be global: in place of "
+               "Solver/Prove = true use Load path/Global branch = prove");
+      if (parameters.load_path.global_branch == GlobalBranch::prove &&
+          parameters.quadrature.rule !=
+            ContactQuadratureParameters::Rule::nodal)
+        refuse("Global branch",
+               "= prove needs Contact law/Quadrature = nodal, which gives "
+               "each node a bond of its own");
+    }
   } // namespace
 
 
@@ -107,6 +138,8 @@ namespace Debond
                           memory_with_multigrid(size, dim);
       }
 
+    if (!parameters.load_path.factors.empty())
+      check_load_path(parameters, choice);
     const bool searches = parameters.search == BondSearchChoice::quick ||
                           parameters.search == BondSearchChoice::full;
     if ((searches || parameters.prove) &&

@@ -354,6 +354,7 @@ namespace Debond
       "none");
 
     declare_loads(table);
+    declare_load_path(table);
 
     table.declare(
       "Contact law/Law",
@@ -462,6 +463,16 @@ namespace Debond
     declare_switch(
       "Displacement",
       "Write displacement.txt, all degrees of freedom, from which another run can start",
+      "false");
+    declare_switch("Load path plots",
+                   "Draw load_path*.png and .svg with gnuplot; their data and "
+                   "scripts are written without it as well");
+    declare_switch(
+      "Load path contact VTU",
+      "Write load_path_contact.pvd, the contact boundary at each factor, for ParaView");
+    declare_switch(
+      "Load path body VTU",
+      "Write load_path_body.pvd, the body at each factor, for ParaView",
       "false");
     declare_switch(
       "Machine details",
@@ -643,6 +654,7 @@ namespace Debond
       table.get("Contact law/Tangential displacement") == "fixed";
 
     p.loads = p.dimension == 2 ? read_loads<2>(table) : read_loads<3>(table);
+    p.load_path = read_load_path(table);
 
     p.law.name           = table.get("Contact law/Law");
     p.law.bond_stiffness = table.get_double("Contact law/Bond stiffness");
@@ -696,12 +708,15 @@ namespace Debond
     // The effective scene names the directory itself, so that a second run of
     // it does not write elsewhere.
     table.assign("Output/Directory=" + p.output.directory);
-    p.output.body_vtu        = table.get_bool("Output/Body VTU");
-    p.output.contact_vtu     = table.get_bool("Output/Contact VTU");
-    p.output.contact_profile = table.get_bool("Output/Contact profile");
-    p.output.history         = table.get_bool("Output/History");
-    p.output.displacement    = table.get_bool("Output/Displacement");
-    p.output.machine_details = table.get_bool("Output/Machine details");
+    p.output.body_vtu         = table.get_bool("Output/Body VTU");
+    p.output.contact_vtu      = table.get_bool("Output/Contact VTU");
+    p.output.contact_profile  = table.get_bool("Output/Contact profile");
+    p.output.history          = table.get_bool("Output/History");
+    p.output.displacement     = table.get_bool("Output/Displacement");
+    p.output.path_plots       = table.get_bool("Output/Load path plots");
+    p.output.path_contact_vtu = table.get_bool("Output/Load path contact VTU");
+    p.output.path_body_vtu    = table.get_bool("Output/Load path body VTU");
+    p.output.machine_details  = table.get_bool("Output/Machine details");
 
     check_consistency(table, p);
     if (!table.errors().empty())

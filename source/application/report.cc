@@ -157,7 +157,10 @@ namespace Debond
       return details ? scientific(value, 2) : bound(value);
     };
 
-    out << "Result\n";
+    if (summary.load_path)
+      report_load_path(*summary.load_path, out);
+    out << "Result" << (summary.load_path ? " at the last load factor" : "")
+        << '\n';
     const bool success = summary.status == to_string(SolverStatus::success);
     line(out, "status") << (success ? "" : "NOT CONVERGED: ") << summary.status
                         << '\n';
@@ -231,6 +234,53 @@ namespace Debond
                           << std::defaultfloat;
       }
     out << std::flush;
+  }
+
+
+
+  void
+  report_load_path(const LoadPathTotals &path, std::ostream &out)
+  {
+    out << "Load path\n";
+    line(out, "factors") << path.steps << " of " << path.factors
+                         << ", the last one " << path.last_factor << '\n';
+    const auto report_change = [&out](const std::string               &label,
+                                      const std::optional<BondChange> &change) {
+      if (!change)
+        return;
+      line(out, label) << "at factor " << change->factor << ", step "
+                       << change->step << ", broken part "
+                       << change->broken_before << " to "
+                       << change->broken_after;
+      if (change->change_factor)
+        out << ", from " << std::setprecision(10) << *change->change_factor
+            << std::setprecision(6) << " on";
+      out << '\n';
+    };
+    report_change("most bonds break", path.largest_break);
+    report_change("most bonds close", path.largest_closing);
+    if (path.compared > 0)
+      {
+        line(out, "above global branch") << "at " << path.above_global << " of "
+                                         << path.compared << " factors";
+        if (path.above_global > 0)
+          out << ", by " << 100. * path.largest_excess << " % of |J| at most";
+        out << '\n';
+      }
+  }
+
+
+
+  std::string
+  verification_failure(const double error, const double tolerance)
+  {
+    std::ostringstream text;
+    text.precision(3);
+    text << "verification: the largest of residual, force imbalance and "
+            "contact law violation is "
+         << error << ", required is at most " << tolerance
+         << ". Try a smaller stop tolerance.";
+    return text.str();
   }
 
 

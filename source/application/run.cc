@@ -3,6 +3,8 @@
 #include <deal.II/base/timer.h>
 #include <deal.II/base/utilities.h>
 
+#include <debond/application/load_path.h>
+#include <debond/application/load_path_output.h>
 #include <debond/application/report.h>
 #include <debond/application/run.h>
 #include <debond/application/run_checkpoints.h>
@@ -151,20 +153,30 @@ namespace Debond
 
     /// The solver is content, but its result is not a solution.
     void
-    reject_result(const double      error,
-                  const Parameters &parameters,
-                  Summary          &summary)
+    reject_result(const std::string &message, Summary &summary)
     {
-      std::ostringstream text;
-      text.precision(3);
-      text << "verification: the largest of residual, force imbalance and "
-              "contact law violation is "
-           << error << ", required is at most "
-           << parameters.verification_tolerance
-           << ". Try a smaller stop tolerance.";
       summary.status = "not verified";
       summary.minimum.clear();
-      summary.message = text.str();
+      summary.message = message;
+    }
+
+
+
+    /// What the verification has against the result, or against the first
+    /// step of a load path that it has something against; empty if nothing.
+    template <int dim>
+    std::string
+    verification_message(const Parameters                     &parameters,
+                         const Verification<dim>              &verification,
+                         const std::vector<LoadPathStep<dim>> &path)
+    {
+      for (const LoadPathStep<dim> &step : path)
+        if (!step.message.empty())
+          return step.message;
+      return verification.error() <= parameters.verification_tolerance ?
+               "" :
+               verification_failure(verification.error(),
+                                    parameters.verification_tolerance);
     }
 
 
@@ -276,24 +288,39 @@ namespace Debond
     if (parameters.output.machine_details && !checkpoints.description().empty())
       out << "Checkpoints\n  " << checkpoints.description() << std::endl;
 
-    dealii::Timer     timer;
+    dealii::Timer       timer;
+    LoadPathOutput<dim> path_output(parameters.output, scene.problem());
+    std::vector<LoadPathStep<dim>> path;
+    const bool        has_path = !parameters.load_path.factors.empty();
     const SolveResult result =
-      solve(choice, parameters, scene, out, terminal, &checkpoints);
+      has_path ? follow_load_path<dim>(
+                   parameters,
+                   scene,
+                   [&](const auto &...step) { path_output.add(step...); },
+                   out,
+                   path) :
+                 solve(choice, parameters, scene, out, terminal, &checkpoints);
     summary.timings_s["solve"] = timer.wall_time();
 
     timer.restart();
-    const Verification<dim> verification =
-      verify(scene.problem(), scene.adhesion(), scene.law(), result.u);
-    summary.timings_s["verification"] = timer.wall_time();
+    const Verification<dim> verification = verify(scene.problem(),
+                                                  scene.adhesion(),
+                                                  scene.law(),
+                                                  result.u,
+                                                  result.load_factor);
+    summary.timings_s["verification"]    = timer.wall_time();
     add_result(result, summary);
     add_verification(verification, summary);
-    const bool verified =
-      verification.error() <= parameters.verification_tolerance;
-    if (result.status == SolverStatus::success && !verified)
-      reject_result(verification.error(), parameters, summary);
+    const std::string failure =
+      verification_message(parameters, verification, path);
+    if (result.status == SolverStatus::success && !failure.empty())
+      reject_result(failure, summary);
+    if (has_path)
+      summary.load_path =
+        load_path_totals(path, parameters.load_path.factors.size());
 
-    std::string output_error;
-    if (result.status == SolverStatus::success && verified)
+    std::string output_error, plot_note;
+    if (result.status == SolverStatus::success && failure.empty())
       checkpoints.remove();
     else
       {
@@ -310,6 +337,12 @@ namespace Debond
         const std::vector<std::string> fields =
           write_fields(parameters, scene, verification, result);
         files.insert(files.end(), fields.begin(), fields.end());
+        if (has_path)
+          {
+            const std::vector<std::string> path_files =
+              path_output.finish(path, plot_note);
+            files.insert(files.end(), path_files.begin(), path_files.end());
+          }
         summary.timings_s["output"] = timer.wall_time();
         summary.peak_memory         = peak_memory();
         summary.timings_s["total"]  = total.wall_time();
@@ -327,8 +360,10 @@ namespace Debond
     report_result(parameters, summary, verification, out);
     if (parameters.output.machine_details)
       report_files(files, out);
+    if (!plot_note.empty())
+      out << "No pictures of the load path: " << plot_note << std::endl;
 
-    if (result.status != SolverStatus::success || !verified)
+    if (result.status != SolverStatus::success || !failure.empty())
       std::cerr << "debond: NOT CONVERGED (" << summary.status
                 << "): " << summary.message << std::endl;
     if (!output_error.empty())
@@ -336,7 +371,7 @@ namespace Debond
         std::cerr << "debond: " << output_error << std::endl;
         return ExitCode::output_not_saved;
       }
-    return result.status == SolverStatus::success && !verified ?
+    return result.status == SolverStatus::success && !failure.empty() ?
              ExitCode::not_converged :
              exit_code(result.status);
   }

@@ -5,7 +5,7 @@
 #include <debond/application/scene_size.h>
 #include <debond/application/solve.h>
 #include <debond/contact/boundary_coarsening.h>
-#include <debond/elasticity/condensation.h>
+#include <debond/elasticity/contact_condensation.h>
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/elasticity/multigrid.h>
 #include <debond/elasticity/multigrid_problem.h>
@@ -224,23 +224,15 @@ namespace Debond
                     SolveResult       &result)
     {
       dealii::Timer              timer;
-      const ElasticProblem<dim> &problem = scene.problem();
-      std::vector<unsigned int>  normals;
-      for (const auto &node : problem.contact_boundary().nodes)
-        normals.push_back(node.dof);
-      const Condensation condensed(problem.matrix(),
-                                   problem.load(),
-                                   normals,
-                                   [&](const unsigned int i) {
-                                     return problem.is_constrained(i);
-                                   });
-      result.parts["condensation"] = timer.wall_time();
+      const ElasticProblem<dim> &problem   = scene.problem();
+      const Condensation         condensed = condense_to_contact(problem);
+      result.parts["condensation"]         = timer.wall_time();
 
       watch.add_energy(condensed.energy_at_zero());
       timer.restart();
-      Vector s(static_cast<unsigned int>(normals.size()));
+      Vector s(problem.contact_boundary().nodes.size());
       // If no contact node is free, there is no metric either.
-      if (method == SolverMethod::energy_bundle && !normals.empty())
+      if (method == SolverMethod::energy_bundle && s.size() > 0)
         solve_by_energy_bundle(
           parameters, scene, condensed, checkpoints, watch, s, result);
       else

@@ -232,23 +232,33 @@ namespace Debond
 
     const unsigned int n_eliminated =
       static_cast<unsigned int>(unknowns.size() - kept.size());
-    c_0 = 0.;
+    given_c_0 = 0.;
     for (unsigned int i = 0; i < n_eliminated; ++i)
-      c_0 -= 0.5 * y[i] * y[i];
+      given_c_0 -= 0.5 * y[i] * y[i];
 
     L_ss = factor->trailing_block();
     S.reinit(kept.size(), kept.size());
-    g.reinit(static_cast<unsigned int>(kept.size()));
+    given_g.reinit(static_cast<unsigned int>(kept.size()));
     if (!kept.empty())
       L_ss.mTmult(S, L_ss);
     for (unsigned int i = 0; i < kept.size(); ++i)
       for (unsigned int j = 0; j <= i; ++j)
-        g(i) += L_ss(i, j) * y[n_eliminated + j];
+        given_g(i) += L_ss(i, j) * y[n_eliminated + j];
+    g = given_g;
   }
 
 
 
   Condensation::~Condensation() = default;
+
+
+
+  void
+  Condensation::scale_load(const double factor)
+  {
+    load_factor = factor;
+    g.equ(factor, given_g);
+  }
 
 
 
@@ -271,7 +281,7 @@ namespace Debond
   double
   Condensation::energy_at_zero() const
   {
-    return c_0;
+    return load_factor * load_factor * given_c_0;
   }
 
 
@@ -282,7 +292,7 @@ namespace Debond
     double sum = 0.;
     for (const double entry : y)
       sum += 0.5 * entry * entry;
-    return sum;
+    return load_factor * load_factor * sum;
   }
 
 
@@ -292,7 +302,9 @@ namespace Debond
   {
     const unsigned int n_eliminated =
       static_cast<unsigned int>(unknowns.size()) - s.size();
-    std::vector<double> x = y;
+    std::vector<double> x(unknowns.size());
+    for (unsigned int i = 0; i < n_eliminated; ++i)
+      x[i] = load_factor * y[i];
     for (unsigned int j = 0; j < s.size(); ++j)
       {
         double sum = 0.;

@@ -205,7 +205,8 @@ namespace Debond
 
   template <int dim>
   dealii::Vector<double>
-  ElasticProblem<dim>::residual(const dealii::Vector<double> &u) const
+  ElasticProblem<dim>::residual(const dealii::Vector<double> &u,
+                                const double                  load_factor) const
   {
     const dealii::Vector<double> displacement = cartesian_displacement(u);
 
@@ -223,7 +224,7 @@ namespace Debond
               forces[cell->vertex_dof_index(v, d)] += force[d];
           }
       }
-    forces -= applied_forces;
+    forces.add(-load_factor, applied_forces);
     return in_frames(forces);
   }
 
@@ -283,7 +284,8 @@ namespace Debond
   template dealii::Vector<double>
   ElasticProblem<2>::unknowns(const dealii::Vector<double> &) const;
   template dealii::Vector<double>
-  ElasticProblem<2>::residual(const dealii::Vector<double> &) const;
+  ElasticProblem<2>::residual(const dealii::Vector<double> &,
+                              const double) const;
   template std::vector<dealii::Vector<double>>
   ElasticProblem<2>::rigid_body_modes() const;
   template dealii::SymmetricTensor<2, 2>
@@ -306,7 +308,8 @@ namespace Debond
   template dealii::Vector<double>
   ElasticProblem<3>::unknowns(const dealii::Vector<double> &) const;
   template dealii::Vector<double>
-  ElasticProblem<3>::residual(const dealii::Vector<double> &) const;
+  ElasticProblem<3>::residual(const dealii::Vector<double> &,
+                              const double) const;
   template std::vector<dealii::Vector<double>>
   ElasticProblem<3>::rigid_body_modes() const;
   template dealii::SymmetricTensor<2, 3>

@@ -32,6 +32,36 @@ namespace Debond
       result["solve_parts"] = parts;
       return result;
     }
+
+
+
+    Json
+    change_as_json(const std::optional<BondChange> &change)
+    {
+      if (!change)
+        return nullptr;
+      Json result = {{"step", change->step}, {"factor", change->factor}};
+      result["change_factor"] =
+        change->change_factor ? Json(*change->change_factor) : Json(nullptr);
+      result["broken_before"] = change->broken_before;
+      result["broken_after"]  = change->broken_after;
+      return result;
+    }
+
+
+
+    Json
+    load_path_as_json(const LoadPathTotals &path)
+    {
+      return {{"factors", path.factors},
+              {"steps", path.steps},
+              {"last_factor", path.last_factor},
+              {"largest_break", change_as_json(path.largest_break)},
+              {"largest_closing", change_as_json(path.largest_closing)},
+              {"compared_with_global_branch", path.compared},
+              {"above_global_branch", path.above_global},
+              {"largest_excess", path.largest_excess}};
+    }
   } // namespace
 
 
@@ -77,10 +107,12 @@ namespace Debond
     json["clamped_reaction"]         = summary.clamped_reaction;
     json["contact_reaction"]         = summary.contact_reaction;
     json["bond_states"]              = summary.bond_states;
-    json["timings_s"]                = timings_as_json(summary.timings_s);
-    json["revision"]                 = summary.revision;
-    json["deal_ii_version"]          = summary.deal_ii_version;
-    json["build_type"]               = summary.build_type;
+    if (summary.load_path)
+      json["load_path"] = load_path_as_json(*summary.load_path);
+    json["timings_s"]       = timings_as_json(summary.timings_s);
+    json["revision"]        = summary.revision;
+    json["deal_ii_version"] = summary.deal_ii_version;
+    json["build_type"]      = summary.build_type;
 
     // A path need not be valid UTF-8; that is no reason to lose the summary.
     const std::string text =

@@ -246,6 +246,7 @@ namespace Debond
     void
     compute_force_balance(const ElasticProblem<dim>    &problem,
                           const dealii::Vector<double> &residual,
+                          const double                  load_factor,
                           Verification<dim>            &result)
     {
       std::vector<bool> is_normal(problem.n_dofs(), false);
@@ -283,7 +284,7 @@ namespace Debond
         return sum;
       };
 
-      result.applied_force    = problem.total_load();
+      result.applied_force    = load_factor * problem.total_load();
       result.clamped_reaction = resultant(clamped);
       result.contact_reaction = resultant(contact);
 
@@ -307,6 +308,7 @@ namespace Debond
          const AdhesionIntegral<dim>  &adhesion,
          const AdhesiveLaw            &law,
          const dealii::Vector<double> &u,
+         const double                  load_factor,
          const double                  tolerance)
   {
     if (!std::all_of(u.begin(), u.end(), [](const double x) {
@@ -317,7 +319,7 @@ namespace Debond
         "scene are too large or too small for double precision.");
 
     const ContactBoundary<dim>  &boundary = problem.contact_boundary();
-    const dealii::Vector<double> residual = problem.residual(u);
+    const dealii::Vector<double> residual = problem.residual(u, load_factor);
 
     dealii::Vector<double> s(static_cast<unsigned int>(boundary.nodes.size()));
     for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
@@ -356,7 +358,7 @@ namespace Debond
     if (largest.supported > 0.)
       result.contact_residual *= std::min(
         1., scales.traction * largest_measure(boundary) / largest.supported);
-    compute_force_balance(problem, residual, result);
+    compute_force_balance(problem, residual, load_factor, result);
     return result;
   }
 
@@ -369,11 +371,13 @@ namespace Debond
          const AdhesionIntegral<2> &,
          const AdhesiveLaw &,
          const dealii::Vector<double> &,
+         const double,
          const double);
   template Verification<3>
   verify(const ElasticProblem<3> &,
          const AdhesionIntegral<3> &,
          const AdhesiveLaw &,
          const dealii::Vector<double> &,
+         const double,
          const double);
 } // namespace Debond

@@ -58,10 +58,7 @@ namespace
     const auto excluded = [&](const unsigned int i) {
       return problem.is_constrained(i);
     };
-    const Condensation condensed(problem.matrix(),
-                                 problem.load(),
-                                 kept,
-                                 excluded);
+    Condensation condensed(problem.matrix(), problem.load(), kept, excluded);
 
     // S = A_ss - A_so A_oo^{-1} A_os by dense elimination.
     const auto block = [&](const std::vector<unsigned int> &rows,
@@ -131,6 +128,27 @@ namespace
               << verdict(std::abs(energy - energy_of_u) <
                          1e-11 * std::abs(energy))
               << '\n';
+
+    // The same under a multiple of the load.
+    const double factor = -0.3;
+    condensed.scale_load(factor);
+    condensed.schur_complement().vmult(force, s);
+    const double scaled_energy =
+      condensed.energy_at_zero() + 0.5 * (s * force) - condensed.load() * s;
+    const dealii::Vector<double> scaled_u = condensed.expand(s);
+    problem.matrix().vmult(A_u, scaled_u);
+    const double energy_of_scaled_u =
+      0.5 * (scaled_u * A_u) - factor * (problem.load() * scaled_u);
+    A_u.add(-factor, problem.load());
+    inside = 0.;
+    for (const unsigned int i : others)
+      inside = std::max(inside, std::abs(A_u(i)));
+    std::cout << "  scaled load: equilibrium inside to 1e-11: "
+              << verdict(inside < 1e-11 * largest) << ", energy to 1e-11: "
+              << verdict(std::abs(scaled_energy - energy_of_scaled_u) <
+                         1e-11 * std::abs(energy))
+              << '\n';
+    condensed.scale_load(1.);
 
     // Without contact: A u = f.
     dealii::FullMatrix<double> S_inverse(S);

@@ -2,6 +2,7 @@
 #ifndef debond_application_parameters_h
 #define debond_application_parameters_h
 
+#include <debond/application/load_path_parameters.h>
 #include <debond/application/parameter_table.h>
 #include <debond/contact/law.h>
 #include <debond/contact/quadrature.h>
@@ -47,12 +48,15 @@ namespace Debond
   struct OutputParameters
   {
     std::string directory;
-    bool        body_vtu        = true;
-    bool        contact_vtu     = true;
-    bool        contact_profile = true;
-    bool        history         = true;
-    bool        displacement    = false;
-    bool        machine_details = true;
+    bool        body_vtu         = true;
+    bool        contact_vtu      = true;
+    bool        contact_profile  = true;
+    bool        history          = true;
+    bool        displacement     = false;
+    bool        path_plots       = true;
+    bool        path_body_vtu    = false;
+    bool        path_contact_vtu = true;
+    bool        machine_details  = true;
   };
 
 
@@ -104,6 +108,7 @@ namespace Debond
     std::set<std::string>       contact_boundaries;
     bool                        tangential_displacement_fixed = true;
     LoadParameters              loads;
+    LoadPathParameters          load_path;
     ContactLawParameters        law;
     ContactQuadratureParameters quadrature;
     std::string                 quadrature_name;

@@ -27,6 +27,16 @@ namespace Debond
                 const Verification<dim> &verification,
                 std::ostream            &out);
 
+  /// The steps at which most bonds break and close, and how far the path is
+  /// from the global branch.
+  void
+  report_load_path(const LoadPathTotals &path, std::ostream &out);
+
+  /// What is wrong with a result whose Verification::error() is above the
+  /// tolerance.
+  std::string
+  verification_failure(const double error, const double tolerance);
+
   /// The paths of the files written.
   void
   report_files(const std::vector<std::string> &files, std::ostream &out);

@@ -22,8 +22,9 @@ namespace Debond
     SolverStatus status = SolverStatus::success;
     std::string  message;
 
-    dealii::Vector<double> u;          ///< of all degrees of freedom
-    double                 functional; ///< J(u), from u, A and f
+    dealii::Vector<double> u;                ///< of all degrees of freedom
+    double                 load_factor = 1.; ///< of the loads that u belongs to
+    double                 functional;       ///< J(u), from u, A and f
 
     unsigned int iterations  = 0;
     unsigned int long_steps  = 0;

@@ -43,6 +43,12 @@ namespace Debond
 
     ~Condensation();
 
+    /// From now on f is @p factor times the load that the constructor got: g is
+    /// proportional to the factor and c_0 to its square, S and the
+    /// factorisation stay.
+    void
+    scale_load(const double factor);
+
     /// S, symmetric, a row for each kept unknown.
     const dealii::FullMatrix<double> &
     schur_complement() const;
@@ -70,11 +76,13 @@ namespace Debond
     unsigned int               n;        ///< size of f
     std::vector<unsigned int>  unknowns; ///< rows of A, the kept ones last
     std::unique_ptr<Factor>    factor;
-    std::vector<double>        y; ///< L^{-1} P f
+    std::vector<double>        y; ///< L^{-1} P f of the given load
+    double                     load_factor = 1.;
     dealii::FullMatrix<double> L_ss;
     dealii::FullMatrix<double> S;
+    dealii::Vector<double>     given_g; ///< of the given load
     dealii::Vector<double>     g;
-    double                     c_0;
+    double                     given_c_0; ///< of the given load
   };
 } // namespace Debond
 

@@ -134,7 +134,8 @@ namespace Debond
     rigid_body_modes() const;
 
     /**
-     * A u - f at every degree of freedom, the constrained ones included, by a
+     * A u - f, f being @p load_factor times the load of the last assemble(), at
+     * every degree of freedom, the constrained ones included, by a
      * loop over the cells that uses neither matrix() nor load(): internal
      * forces, from the cells' stresses, minus the applied nodal forces, kept
      * from the last assemble(), in the unknowns' frames. At constrained degrees
@@ -142,7 +143,8 @@ namespace Debond
      * node minus the normal force of the foundation.
      */
     dealii::Vector<double>
-    residual(const dealii::Vector<double> &u) const;
+    residual(const dealii::Vector<double> &u,
+             const double                  load_factor = 1.) const;
 
     /// The forces in the unknowns' frames (such as a residual) as Cartesian
     /// components.

@@ -2,7 +2,10 @@
 #ifndef debond_output_summary_h
 #define debond_output_summary_h
 
+#include <debond/output/load_path.h>
+
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,6 +61,9 @@ namespace Debond
 
     /// contact, bonded, kink, broken: number of contact nodes.
     std::map<std::string, unsigned int> bond_states;
+
+    /// If the scene has a load path; all the rest is of its last step.
+    std::optional<LoadPathTotals> load_path;
 
     /// Wall seconds: mesh, assembly, solve, output, total, and the parts of
     /// solve under "solve/...".

@@ -105,6 +105,8 @@ namespace Debond
     count(const BondState state) const;
   };
 
+  /// @p load_factor: the multiple of the problem's loads that @p u belongs to.
+  ///
   /// @p tolerance: displacements within tolerance * M (and tolerance times the
   /// largest |u_nu|) of 0 and -M count as
   /// contact and kink for ContactNodeState::state (and for nothing else). So
@@ -115,7 +117,8 @@ namespace Debond
          const AdhesionIntegral<dim>  &adhesion,
          const AdhesiveLaw            &law,
          const dealii::Vector<double> &u,
-         const double                  tolerance = 1e-6);
+         const double                  load_factor = 1.,
+         const double                  tolerance   = 1e-6);
 } // namespace Debond
 
 #endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_contact_condensation_h
+#define debond_elasticity_contact_condensation_h
+
+#include <debond/elasticity/condensation.h>
+#include <debond/elasticity/elastic_problem.h>
+
+namespace Debond
+{
+  /// The problem condensed onto the normal displacements of its contact nodes,
+  /// in their order.
+  template <int dim>
+  Condensation
+  condense_to_contact(const ElasticProblem<dim> &problem)
+  {
+    std::vector<unsigned int> normals;
+    for (const auto &node : problem.contact_boundary().nodes)
+      normals.push_back(node.dof);
+    return Condensation(problem.matrix(),
+                        problem.load(),
+                        normals,
+                        [&](const unsigned int i) {
+                          return problem.is_constrained(i);
+                        });
+  }
+} // namespace Debond
+
+#endif

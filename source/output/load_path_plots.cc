@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/output/load_path_plots.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+namespace Debond
+{
+  namespace
+  {
+    /// A curve of a plot by its factor and state.
+    template <int dim>
+    using PointOfState =
+      std::pair<double, double> (*)(const double, const LoadPathState<dim> &);
+
+
+
+    std::string
+    curve_title(const double first, const double last)
+    {
+      std::ostringstream title;
+      title << "factor " << first << " to " << last;
+      return title.str();
+    }
+
+
+
+    /// The steps at which the factor turns, with the first and the last one.
+    template <int dim>
+    std::vector<unsigned int>
+    turning_points(const std::vector<LoadPathStep<dim>> &steps)
+    {
+      std::vector<unsigned int> turns = {0};
+      for (unsigned int k = 1; k + 1 < steps.size(); ++k)
+        if ((steps[k + 1].factor - steps[k].factor) *
+              (steps[k].factor - steps[k - 1].factor) <
+            0.)
+          turns.push_back(k);
+      turns.push_back(steps.size() - 1);
+      return turns;
+    }
+
+
+
+    template <int dim>
+    std::vector<Curve>
+    curves(const std::vector<LoadPathStep<dim>> &steps,
+           const PointOfState<dim>               point)
+    {
+      std::vector<Curve>              result;
+      const std::vector<unsigned int> turns = turning_points(steps);
+      for (unsigned int t = 0; t + 1 < turns.size(); ++t)
+        {
+          Curve curve{curve_title(steps[turns[t]].factor,
+                                  steps[turns[t + 1]].factor),
+                      {},
+                      "linespoints pt 7 ps 0.4"};
+          for (unsigned int k = turns[t]; k <= turns[t + 1]; ++k)
+            curve.points.push_back(point(steps[k].factor, steps[k].state));
+          result.push_back(curve);
+        }
+
+      std::map<double, std::pair<double, double>> global;
+      for (const LoadPathStep<dim> &step : steps)
+        if (step.global)
+          global[step.factor] = point(step.factor, *step.global);
+      if (!global.empty())
+        {
+          Curve curve{"global branch", {}};
+          for (const auto &[factor, values] : global)
+            curve.points.push_back(values);
+          result.push_back(curve);
+        }
+      return result;
+    }
+  } // namespace
+
+
+
+  std::vector<std::string>
+  load_path_plot_names()
+  {
+    return {"load_path",
+            "load_path_energy",
+            "load_path_force",
+            "load_path_displacement"};
+  }
+
+
+
+  template <int dim>
+  std::vector<Plot>
+  load_path_plots(const std::vector<LoadPathStep<dim>> &steps)
+  {
+    using State     = LoadPathState<dim>;
+    const auto make = [&steps](const std::string      &name,
+                               const std::string      &caption,
+                               const std::string      &x_label,
+                               const std::string      &y_label,
+                               const PointOfState<dim> point) {
+      Plot plot{name, caption, x_label, y_label};
+      plot.curves = curves(steps, point);
+      return plot;
+    };
+    const std::vector<std::string> names = load_path_plot_names();
+    return {make(names[0],
+                 "The broken part of the contact boundary.",
+                 "load factor",
+                 "broken part",
+                 [](const double factor, const State &state) {
+                   return std::make_pair(factor, state.broken_part);
+                 }),
+            make(names[1],
+                 "The energy.",
+                 "load factor",
+                 "J",
+                 [](const double factor, const State &state) {
+                   return std::make_pair(factor, state.functional);
+                 }),
+            make(names[2],
+                 "The normal force of the foundation; negative: it pulls.",
+                 "load factor",
+                 "normal force",
+                 [](const double factor, const State &state) {
+                   return std::make_pair(factor, state.normal_force);
+                 }),
+            make(names[3],
+                 "The loads over the displacement that belongs to them.",
+                 "<f, u>",
+                 "load factor",
+                 [](const double factor, const State &state) {
+                   return std::make_pair(state.unit_load_work, factor);
+                 })};
+  }
+
+
+
+  template std::vector<Plot>
+  load_path_plots(const std::vector<LoadPathStep<2>> &);
+  template std::vector<Plot>
+  load_path_plots(const std::vector<LoadPathStep<3>> &);
+} // namespace Debond

@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# check_load_path.sh DEBOND: which files a load path writes, and what becomes of
+# them if it is interrupted or a file cannot be written.
+set -euo pipefail
+export LC_ALL=C
+
+debond=$1
+directory=$(mktemp -d)
+trap 'rm -rf "$directory"' EXIT
+cd "$directory"
+
+fail() {
+  echo "$1" >&2
+  exit 1
+}
+
+cat >bar.prm <<'SCENE'
+subsection Mesh
+  set Cells = 10, 1
+end
+subsection Loads
+  set Traction top = 0; if(x < 0.2, 0.69, -0.345)
+end
+subsection Load path
+  set Factors = 0:1:3, 3:-1:0
+end
+SCENE
+# A program of this name that is found first, in place of gnuplot.
+mkdir tools
+printf '#!/bin/sh\nexit %s\n' 127 >tools/gnuplot
+chmod +x tools/gnuplot
+
+rows() {
+  awk 'END { print NR - 1 }' "$1/load_path.csv"
+}
+
+PATH="$directory/tools:$PATH" "$debond" bar.prm >log
+[ "$(rows output/bar)" -eq 7 ] || fail "$(rows output/bar) steps in place of 7"
+awk -F, 'NR == 1 { n = NF } NF != n { exit 1 }' output/bar/load_path.csv ||
+  fail "The rows of load_path.csv have different lengths."
+for plot in load_path load_path_energy load_path_force load_path_displacement; do
+  for ending in dat gp; do
+    [ -s "output/bar/$plot.$ending" ] || fail "no $plot.$ending"
+  done
+  [ ! -e "output/bar/$plot.png" ] || fail "Who has drawn $plot.png?"
+done
+grep -q "No pictures of the load path: gnuplot is not installed" log ||
+  fail "The log does not say that gnuplot is missing: $(cat log)"
+files=$(sed -n 's/.*file="\([^"]*\)".*/\1/p' output/bar/load_path_contact.pvd)
+[ "$(echo "$files" | wc -l)" -eq 7 ] || fail "The record has $files"
+for file in $files; do
+  [ -s "output/bar/$file" ] || fail "no $file"
+done
+[ ! -e output/bar/load_path_body.pvd ] || fail "load_path_body.pvd is not wanted"
+for entry in '"steps": 7' '"last_factor": 0.0' '"status": "success"'; do
+  grep -q "$entry" output/bar/summary.json || fail "summary.json has no $entry"
+done
+
+# A single run in the same directory leaves nothing of the path.
+"$debond" bar.prm --set "Load path/Factors=" >/dev/null
+[ -z "$(ls output/bar | grep load_path || true)" ] ||
+  fail "Old files stayed: $(ls output/bar)"
+! grep -q load_path output/bar/summary.json || fail "summary.json has a path"
+
+# A file of a step that cannot be written ends no path, but is told.
+mkdir -p blocked/load_path/contact-00002.vtu
+code=0
+"$debond" bar.prm --set "Output/Directory=blocked" \
+  --set "Output/Load path plots=false" >log 2>errors || code=$?
+[ $code -eq 5 ] || fail "exit code $code in place of 5"
+grep -q "blocked/load_path/contact-00002.vtu" errors || fail "$(cat errors)"
+[ "$(rows blocked)" -eq 7 ] || fail "The table is not complete."
+
+# A signal ends the path after the current factor.
+set -m
+"$debond" bar.prm --set "Output/Directory=interrupted" \
+  --set "Load path/Factors=0:0.001:9" --set "Mesh/Cells=100, 10" \
+  --set "Output/Load path plots=false" >log 2>errors &
+process=$!
+set +m
+for _ in $(seq 600); do
+  grep -q "local minimum" log && break
+  sleep 0.05
+done
+kill -s INT $process
+code=0
+wait $process || code=$?
+[ $code -eq 4 ] || fail "exit code $code in place of 4: $(cat errors)"
+steps=$(rows interrupted)
+[ "$steps" -gt 0 ] && [ "$steps" -lt 9001 ] || fail "$steps steps"
+grep -q "(interrupted): load path, step $steps, factor .*not complete" errors ||
+  fail "$(cat errors)"
+[ "$(ls interrupted/load_path | wc -l)" -eq "$steps" ] ||
+  fail "The files are not those of $steps steps."
+grep -q '"status": "interrupted"' interrupted/summary.json || fail "no status"
+grep -q "\"steps\": $steps," interrupted/summary.json || fail "no steps"

@@ -1,0 +1,476 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Load paths. A column that is pulled off its bonds uniformly has closed
+// formulas for both branches and for the factors where it snaps, closes and
+// changes its global minimum. On the benchmark: what follows from the structure
+// of the problem (between changes of the bonds displacements are proportional
+// to the factor and J is quadratic in it; dJ/d(factor) = -<f, u>; the least J
+// is concave in the squared factor), and values of J from an independent code.
+
+#include <debond/application/load_path.h>
+#include <debond/application/parameters.h>
+#include <debond/application/solve.h>
+
+#include <cmath>
+#include <iostream>
+#include <sstream>
+
+using namespace Debond;
+
+namespace
+{
+  // Whether to print the figures behind the verdicts; any argument does it.
+  bool print_figures = false;
+
+  void
+  check(const std::string &what, const bool good, const double figure)
+  {
+    std::cout << "  " << what << ": " << (good ? "yes" : "NO") << '\n';
+    if (print_figures)
+      std::cout << "    " << figure << '\n';
+  }
+
+
+
+  void
+  check_small(const std::string &what, const double error, const double bound)
+  {
+    check(what, error <= bound, error);
+  }
+
+
+
+  template <int dim>
+  using Steps = std::vector<LoadPathStep<dim>>;
+
+  template <int dim>
+  struct Path
+  {
+    Steps<dim>  steps;
+    SolveResult result;
+  };
+
+
+
+  Parameters
+  parameters_of(const std::vector<std::string> &assignments)
+  {
+    ParameterTable table;
+    declare_parameters(table);
+    table.assign("Output/Machine details=false");
+    for (const std::string &assignment : assignments)
+      table.assign(assignment);
+    return to_parameters("scene.prm", table);
+  }
+
+
+
+  template <int dim>
+  Path<dim>
+  follow(const std::vector<std::string> &assignments)
+  {
+    const Parameters   parameters = parameters_of(assignments);
+    const MethodChoice choice     = choose_method(parameters);
+    const Scene<dim>   scene(parameters, matrix_storage(choice));
+    std::ostringstream log;
+    Path<dim>          path;
+    path.result = follow_load_path<dim>(
+      parameters, scene, [](const auto &...) {}, log, path.steps);
+    return path;
+  }
+
+
+
+  std::vector<std::string>
+  benchmark(const std::vector<std::string> &others)
+  {
+    std::vector<std::string> assignments = {
+      "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)",
+      "Contact law/Bond stiffness=690"};
+    assignments.insert(assignments.end(), others.begin(), others.end());
+    return assignments;
+  }
+
+
+
+  void
+  test_factors()
+  {
+    std::cout << "Factors\n";
+    for (const std::string text : {"",
+                                   "1",
+                                   "0.5, 1, 1, -2",
+                                   "0:0.1:0.3",
+                                   "0:0.05:0.15, 0.15:-0.05:-0.1",
+                                   "-1:0.25:1, 1:-1:0, 3",
+                                   "0:0.3:1",
+                                   "1:0.1:0",
+                                   "0:0:1",
+                                   "0:1",
+                                   "0:1:2:3",
+                                   "0:0.1:one",
+                                   "1,, 2",
+                                   "1e999",
+                                   "0:1e-6:1"})
+      {
+        std::cout << "  " << text << " ->";
+        try
+          {
+            for (const double factor : parse_load_factors(text))
+              std::cout << ' ' << factor;
+          }
+        catch (const std::invalid_argument &error)
+          {
+            std::cout << " error: " << error.what();
+          }
+        std::cout << '\n';
+      }
+
+    const std::vector<double> up_and_down =
+      parse_load_factors("0:0.07:2.8, 2.8:-0.07:0");
+    bool same = up_and_down.size() == 81;
+    for (unsigned int k = 0; k < up_and_down.size(); ++k)
+      same = same && up_and_down[k] == up_and_down[80 - k];
+    check("loading and unloading meet the same factors",
+          same,
+          up_and_down.size());
+  }
+
+
+
+  /// Height H, stiffness E/H per area, nu = 0, clamped at the top, pulled off
+  /// its bonds at the bottom by the traction t = 1 times the factor. Bonded:
+  /// |u_nu| = t / (E/H + a) until that is M. Broken: |u_nu| = t / (E/H) as long
+  /// as that is more than M.
+  template <int dim>
+  void
+  test_column()
+  {
+    const double E = 10., H = 0.2, a = 150., M = 0.01, k = E / H;
+    const double area = dim == 2 ? 0.3 : 0.3 * 0.1;
+
+    std::vector<std::string> scene = {
+      "Material/Young modulus=10",
+      "Material/Poisson ratio=0",
+      "Boundary conditions/Contact boundary=bottom",
+      "Contact law/Bond stiffness=150",
+      "Contact law/Bond threshold=0.01",
+      "Contact law/Tangential displacement=free",
+      "Load path/Factors=0:0.07:2.8, 2.8:-0.07:0",
+      "Load path/Global branch=prove",
+      "Boundary conditions/Clamped boundaries=top"};
+    if (dim == 2)
+      scene.insert(scene.end(),
+                   {"Mesh/Lengths=0.3, 0.2",
+                    "Mesh/Cells=3, 2",
+                    "Loads/Traction bottom=0; 1"});
+    else
+      scene.insert(scene.end(),
+                   {"Dimension=3",
+                    "Mesh/Lengths=0.3, 0.2, 0.1",
+                    "Mesh/Cells=2, 2, 1",
+                    "Loads/Traction bottom=0; 1; 0"});
+    const Path<dim> path = follow<dim>(scene);
+
+    const double snap = M * (k + a), closing = M * k;
+    const double exchange = M * std::sqrt(k * (k + a));
+    const auto   energy   = [&](const double factor, const bool broken) {
+      return area * (broken ? 0.5 * a * M * M - 0.5 * factor * factor / k :
+                                  -0.5 * factor * factor / (k + a));
+    };
+
+    bool         broken = false, states = true, words = true;
+    double       energy_error = 0., gap_error = 0., law_violation = 0.;
+    double       snap_error = 1., closing_error = 1.;
+    const double scale = std::abs(energy(2.8, true));
+    for (const auto &step : path.steps)
+      {
+        const bool was_broken = broken;
+        broken = was_broken ? step.factor > closing : step.factor > snap;
+        if (broken && !was_broken && step.change_factor)
+          snap_error = std::abs(*step.change_factor - snap);
+        if (!broken && was_broken && step.change_factor)
+          closing_error = std::abs(*step.change_factor - closing);
+        states = states && step.status == "success" &&
+                 std::abs(step.state.broken_part - broken) < 1e-12;
+        energy_error  = std::max(energy_error,
+                                std::abs(step.state.functional -
+                                         energy(step.factor, broken)));
+        gap_error     = std::max(gap_error,
+                             std::abs(step.state.mean_gap -
+                                      step.factor / (broken ? k : k + a)));
+        law_violation = std::max(law_violation, step.state.law_violation);
+
+        const bool least_is_broken = step.factor > exchange;
+        states                     = states && step.global &&
+                 std::abs(step.global->broken_part - least_is_broken) < 1e-12;
+        energy_error = std::max(energy_error,
+                                std::abs(step.global->functional -
+                                         energy(step.factor, least_is_broken)));
+        words        = words && step.global->minimum == "global" &&
+                step.state.minimum ==
+                  (broken == least_is_broken ? "global" : "local minimum");
+      }
+    std::cout << "Column in " << dim << "D\n";
+    check("81 steps", path.steps.size() == 81, path.steps.size());
+    check("states of both branches as in theory", states, 0.);
+    check("words", words, 0.);
+    check_small("snap at M (E/H + a) to 1e-12", snap_error, 1e-12);
+    check_small("closing at M E/H to 1e-12", closing_error, 1e-12);
+    check_small("J to 1e-12", energy_error, 1e-12 * scale);
+    check_small("gap to 1e-13", gap_error, 1e-13);
+    check_small("law violation below 1e-11", law_violation, 1e-11);
+  }
+
+
+
+  /// What holds for any path.
+  void
+  check_structure(const Path<2> &path)
+  {
+    const Steps<2> &steps     = path.steps;
+    double          quadratic = 0., work = 0., above = 0., error = 0.;
+    unsigned int    n_compared = 0;
+    for (unsigned int k = 0; k < steps.size(); ++k)
+      {
+        const auto  &state = steps[k].state;
+        const double scale = state.elastic_energy + state.adhesion_energy +
+                             std::abs(steps[k].factor * state.unit_load_work);
+        error = std::max({error,
+                          state.law_violation,
+                          state.equilibrium_residual,
+                          state.force_imbalance});
+        if (steps[k].global)
+          above = std::max(above,
+                           (steps[k].global->functional - state.functional) /
+                             (scale + 1e-300));
+        if (k == 0 || k + 1 == steps.size() ||
+            steps[k - 1].state.broken_part != state.broken_part ||
+            steps[k + 1].state.broken_part != state.broken_part ||
+            steps[k - 1].factor == steps[k + 1].factor)
+          continue;
+        ++n_compared;
+        const double left  = steps[k - 1].state.functional;
+        const double right = steps[k + 1].state.functional;
+        const double h     = steps[k + 1].factor - steps[k - 1].factor;
+        work               = std::max(work,
+                        std::abs((right - left) / h + state.unit_load_work) *
+                          std::abs(h) / scale);
+        const double third = right - 2. * state.functional + left +
+                             0.5 * h *
+                               (steps[k + 1].state.unit_load_work -
+                                steps[k - 1].state.unit_load_work) /
+                               2.;
+        quadratic = std::max(quadratic, std::abs(third) / scale);
+      }
+    check("both differences at 30 steps at least",
+          n_compared >= 30,
+          n_compared);
+    check_small("dJ/d(factor) = -<f, u> to 1e-10", work, 1e-10);
+    check_small("second differences of J to 1e-10", quadratic, 1e-10);
+    check_small("global branch not above to 1e-12", above, 1e-12);
+    check_small("verified to 1e-9", error, 1e-9);
+  }
+
+
+
+  const LoadPathStep<2> &
+  step_at(const Steps<2> &steps, const double factor)
+  {
+    for (const auto &step : steps)
+      if (step.factor == factor)
+        return step;
+    throw std::invalid_argument("no step with this factor");
+  }
+
+
+
+  void
+  test_benchmark()
+  {
+    std::cout << "Benchmark with a = 690\n";
+    const Path<2> path =
+      follow<2>(benchmark({"Load path/Factors=0:0.1:2.5, 2.5:-0.1:0"}));
+    check_structure(path);
+
+    const LoadPathStep<2> &full = step_at(path.steps, 1.);
+    check_small("J of the intact state at factor 1 to 1e-9",
+                std::abs(full.state.functional / -7.354549556e-05 - 1.),
+                1e-9);
+    check_small("J of the global branch at factor 1 to 1e-10",
+                std::abs(full.global->functional / -2.3973127534e-04 - 1.),
+                1e-10);
+    check("it is known to be no global minimum",
+          full.state.minimum == "local minimum" &&
+            full.global->minimum == "best known",
+          0.);
+
+    // The gap of the intact state is proportional to the factor.
+    const LoadPathTotals totals = load_path_totals(path.steps, 51);
+    const double         snap   = 0.002 / full.state.largest_gap;
+    check_small("snap where the largest gap is M, to 1e-11",
+                std::abs(*totals.largest_break->change_factor / snap - 1.),
+                1e-11);
+    check("snap in the step that passes this factor",
+          totals.largest_break->factor > snap &&
+            totals.largest_break->factor < snap + 0.1 &&
+            totals.largest_break->broken_before == 0.,
+          totals.largest_break->factor);
+    check("bonds close below factor 1, with less load than they break",
+          totals.largest_closing->factor < 1. &&
+            totals.largest_closing->broken_after == 0.,
+          totals.largest_closing->factor);
+    const auto &last = path.steps.back().state;
+    check("nothing is left at rest",
+          last.functional == 0. && last.largest_gap == 0. &&
+            last.minimum == "global" && path.result.u.linfty_norm() == 0.,
+          last.functional);
+
+    // The least of parabolas in the factor is concave in its square.
+    double convexity = 0.;
+    for (unsigned int k = 1; k < 25; ++k)
+      {
+        const auto &left = path.steps[k - 1], &middle = path.steps[k],
+                   &right = path.steps[k + 1];
+        const double x0   = left.factor * left.factor,
+                     x1   = middle.factor * middle.factor,
+                     x2   = right.factor * right.factor;
+        const double line = (left.global->functional * (x2 - x1) +
+                             right.global->functional * (x1 - x0)) /
+                            (x2 - x0);
+        convexity = std::max(convexity,
+                             (line - middle.global->functional) /
+                               std::abs(right.global->functional));
+      }
+    check_small("global branch concave in the squared factor to 1e-12",
+                convexity,
+                1e-12);
+
+    const Path<2> halved =
+      follow<2>(benchmark({"Load path/Factors=0:0.05:2.5, 2.5:-0.05:0",
+                           "Load path/Global branch=none"}));
+    const LoadPathTotals halved_totals = load_path_totals(halved.steps, 101);
+    check_small("the same snap with half the steps to 1e-11",
+                std::abs(*halved_totals.largest_break->change_factor / snap -
+                         1.),
+                1e-11);
+    double difference = 0.;
+    for (unsigned int k = 0; k <= 20; ++k)
+      difference = std::max(difference,
+                            std::abs(halved.steps[2 * k].state.functional -
+                                     path.steps[k].state.functional));
+    check_small("the same branch with half the steps up to the snap to 1e-12",
+                difference,
+                1e-12 * std::abs(path.steps[20].state.functional));
+    check("no global branch if none is wanted",
+          !halved.steps[10].global && !halved.steps[10].relative_gap,
+          0.);
+  }
+
+
+
+  void
+  test_single_factor()
+  {
+    std::cout << "One factor\n";
+    const Path<2>    path   = follow<2>(benchmark({"Load path/Factors=1"}));
+    const Parameters single = parameters_of(benchmark({"Solver/Search=none"}));
+    const MethodChoice     choice = choose_method(single);
+    const Scene<2>         scene(single, matrix_storage(choice));
+    std::ostringstream     log;
+    const SolveResult      result = solve(choice, single, scene, log, false);
+    dealii::Vector<double> difference = result.u;
+    difference -= path.result.u;
+    check("the same number of iterations as a single run",
+          result.iterations == path.result.iterations,
+          path.result.iterations);
+    check_small("the same displacement to 1e-13",
+                difference.linfty_norm(),
+                1e-13 * result.u.linfty_norm());
+    check_small("the same J to 1e-12",
+                std::abs(result.functional / path.result.functional - 1.),
+                1e-12);
+
+    const Path<2> half = follow<2>(benchmark({"Load path/Factors=0.5"}));
+    check_small(
+      "half the load has a quarter of J, also in the history",
+      std::max(std::abs(4. * half.result.functional / result.functional - 1.),
+               std::abs(4. * half.result.majorise_history.back().functional /
+                          result.functional -
+                        1.)),
+      1e-12);
+  }
+
+
+
+  void
+  test_other_laws()
+  {
+    std::cout << "Gauss quadrature\n";
+    const Path<2> gauss =
+      follow<2>(benchmark({"Load path/Factors=0:0.1:2.5, 2.5:-0.1:0",
+                           "Contact law/Quadrature=gauss 2",
+                           "Load path/Global branch=none"}));
+    double error = 0., largest = 0.;
+    bool   known = false;
+    for (const auto &step : gauss.steps)
+      {
+        error   = std::max(error, step.state.law_violation);
+        largest = std::max(largest, step.state.broken_part);
+        known   = known || step.change_factor;
+      }
+    check_small("verified to 1e-9", error, 1e-9);
+    check("bonds break", largest > 0.5, largest);
+    check("no factor of the change", !known, 0.);
+
+    std::cout << "No adhesion, both signs of the load\n";
+    const Path<2> contact = follow<2>(benchmark({"Load path/Factors=-1:0.5:1",
+                                                 "Contact law/Law=none",
+                                                 "Mesh/Cells=20, 2"}));
+    const auto   &steps   = contact.steps;
+    check_small(
+      "J is quadratic for each sign to 1e-12",
+      std::max(
+        std::abs(steps[0].state.functional / steps[1].state.functional - 4.),
+        std::abs(steps[4].state.functional / steps[3].state.functional - 4.)),
+      1e-12);
+    check("all are global minima",
+          steps[0].state.minimum == "global" &&
+            steps[3].state.minimum == "global",
+          0.);
+  }
+
+
+
+  void
+  test_failures()
+  {
+    std::cout << "Failures\n";
+    const Path<2> limited =
+      follow<2>(benchmark({"Load path/Factors=0:0.5:4",
+                           "Solver/Majorise minimise/Maximum iterations=2"}));
+    std::cout << "  " << limited.steps.size() << " steps, "
+              << to_string(limited.result.status) << ", "
+              << limited.steps.back().message.substr(0, 60) << '\n';
+
+    const Path<2> unverified = follow<2>(benchmark(
+      {"Load path/Factors=0:0.5:4", "Verification/Tolerance=1e-300"}));
+    std::cout << "  " << unverified.steps.size() << " steps, "
+              << unverified.steps.back().status << ", "
+              << unverified.steps.back().message.substr(0, 43) << '\n';
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *[])
+{
+  print_figures = argc > 1;
+  test_factors();
+  test_column<2>();
+  test_column<3>();
+  test_benchmark();
+  test_single_factor();
+  test_other_laws();
+  test_failures();
+}
