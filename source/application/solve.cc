@@ -223,6 +223,7 @@ namespace Debond
                                    [&](const unsigned int i) {
                                      return problem.is_constrained(i);
                                    });
+      result.condition_estimate    = condensed.condition_estimate();
       result.parts["condensation"] = timer.wall_time();
 
       watch.add_energy(condensed.energy_at_zero());
@@ -372,16 +373,15 @@ namespace Debond
       else
         solve_condensed(choice.method, parameters, scene, *watch, result);
     }
+    const auto &nodes = scene.problem().contact_boundary().nodes;
+    Vector      s(nodes.size());
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      s(i) = result.u(nodes[i].dof);
     if (choice.linear_solver != LinearSolver::direct)
-      {
-        const auto &nodes = scene.problem().contact_boundary().nodes;
-        Vector      s(nodes.size());
-        for (unsigned int i = 0; i < nodes.size(); ++i)
-          s(i) = result.u(nodes[i].dof);
-        result.minimum.kind =
-          kind_without_search(scene.law(), scene.adhesion(), s);
-      }
-    result.functional = scene.functional().value(result.u);
+      result.minimum.kind =
+        kind_without_search(scene.law(), scene.adhesion(), s);
+    result.functional =
+      scene.problem().elastic_functional(result.u) + scene.adhesion().value(s);
     return result;
   }
 
