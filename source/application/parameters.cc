@@ -66,6 +66,19 @@ namespace Debond
 
 
 
+    template <int dim>
+    void
+    add_material_constants(const Material                &material,
+                           std::map<std::string, double> &constants)
+    {
+      constants.emplace("E", material.young_modulus);
+      constants.emplace("nu", material.poisson_ratio);
+      constants.emplace("lambda", material.lame_lambda<dim>());
+      constants.emplace("mu", material.shear_modulus());
+    }
+
+
+
     /// Reads "a = 1, b = 2". Returns false if the text is not such a list.
     bool
     read_constants(const std::string             &text,
@@ -121,7 +134,7 @@ namespace Debond
             std::map<std::string, double> constants;
             return read_constants(value, constants);
           }),
-        "Names that the expressions of this section may use, such as 'q=0.69, L=0.4'; pi is known",
+        "Names that the expressions may use, such as 'q=0.69, L=0.4'. pi is known, and unless they are given here, so are the material's E, nu, lambda and mu (in plane stress the lambda of the plane problem)",
         "those that the expressions need");
     }
 
@@ -440,6 +453,14 @@ namespace Debond
       "none");
 
     table.declare(
+      "Verification/Exact displacement",
+      "",
+      Pattern("nothing, or an expression for each component, separated by ';'",
+              [](const std::string & /*value*/) { return true; }),
+      "If the displacement is known, expressions for it with the names of the loads: the log and summary.json then have the relative errors of u in the norms of L2, H1 and the energy",
+      "length");
+
+    table.declare(
       "Output/Directory",
       "output/{scene}",
       Pattern("a path",
@@ -525,27 +546,39 @@ namespace Debond
 
 
 
+    /// The text of an expression for a vector, empty for none.
+    template <int dim>
+    std::string
+    read_expression(ParameterTable                      &table,
+                    const std::string                   &path,
+                    const std::map<std::string, double> &constants)
+    {
+      const std::string expression = table.get(path);
+      try
+        {
+          if (!expression.empty())
+            make_function<dim>(expression, constants);
+        }
+      catch (const std::invalid_argument &error)
+        {
+          table.reject(path, error.what(), {"Dimension", "Loads/Constants"});
+        }
+      return expression;
+    }
+
+
+
     template <int dim>
     LoadParameters
-    read_loads(ParameterTable &table)
+    read_loads(const Material &material, ParameterTable &table)
     {
       LoadParameters loads;
       read_constants(table.get("Loads/Constants"), loads.constants);
+      add_material_constants<dim>(material, loads.constants);
 
       const auto read = [&](const std::string &path) {
-        const std::string expression = table.get(path);
-        try
-          {
-            if (!expression.empty())
-              make_function<dim>(expression, loads.constants);
-          }
-        catch (const std::invalid_argument &error)
-          {
-            table.reject(path, error.what(), {"Dimension", "Loads/Constants"});
-          }
-        return expression;
+        return read_expression<dim>(table, path, loads.constants);
       };
-
       loads.body_force = read("Loads/Body force");
       for (const std::string &side : sides)
         {
@@ -593,6 +626,12 @@ namespace Debond
                        "the side " + side +
                          " is clamped already, by Clamped boundaries",
                        {"Boundary conditions/Clamped boundaries"});
+
+      if (!parameters.exact_displacement.empty() &&
+          !parameters.load_path.factors.empty())
+        table.reject("Verification/Exact displacement",
+                     "belongs to the given loads, not to those of a load path",
+                     {"Load path/Factors"});
 
       // The patterns leave only m_L < m_R to be checked.
       try
@@ -653,7 +692,8 @@ namespace Debond
     p.tangential_displacement_fixed =
       table.get("Contact law/Tangential displacement") == "fixed";
 
-    p.loads = p.dimension == 2 ? read_loads<2>(table) : read_loads<3>(table);
+    p.loads     = p.dimension == 2 ? read_loads<2>(p.material, table) :
+                                     read_loads<3>(p.material, table);
     p.load_path = read_load_path(table);
 
     p.law.name           = table.get("Contact law/Law");
@@ -703,6 +743,10 @@ namespace Debond
     p.start                 = start == "zero" ? "" : start;
 
     p.verification_tolerance = table.get_double("Verification/Tolerance");
+    const std::string exact  = "Verification/Exact displacement";
+    p.exact_displacement =
+      p.dimension == 2 ? read_expression<2>(table, exact, p.loads.constants) :
+                         read_expression<3>(table, exact, p.loads.constants);
 
     p.output.directory = output_directory(table, scene);
     // The effective scene names the directory itself, so that a second run of

@@ -219,6 +219,12 @@ namespace Debond
                           << ", relative to the reactions\n";
     line(out, "force imbalance")
       << error(summary.force_imbalance) << ", relative to the forces\n";
+    if (summary.displacement_error)
+      line(out, "displacement error")
+        << scientific(summary.displacement_error->l2, 2) << " in L2, "
+        << scientific(summary.displacement_error->h1, 2) << " in H1, "
+        << scientific(summary.displacement_error->energy_norm, 2)
+        << " in the energy norm, relative to the exact one\n";
     line(out, "applied force")
       << vector_text<dim>(verification.applied_force) << '\n';
     if (details)

@@ -3,6 +3,7 @@
 #include <deal.II/base/timer.h>
 #include <deal.II/base/utilities.h>
 
+#include <debond/application/expression.h>
 #include <debond/application/load_path.h>
 #include <debond/application/load_path_output.h>
 #include <debond/application/report.h>
@@ -101,6 +102,7 @@ namespace Debond
       summary.stop_criterion      = result.criterion;
       summary.largest_qp_residual = result.largest_qp_residual;
       summary.linear_iterations   = result.linear_iterations;
+      summary.condition_estimate  = result.condition_estimate;
       for (const auto &[part, seconds] : result.parts)
         summary.timings_s["solve/" + part] = seconds;
     }
@@ -123,6 +125,31 @@ namespace Debond
       summary.contact_reaction = components(verification.contact_reaction);
       for (const BondState state : bond_states)
         summary.bond_states[to_string(state)] = verification.count(state);
+    }
+
+
+
+    /// Throws BadInput if the exact displacement is not finite somewhere.
+    template <int dim>
+    DisplacementError
+    error_of(const Parameters             &parameters,
+             const ElasticProblem<dim>    &problem,
+             const dealii::Vector<double> &u)
+    {
+      try
+        {
+          return displacement_error(
+            problem,
+            u,
+            *make_function<dim>(parameters.exact_displacement,
+                                parameters.loads.constants));
+        }
+      catch (const std::invalid_argument &error)
+        {
+          throw BadInput(
+            {parameters.scene +
+             ": Verification/Exact displacement: " + error.what()});
+        }
     }
 
 
@@ -311,6 +338,9 @@ namespace Debond
     summary.timings_s["verification"]    = timer.wall_time();
     add_result(result, summary);
     add_verification(verification, summary);
+    if (!parameters.exact_displacement.empty())
+      summary.displacement_error =
+        error_of(parameters, scene.problem(), result.u);
     const std::string failure =
       verification_message(parameters, verification, path);
     if (result.status == SolverStatus::success && !failure.empty())

@@ -226,11 +226,13 @@ namespace Debond
       dealii::Timer              timer;
       const ElasticProblem<dim> &problem   = scene.problem();
       const Condensation         condensed = condense_to_contact(problem);
+      result.condition_estimate            = condensed.condition_estimate();
       result.parts["condensation"]         = timer.wall_time();
 
       watch.add_energy(condensed.energy_at_zero());
       timer.restart();
-      Vector s(problem.contact_boundary().nodes.size());
+      Vector s(
+        static_cast<unsigned int>(problem.contact_boundary().nodes.size()));
       // If no contact node is free, there is no metric either.
       if (method == SolverMethod::energy_bundle && s.size() > 0)
         solve_by_energy_bundle(
@@ -399,16 +401,15 @@ namespace Debond
         solve_condensed(
           choice.method, parameters, scene, checkpoints, *watch, result);
     }
+    const auto &nodes = scene.problem().contact_boundary().nodes;
+    Vector      s(static_cast<unsigned int>(nodes.size()));
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      s(i) = result.u(nodes[i].dof);
     if (choice.linear_solver != LinearSolver::direct)
-      {
-        const auto &nodes = scene.problem().contact_boundary().nodes;
-        Vector      s(static_cast<unsigned int>(nodes.size()));
-        for (unsigned int i = 0; i < nodes.size(); ++i)
-          s(i) = result.u(nodes[i].dof);
-        result.minimum.kind =
-          kind_without_search(scene.law(), scene.adhesion(), s);
-      }
-    result.functional = scene.functional().value(result.u);
+      result.minimum.kind =
+        kind_without_search(scene.law(), scene.adhesion(), s);
+    result.functional =
+      scene.problem().elastic_functional(result.u) + scene.adhesion().value(s);
     return result;
   }
 

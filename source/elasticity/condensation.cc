@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/lapack_templates.h>
+
 #include <debond/elasticity/condensation.h>
 
 #include <cholmod.h>
@@ -293,6 +295,33 @@ namespace Debond
     for (const double entry : y)
       sum += 0.5 * entry * entry;
     return load_factor * load_factor * sum;
+  }
+
+
+
+  double
+  Condensation::condition_estimate() const
+  {
+    const dealii::types::blas_int n_kept = S.m();
+    if (n_kept == 0)
+      return 1.;
+    const double                         norm = S.l1_norm();
+    double                               reciprocal;
+    std::vector<double>                  work(3 * n_kept);
+    std::vector<dealii::types::blas_int> integers(n_kept);
+    dealii::types::blas_int              info;
+    // L_ss by rows is its transpose by columns, the upper factor.
+    dealii::pocon("U",
+                  &n_kept,
+                  &L_ss(0, 0),
+                  &n_kept,
+                  &norm,
+                  &reciprocal,
+                  work.data(),
+                  integers.data(),
+                  &info);
+    AssertThrow(info == 0, dealii::ExcInternalError());
+    return 1. / reciprocal;
   }
 
 

@@ -7,6 +7,10 @@
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/linear_simplex.h>
 
+#include <boost/accumulators/accumulators.hpp>
+#include <boost/accumulators/statistics/stats.hpp>
+#include <boost/accumulators/statistics/sum_kahan.hpp>
+
 namespace Debond
 {
   template <int dim>
@@ -236,17 +240,55 @@ namespace Debond
     const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
     const dealii::Vector<double> &cartesian_displacement) const
   {
+    return stiffness * dealii::symmetrize(
+                         displacement_gradient(cell, cartesian_displacement));
+  }
+
+
+
+  template <int dim>
+  dealii::Tensor<2, dim>
+  ElasticProblem<dim>::displacement_gradient(
+    const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+    const dealii::Vector<double> &cartesian_displacement) const
+  {
     const LinearSimplex<dim> simplex(cell);
     dealii::Tensor<2, dim>   gradient;
-    for (unsigned int v = 0; v <= dim; ++v)
+    // The basis sums to one: without vertex 0 there are only differences of
+    // neighbours' displacements, and a translation rounds nothing away.
+    for (unsigned int v = 1; v <= dim; ++v)
       {
-        dealii::Tensor<1, dim> displacement;
+        dealii::Tensor<1, dim> difference;
         for (unsigned int d = 0; d < dim; ++d)
-          displacement[d] =
-            cartesian_displacement[cell->vertex_dof_index(v, d)];
-        gradient += dealii::outer_product(displacement, simplex.gradients[v]);
+          difference[d] = cartesian_displacement[cell->vertex_dof_index(v, d)] -
+                          cartesian_displacement[cell->vertex_dof_index(0, d)];
+        gradient += dealii::outer_product(difference, simplex.gradients[v]);
       }
-    return stiffness * dealii::symmetrize(gradient);
+    return gradient;
+  }
+
+
+
+  template <int dim>
+  double
+  ElasticProblem<dim>::elastic_functional(const dealii::Vector<double> &u,
+                                          const double load_factor) const
+  {
+    const dealii::Vector<double> displacement = cartesian_displacement(u);
+    namespace accumulators                    = boost::accumulators;
+    accumulators::
+      accumulator_set<double, accumulators::stats<accumulators::tag::sum_kahan>>
+        sum;
+    for (const auto &cell : dofs.active_cell_iterators())
+      {
+        const dealii::SymmetricTensor<2, dim> strain =
+          dealii::symmetrize(displacement_gradient(cell, displacement));
+        sum(0.5 * LinearSimplex<dim>(cell).volume *
+            (strain * (stiffness * strain)));
+      }
+    for (unsigned int i = 0; i < u.size(); ++i)
+      sum(-load_factor * system_load(i) * u(i));
+    return accumulators::sum_kahan(sum);
   }
 
 
@@ -292,6 +334,13 @@ namespace Debond
   ElasticProblem<2>::stress(
     const typename dealii::DoFHandler<2>::active_cell_iterator &,
     const dealii::Vector<double> &) const;
+  template dealii::Tensor<2, 2>
+  ElasticProblem<2>::displacement_gradient(
+    const typename dealii::DoFHandler<2>::active_cell_iterator &,
+    const dealii::Vector<double> &) const;
+  template double
+  ElasticProblem<2>::elastic_functional(const dealii::Vector<double> &,
+                                        const double) const;
   template dealii::Tensor<1, 2>
   ElasticProblem<2>::total_load() const;
   template void
@@ -316,6 +365,13 @@ namespace Debond
   ElasticProblem<3>::stress(
     const typename dealii::DoFHandler<3>::active_cell_iterator &,
     const dealii::Vector<double> &) const;
+  template dealii::Tensor<2, 3>
+  ElasticProblem<3>::displacement_gradient(
+    const typename dealii::DoFHandler<3>::active_cell_iterator &,
+    const dealii::Vector<double> &) const;
+  template double
+  ElasticProblem<3>::elastic_functional(const dealii::Vector<double> &,
+                                        const double) const;
   template dealii::Tensor<1, 3>
   ElasticProblem<3>::total_load() const;
 } // namespace Debond

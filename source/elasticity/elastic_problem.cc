@@ -355,6 +355,15 @@ namespace Debond
 
 
   template <int dim>
+  const dealii::Vector<double> &
+  ElasticProblem<dim>::applied_nodal_forces() const
+  {
+    return applied_forces;
+  }
+
+
+
+  template <int dim>
   const ContactBoundary<dim> &
   ElasticProblem<dim>::contact_boundary() const
   {

@@ -35,20 +35,33 @@ namespace Debond
 
 
   template <int dim>
-  dealii::SymmetricTensor<4, dim>
-  Material::elasticity_tensor() const
+  double
+  Material::lame_lambda() const
   {
     const double E  = young_modulus;
     const double nu = poisson_ratio;
+    return dim == 2 && hypothesis == Hypothesis::plane_stress ?
+             E * nu / (1. - nu * nu) :
+             E * nu / ((1. + nu) * (1. - 2. * nu));
+  }
 
-    const double lambda = (dim == 2 && hypothesis == Hypothesis::plane_stress) ?
-                            E * nu / (1. - nu * nu) :
-                            E * nu / ((1. + nu) * (1. - 2. * nu));
-    const double two_mu = E / (1. + nu);
 
+
+  double
+  Material::shear_modulus() const
+  {
+    return young_modulus / (2. * (1. + poisson_ratio));
+  }
+
+
+
+  template <int dim>
+  dealii::SymmetricTensor<4, dim>
+  Material::elasticity_tensor() const
+  {
     const auto identity = dealii::unit_symmetric_tensor<dim>();
-    return lambda * dealii::outer_product(identity, identity) +
-           two_mu * dealii::identity_tensor<dim>();
+    return lame_lambda<dim>() * dealii::outer_product(identity, identity) +
+           2. * shear_modulus() * dealii::identity_tensor<dim>();
   }
 
 
@@ -73,6 +86,10 @@ namespace Debond
   Material::validate<2>() const;
   template void
   Material::validate<3>() const;
+  template double
+  Material::lame_lambda<2>() const;
+  template double
+  Material::lame_lambda<3>() const;
   template dealii::SymmetricTensor<4, 2>
   Material::elasticity_tensor<2>() const;
   template dealii::SymmetricTensor<4, 3>

@@ -51,11 +51,11 @@ namespace Debond
                            &state.mean_gap})
         *part /= measure;
 
-    state.elastic_energy  = 0.5 * problem.matrix().matrix_norm_square(u);
+    state.elastic_energy  = problem.elastic_functional(u, 0.);
     state.adhesion_energy = adhesion.value(s);
     state.unit_load_work  = problem.load() * u;
-    state.functional = state.elastic_energy - factor * state.unit_load_work +
-                       state.adhesion_energy;
+    state.functional =
+      problem.elastic_functional(u, factor) + state.adhesion_energy;
 
     state.contact_reaction     = verification.contact_reaction;
     state.clamped_reaction     = verification.clamped_reaction;

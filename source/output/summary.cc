@@ -86,13 +86,15 @@ namespace Debond
                        {"nodes", summary.proof_nodes},
                        {"lower_bound", summary.lower_bound},
                        {"relative_gap", summary.relative_gap}};
-    json["iterations"]               = {{"total", summary.total_iterations},
-                                        {"long", summary.long_steps},
-                                        {"short", summary.short_steps},
-                                        {"null", summary.null_steps}};
-    json["stop_criterion"]           = summary.stop_criterion;
-    json["largest_qp_residual"]      = summary.largest_qp_residual;
-    json["linear_iterations"]        = summary.linear_iterations;
+    json["iterations"]          = {{"total", summary.total_iterations},
+                                   {"long", summary.long_steps},
+                                   {"short", summary.short_steps},
+                                   {"null", summary.null_steps}};
+    json["stop_criterion"]      = summary.stop_criterion;
+    json["largest_qp_residual"] = summary.largest_qp_residual;
+    json["linear_iterations"]   = summary.linear_iterations;
+    if (summary.condition_estimate)
+      json["condition_estimate"] = *summary.condition_estimate;
     json["memory_estimate_bytes"]    = summary.memory_estimate;
     json["peak_memory_bytes"]        = summary.peak_memory;
     json["cells"]                    = summary.cells;
@@ -103,10 +105,15 @@ namespace Debond
     json["penetration"]              = summary.penetration;
     json["equilibrium_residual"]     = summary.equilibrium_residual;
     json["force_imbalance"]          = summary.force_imbalance;
-    json["applied_force"]            = summary.applied_force;
-    json["clamped_reaction"]         = summary.clamped_reaction;
-    json["contact_reaction"]         = summary.contact_reaction;
-    json["bond_states"]              = summary.bond_states;
+    if (const auto &error = summary.displacement_error; error)
+      json["displacement_error"] = {{"l2", error->l2},
+                                    {"h1", error->h1},
+                                    {"energy_norm", error->energy_norm},
+                                    {"exact_energy", error->exact_energy}};
+    json["applied_force"]    = summary.applied_force;
+    json["clamped_reaction"] = summary.clamped_reaction;
+    json["contact_reaction"] = summary.contact_reaction;
+    json["bond_states"]      = summary.bond_states;
     if (summary.load_path)
       json["load_path"] = load_path_as_json(*summary.load_path);
     json["timings_s"]       = timings_as_json(summary.timings_s);

@@ -288,15 +288,15 @@ namespace Debond
       result.clamped_reaction = resultant(clamped);
       result.contact_reaction = resultant(contact);
 
-      const double sum_of_norms = result.applied_force.norm() +
-                                  result.clamped_reaction.norm() +
-                                  result.contact_reaction.norm();
-      const double norm_of_sum =
-        (result.applied_force + result.clamped_reaction +
-         result.contact_reaction)
-          .norm();
-      result.force_imbalance =
-        norm_of_sum > 0. ? norm_of_sum / sum_of_norms : 0.;
+      // Resultants can vanish where forces do not.
+      dealii::Vector<double> supports = clamped;
+      supports += contact;
+      const double scale =
+        supports.l1_norm() + problem.applied_nodal_forces().l1_norm();
+      const double imbalance = (result.applied_force + result.clamped_reaction +
+                                result.contact_reaction)
+                                 .norm();
+      result.force_imbalance = imbalance > 0. ? imbalance / scale : 0.;
     }
   } // namespace
 

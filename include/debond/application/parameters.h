@@ -135,6 +135,9 @@ namespace Debond
     /// Largest Verification::error() of a result that counts.
     double verification_tolerance = 1e-3;
 
+    /// An expression with the constants of the loads; empty if unknown.
+    std::string exact_displacement;
+
     /// The scene with all entries that it leaves to their defaults.
     std::string effective_scene;
 

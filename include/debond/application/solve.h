@@ -10,6 +10,7 @@
 #include <debond/optimization/proximal_bundle.h>
 
 #include <map>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -24,7 +25,7 @@ namespace Debond
 
     dealii::Vector<double> u;                ///< of all degrees of freedom
     double                 load_factor = 1.; ///< of the loads that u belongs to
-    double                 functional;       ///< J(u), from u, A and f
+    double                 functional;       ///< J(u), from the strains of u
 
     unsigned int iterations  = 0;
     unsigned int long_steps  = 0;
@@ -38,6 +39,9 @@ namespace Debond
     double largest_qp_residual = 0.; ///< of bundle methods
 
     unsigned int linear_iterations = 0; ///< of conjugate gradients
+
+    /// Of the elastic problem on the contact normals, if there is one.
+    std::optional<double> condition_estimate;
 
     /// Of a success.
     WhichMinimum minimum;

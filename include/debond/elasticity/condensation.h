@@ -66,6 +66,11 @@ namespace Debond
     double
     energy_without_contact() const;
 
+    /// An estimate of |S| |S^{-1}| in the 1-norm, by LAPACK from the factor; 1
+    /// if no unknown is kept.
+    double
+    condition_estimate() const;
+
     /// u at equilibrium for given s, with the size of f.
     dealii::Vector<double>
     expand(const dealii::Vector<double> &s) const;

@@ -155,6 +155,11 @@ namespace Debond
     bool
     is_constrained(const dealii::types::global_dof_index dof) const;
 
+    /// The Cartesian nodal forces of all loads, at every degree of freedom, the
+    /// constrained ones included.
+    const dealii::Vector<double> &
+    applied_nodal_forces() const;
+
     /// The resultant of all applied loads, in Cartesian components.
     dealii::Tensor<1, dim>
     total_load() const;
@@ -164,6 +169,21 @@ namespace Debond
     dealii::SymmetricTensor<2, dim>
     stress(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
            const dealii::Vector<double> &cartesian_displacement) const;
+
+    /// The displacement gradient of the cell, its row d that of component d.
+    dealii::Tensor<2, dim>
+    displacement_gradient(
+      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+      const dealii::Vector<double> &cartesian_displacement) const;
+
+    /**
+     * 1/2 <A u, u> - load_factor <f, u> from the strains of the cells, with
+     * compensated sums: in a product with A, whose rows nearly cancel, rounding
+     * grows with the condition of A, in the strains it does not.
+     */
+    double
+    elastic_functional(const dealii::Vector<double> &u,
+                       const double                  load_factor = 1.) const;
 
     const Material &
     material() const;
@@ -223,8 +243,7 @@ namespace Debond
     std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix> distributed_matrix;
     dealii::Vector<double>                                  system_load;
 
-    /// Cartesian, at every degree of freedom, the constrained ones included.
-    dealii::Vector<double> applied_forces;
+    dealii::Vector<double> applied_forces; ///< see applied_nodal_forces()
   };
 } // namespace Debond
 

@@ -25,6 +25,15 @@ namespace Debond
     void
     validate() const;
 
+    /// Lame's lambda; in plane stress the one of the plane problem.
+    template <int dim>
+    double
+    lame_lambda() const;
+
+    /// Lame's mu.
+    double
+    shear_modulus() const;
+
     /// The tensor of sigma = E(epsilon), eq. (3).
     template <int dim>
     dealii::SymmetricTensor<4, dim>

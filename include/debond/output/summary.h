@@ -2,6 +2,7 @@
 #ifndef debond_output_summary_h
 #define debond_output_summary_h
 
+#include <debond/output/displacement_error.h>
 #include <debond/output/load_path.h>
 
 #include <map>
@@ -53,6 +54,12 @@ namespace Debond
     double       penetration              = 0.;
     double       equilibrium_residual     = 0.;
     double       force_imbalance          = 0.;
+
+    /// Of the elastic problem on the contact normals, if there was one.
+    std::optional<double> condition_estimate;
+
+    /// If the exact displacement is known.
+    std::optional<DisplacementError> displacement_error;
 
     /// Resultants on the body, Cartesian components.
     std::vector<double> applied_force;

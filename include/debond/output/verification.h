@@ -92,7 +92,7 @@ namespace Debond
     /// Of the foundation on the body, with the tangential part.
     dealii::Tensor<1, dim> contact_reaction;
 
-    /// | applied + clamped + contact | over the sum of their norms.
+    /// | applied + clamped + contact | over the sum of all nodal forces' sizes.
     double force_imbalance;
 
     /// The largest of equilibrium_residual, force_imbalance and
