@@ -108,7 +108,8 @@ namespace Debond
       {
         if (entry.empty())
           entry = load_entry(parameters.loads, error.what());
-        throw BadInput({parameters.locations.at(entry) + ": " + error.what()});
+        throw BadInput({parameters.locations.at(entry) + ": " + entry + ": " +
+                        error.what()});
       }
     seconds_for_assembly = timer.wall_time();
   }

@@ -32,7 +32,7 @@ table=output/study/table.csv
 sed -i 's/, / /g' $table
 mapfile -t status < <(column $table status)
 [ "${status[0]}" = success ] || fail "row 1: ${status[0]}"
-[[ ${status[1]} == *"exit code 2: bar.prm: The traction on top is inf"* ]] ||
+[[ ${status[1]} == *"exit code 2: --set: Loads/Traction top: The traction on top is inf"* ]] ||
   fail "row 2: ${status[1]}"
 [ "${status[2]}" = "iteration limit" ] || fail "row 3: ${status[2]}"
 [ "${status[3]}" = success ] || fail "row 4: ${status[3]}"
