@@ -30,12 +30,14 @@ namespace Debond
         , steps(steps)
         , condensed(condense_to_contact(scene.problem()))
         , s(scene.problem().contact_boundary().nodes.size())
-      {}
+      {
+        result.parts["condensation"] = timer.wall_time();
+      }
 
       void
       follow(const LoadPathObserver<dim> &observer)
       {
-        dealii::Timer timer;
+        timer.restart();
         print_titles("broken part");
         for (const double factor : parameters.load_path.factors)
           {
@@ -61,8 +63,14 @@ namespace Debond
       void
       find_global_branch()
       {
-        dealii::Timer timer;
-        Branch        followed;
+        if (guard.requested())
+          {
+            if (result.status == SolverStatus::success)
+              interrupt("there is no global branch");
+            return;
+          }
+        timer.restart();
+        Branch followed;
         for (unsigned int k = 0; k < steps.size(); ++k)
           {
             const double factor = steps[k].factor;
@@ -288,6 +296,7 @@ namespace Debond
       std::ostream                   &out;
       std::vector<LoadPathStep<dim>> &steps;
       const InterruptGuard            guard;
+      dealii::Timer                   timer;
       Condensation                    condensed;
       dealii::Vector<double>          s;
       SolveResult                     result;
