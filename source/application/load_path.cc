@@ -29,7 +29,8 @@ namespace Debond
         , out(out)
         , steps(steps)
         , condensed(condense_to_contact(scene.problem()))
-        , s(scene.problem().contact_boundary().nodes.size())
+        , s(static_cast<unsigned int>(
+            scene.problem().contact_boundary().nodes.size()))
       {
         result.parts["condensation"] = timer.wall_time();
       }
@@ -147,9 +148,9 @@ namespace Debond
           }
 
         LoadPathStep<dim> step;
-        step.step                                 = steps.size() + 1;
-        step.factor                               = factor;
-        step.iterations                           = minimum.history.size();
+        step.step       = static_cast<unsigned int>(steps.size() + 1);
+        step.factor     = factor;
+        step.iterations = static_cast<unsigned int>(minimum.history.size());
         const dealii::Vector<double> u            = condensed.expand(s);
         const Verification<dim>      verification = verify(factor, u);
         step.state                                = load_path_state(
@@ -207,9 +208,9 @@ namespace Debond
                     const double                  factor) const
       {
         const double M = scene.law().bond_threshold();
-        if (parameters.quadrature.rule !=
-              ContactQuadratureParameters::Rule::nodal ||
-            last_factor == 0.)
+        if (M == 0. || last_factor == 0. ||
+            parameters.quadrature.rule !=
+              ContactQuadratureParameters::Rule::nodal)
           return {};
 
         double     first     = factor / last_factor;
