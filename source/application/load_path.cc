@@ -32,6 +32,7 @@ namespace Debond
         , s(static_cast<unsigned int>(
             scene.problem().contact_boundary().nodes.size()))
       {
+        result.condition_estimate    = condensed.condition_estimate();
         result.parts["condensation"] = timer.wall_time();
       }
 
