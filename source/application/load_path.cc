@@ -29,13 +29,17 @@ namespace Debond
         , out(out)
         , steps(steps)
         , condensed(condense_to_contact(scene.problem()))
-        , s(scene.problem().contact_boundary().nodes.size())
-      {}
+        , s(static_cast<unsigned int>(
+            scene.problem().contact_boundary().nodes.size()))
+      {
+        result.condition_estimate    = condensed.condition_estimate();
+        result.parts["condensation"] = timer.wall_time();
+      }
 
       void
       follow(const LoadPathObserver<dim> &observer)
       {
-        dealii::Timer timer;
+        timer.restart();
         print_titles("broken part");
         for (const double factor : parameters.load_path.factors)
           {
@@ -61,8 +65,14 @@ namespace Debond
       void
       find_global_branch()
       {
-        dealii::Timer timer;
-        Branch        followed;
+        if (guard.requested())
+          {
+            if (result.status == SolverStatus::success)
+              interrupt("there is no global branch");
+            return;
+          }
+        timer.restart();
+        Branch followed;
         for (unsigned int k = 0; k < steps.size(); ++k)
           {
             const double factor = steps[k].factor;
@@ -139,9 +149,9 @@ namespace Debond
           }
 
         LoadPathStep<dim> step;
-        step.step                                 = steps.size() + 1;
-        step.factor                               = factor;
-        step.iterations                           = minimum.history.size();
+        step.step       = static_cast<unsigned int>(steps.size() + 1);
+        step.factor     = factor;
+        step.iterations = static_cast<unsigned int>(minimum.history.size());
         const dealii::Vector<double> u            = condensed.expand(s);
         const Verification<dim>      verification = verify(factor, u);
         step.state                                = load_path_state(
@@ -199,9 +209,9 @@ namespace Debond
                     const double                  factor) const
       {
         const double M = scene.law().bond_threshold();
-        if (parameters.quadrature.rule !=
-              ContactQuadratureParameters::Rule::nodal ||
-            last_factor == 0.)
+        if (M == 0. || last_factor == 0. ||
+            parameters.quadrature.rule !=
+              ContactQuadratureParameters::Rule::nodal)
           return {};
 
         double     first     = factor / last_factor;
@@ -288,6 +298,7 @@ namespace Debond
       std::ostream                   &out;
       std::vector<LoadPathStep<dim>> &steps;
       const InterruptGuard            guard;
+      dealii::Timer                   timer;
       Condensation                    condensed;
       dealii::Vector<double>          s;
       SolveResult                     result;

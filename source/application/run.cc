@@ -346,8 +346,8 @@ namespace Debond
     if (result.status == SolverStatus::success && !failure.empty())
       reject_result(failure, summary);
     if (has_path)
-      summary.load_path =
-        load_path_totals(path, parameters.load_path.factors.size());
+      summary.load_path = load_path_totals(
+        path, static_cast<unsigned int>(parameters.load_path.factors.size()));
 
     std::string output_error, plot_note;
     if (result.status == SolverStatus::success && failure.empty())

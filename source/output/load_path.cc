@@ -18,7 +18,7 @@ namespace Debond
                   const Verification<dim>      &verification)
   {
     const auto            &nodes = problem.contact_boundary().nodes;
-    dealii::Vector<double> s(nodes.size());
+    dealii::Vector<double> s(static_cast<unsigned int>(nodes.size()));
     LoadPathState<dim>     state   = {};
     double                 measure = 0.;
     for (unsigned int i = 0; i < nodes.size(); ++i)
@@ -190,7 +190,7 @@ namespace Debond
 
     LoadPathTotals totals;
     totals.factors     = n_factors;
-    totals.steps       = steps.size();
+    totals.steps       = static_cast<unsigned int>(steps.size());
     totals.last_factor = steps.back().factor;
 
     double broken = 0.;

@@ -37,7 +37,7 @@ namespace Debond
               (steps[k].factor - steps[k - 1].factor) <
             0.)
           turns.push_back(k);
-      turns.push_back(steps.size() - 1);
+      turns.push_back(static_cast<unsigned int>(steps.size() - 1));
       return turns;
     }
 

@@ -292,7 +292,8 @@ namespace Debond
       dealii::Vector<double> supports = clamped;
       supports += contact;
       const double scale =
-        supports.l1_norm() + problem.applied_nodal_forces().l1_norm();
+        supports.l1_norm() +
+        std::abs(load_factor) * problem.applied_nodal_forces().l1_norm();
       const double imbalance = (result.applied_force + result.clamped_reaction +
                                 result.contact_reaction)
                                  .norm();

@@ -89,7 +89,7 @@ wait $process || code=$?
 [ $code -eq 4 ] || fail "exit code $code in place of 4: $(cat errors)"
 steps=$(rows interrupted)
 [ "$steps" -gt 0 ] && [ "$steps" -lt 9001 ] || fail "$steps steps"
-grep -q "(interrupted): load path, step $steps, factor .*not complete" errors ||
+grep -q "(interrupted): load path, step $steps, factor .*the path is not complete" errors ||
   fail "$(cat errors)"
 [ "$(ls interrupted/load_path | wc -l)" -eq "$steps" ] ||
   fail "The files are not those of $steps steps."

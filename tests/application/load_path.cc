@@ -423,10 +423,11 @@ namespace
     check("no factor of the change", !known, 0.);
 
     std::cout << "No adhesion, both signs of the load\n";
-    const Path<2> contact = follow<2>(benchmark({"Load path/Factors=-1:0.5:1",
-                                                 "Contact law/Law=none",
-                                                 "Mesh/Cells=20, 2"}));
-    const auto   &steps   = contact.steps;
+    const Path<2> contact =
+      follow<2>(benchmark({"Load path/Factors=-1, -0.5, 0.25, 0.5, 1",
+                           "Contact law/Law=none",
+                           "Mesh/Cells=20, 2"}));
+    const auto &steps = contact.steps;
     check_small(
       "J is quadratic for each sign to 1e-12",
       std::max(
@@ -436,6 +437,9 @@ namespace
     check("all are global minima",
           steps[0].state.minimum == "global" &&
             steps[3].state.minimum == "global",
+          0.);
+    check("no bond that changes",
+          !steps[2].change_factor && !steps[3].change_factor,
           0.);
   }
 
