@@ -295,6 +295,12 @@ namespace Debond
       mpi = initialize_mpi();
     const Scene<dim> scene(parameters, matrix_storage(choice));
 
+    // Before the solve, so that nothing is lost if it is not finite somewhere.
+    if (!parameters.exact_displacement.empty())
+      error_of(parameters,
+               scene.problem(),
+               dealii::Vector<double>(scene.problem().n_dofs()));
+
     RunCheckpoints           checkpoints(parameters, choice);
     std::vector<std::string> files;
     try

@@ -4,6 +4,7 @@
 #include <debond/output/displacement_error.h>
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -17,10 +18,17 @@ namespace Debond
              const dealii::Function<dim> &exact)
     {
       dealii::Vector<double> values(dim);
-      exact.vector_value(point, values);
       dealii::Tensor<1, dim> result;
-      for (unsigned int d = 0; d < dim; ++d)
-        result[d] = values[d];
+      try
+        {
+          exact.vector_value(point, values);
+          for (unsigned int d = 0; d < dim; ++d)
+            result[d] = values[d];
+        }
+      catch (const std::exception &)
+        {
+          result[0] = std::numeric_limits<double>::quiet_NaN();
+        }
       if (!std::isfinite(result.norm()))
         {
           std::ostringstream message;

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The error norms against deal.II's own, and what they see: the displacement
+// without divergence on a crossed mesh, and on squares cut along one diagonal,
+// which are known to lock.
+
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/numerics/vector_tools.h>
+
+#include <debond/elasticity/condensation.h>
+#include <debond/elasticity/crossed_mesh.h>
+#include <debond/elasticity/elastic_problem.h>
+#include <debond/output/displacement_error.h>
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+using namespace Debond;
+
+namespace
+{
+  // Whether to print the figures behind the verdicts; any argument does it.
+  bool print_figures = false;
+
+  const char *
+  verdict(const bool good)
+  {
+    return good ? "yes" : "NO";
+  }
+
+  double
+  g(const double x)
+  {
+    return x * x * (1. - x) * (1. - x);
+  }
+
+  double
+  g_1(const double x)
+  {
+    return 2. * x * (1. - x) * (1. - 2. * x);
+  }
+
+  double
+  g_2(const double x)
+  {
+    return 2. - 12. * x + 12. * x * x;
+  }
+
+  double
+  g_3(const double x)
+  {
+    return 24. * x - 12.;
+  }
+
+
+
+  /// The curl of g(x) g(y), zero on the boundary of the unit square.
+  class Displacement : public dealii::Function<2>
+  {
+  public:
+    Displacement()
+      : dealii::Function<2>(2)
+    {}
+
+    double
+    value(const dealii::Point<2> &p,
+          const unsigned int      component) const override
+    {
+      return component == 0 ? g(p[0]) * g_1(p[1]) : -g_1(p[0]) * g(p[1]);
+    }
+
+    void
+    vector_value(const dealii::Point<2> &p,
+                 dealii::Vector<double> &values) const override
+    {
+      for (unsigned int d = 0; d < 2; ++d)
+        values(d) = value(p, d);
+    }
+
+    dealii::Tensor<1, 2>
+    gradient(const dealii::Point<2> &p,
+             const unsigned int      component) const override
+    {
+      dealii::Tensor<1, 2> result;
+      if (component == 0)
+        {
+          result[0] = g_1(p[0]) * g_1(p[1]);
+          result[1] = g(p[0]) * g_2(p[1]);
+        }
+      else
+        {
+          result[0] = -g_2(p[0]) * g(p[1]);
+          result[1] = -g_1(p[0]) * g_1(p[1]);
+        }
+      return result;
+    }
+  };
+
+
+
+  /// Its body force, -mu times the Laplacian.
+  class BodyForce : public dealii::Function<2>
+  {
+  public:
+    explicit BodyForce(const double mu)
+      : dealii::Function<2>(2)
+      , mu(mu)
+    {}
+
+    void
+    vector_value(const dealii::Point<2> &p,
+                 dealii::Vector<double> &values) const override
+    {
+      values(0) = -mu * (g_2(p[0]) * g_1(p[1]) + g(p[0]) * g_3(p[1]));
+      values(1) = mu * (g_3(p[0]) * g(p[1]) + g_1(p[0]) * g_2(p[1]));
+    }
+
+  private:
+    const double mu;
+  };
+
+
+
+  /// The error on a mesh whose whole boundary is clamped.
+  DisplacementError
+  solve(const dealii::Triangulation<2> &mesh, const double nu)
+  {
+    BoundaryConditions conditions;
+    for (const auto id : mesh.get_boundary_ids())
+      conditions.clamped.insert(id);
+    ElasticProblem<2> problem(mesh, conditions);
+    Material          material;
+    material.young_modulus = 1.;
+    material.poisson_ratio = nu;
+    material.hypothesis    = Material::Hypothesis::plane_strain;
+    Loads<2> loads;
+    loads.body_force = std::make_shared<BodyForce>(material.shear_modulus());
+    problem.assemble(material, loads);
+    const Condensation           condensed(problem.matrix(),
+                                 problem.load(),
+                                 {},
+                                 [&](const unsigned int i) {
+                                   return problem.is_constrained(i);
+                                 });
+    const dealii::Vector<double> u = condensed.expand(dealii::Vector<double>());
+
+    const Displacement      exact;
+    const DisplacementError error = displacement_error(problem, u, exact);
+    const auto              norm  = [&](const dealii::Vector<double>       &v,
+                          const dealii::VectorTools::NormType kind) {
+      dealii::Vector<double> cells(mesh.n_active_cells());
+      dealii::VectorTools::integrate_difference(problem.mapping(),
+                                                problem.dof_handler(),
+                                                v,
+                                                exact,
+                                                cells,
+                                                dealii::QGaussSimplex<2>(4),
+                                                kind);
+      return cells.l2_norm();
+    };
+    const dealii::Vector<double> zero(u.size());
+    const double                 l2 = norm(u, dealii::VectorTools::L2_norm) /
+                      norm(zero, dealii::VectorTools::L2_norm);
+    const double h1 = norm(u, dealii::VectorTools::H1_seminorm) /
+                      norm(zero, dealii::VectorTools::H1_seminorm);
+    std::cout << "  nu = " << nu << ": L2 and H1 as deal.II's to 1e-3: "
+              << verdict(std::abs(error.l2 / l2 - 1.) < 1e-3 &&
+                         std::abs(error.h1 / h1 - 1.) < 1e-3);
+    // |grad u|^2 mu / 2 without divergence: 4/1225 is the integral of
+    // |grad u|^2, by hand.
+    std::cout << ", energy to 1e-6: "
+              << verdict(
+                   std::abs(error.exact_energy /
+                              (material.shear_modulus() * 4. / 1225. * 0.5) -
+                            1.) < 1e-6)
+              << '\n';
+    if (print_figures)
+      std::cout << "    " << error.l2 << ' ' << l2 << ", " << error.h1 << ' '
+                << h1 << ", " << error.exact_energy << '\n';
+    return error;
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *[])
+{
+  print_figures = argc > 1;
+  BoxParameters box;
+  box.lengths = {{1., 1., 1.}};
+  box.cells   = {{16, 16, 1}};
+  dealii::Triangulation<2> crossed, diagonal;
+  make_box(box, crossed);
+  dealii::GridGenerator::subdivided_hyper_cube_with_simplices(diagonal, 23);
+
+  std::cout << "crossed\n";
+  const double crossed_growth =
+    solve(crossed, 0.4999).h1 / solve(crossed, 0.3).h1;
+  std::cout << "one diagonal\n";
+  const double diagonal_growth =
+    solve(diagonal, 0.4999).h1 / solve(diagonal, 0.3).h1;
+  std::cout << "The error in H1 grows towards nu = 1/2 by less than a half on "
+               "the crossed mesh: "
+            << verdict(crossed_growth < 1.5)
+            << ", by more than 4 on the other one: "
+            << verdict(diagonal_growth > 4.) << '\n';
+  if (print_figures)
+    std::cout << "  " << crossed_growth << ' ' << diagonal_growth << '\n';
+}
