@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
 #include <debond/application/method_choice.h>
 #include <debond/application/scene_size.h>
 
+#include <algorithm>
 #include <iomanip>
 #include <sstream>
 
@@ -78,6 +81,18 @@ namespace Debond
                "each node a bond of its own");
     }
   } // namespace
+
+
+
+  double
+  memory_left(const Parameters &parameters)
+  {
+    if (parameters.memory_limit == 0.)
+      return available_memory();
+    dealii::Utilities::System::MemoryStats memory;
+    dealii::Utilities::System::get_memory_stats(memory);
+    return std::max(0., parameters.memory_limit - 1024. * memory.VmRSS);
+  }
 
 
 

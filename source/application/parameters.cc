@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 namespace Debond
 {
@@ -267,7 +268,7 @@ namespace Debond
         "Solver/Search",
         search_names[0],
         one_of(search_names),
-        "Whether a lower minimum than the one found is searched for by changing which bonds are broken, with a direct linear solver: quick starts from rest and from all bonds broken and moves the edges of the broken patches by a node, full moves them by up to four nodes and breaks, closes and splits patches; automatic is quick if the method is automatic and there are at most 200 contact nodes, and none otherwise",
+        "Whether a lower minimum than the one found is searched for by changing which bonds are broken, with a direct linear solver: quick starts from rest and from all bonds broken and moves the edges of the broken patches by a node, full moves them by up to four nodes and breaks, closes and splits patches; automatic is quick if the method is automatic, on coarser contact nodes if there are more than 200, and none otherwise",
         "none");
       table.declare(
         "Solver/Prove",
@@ -293,6 +294,15 @@ namespace Debond
         positive_number(),
         "Wall time after which the proof ends with the gap that is left",
         "seconds");
+      table.declare(
+        proof_section + "Threads",
+        "available",
+        Pattern("available, or a whole number from 1 to 64",
+                [whole = whole_number(1, 64)](const std::string &text) {
+                  return text == "available" || whole.match(text);
+                }),
+        "Nodes that are bounded at the same time, at most 8; available is one for each core. The result does not depend on it, but for limits of time",
+        "none");
     }
   } // namespace
 
@@ -733,6 +743,9 @@ namespace Debond
     p.proof.tolerance     = table.get_double(proof_section + "Tolerance");
     p.proof.maximum_nodes = table.get_unsigned(proof_section + "Maximum nodes");
     p.proof.maximum_seconds = table.get_double(proof_section + "Maximum time");
+    p.proof.n_threads = table.get(proof_section + "Threads") == "available" ?
+                          std::max(1u, std::thread::hardware_concurrency()) :
+                          table.get_unsigned(proof_section + "Threads");
     p.bundle.line_search =
       parse_descent_rule(table.get(bundle_section + "Line search"));
     p.bundle.epsilon_s   = table.get_double(bundle_section + "Stop tolerance");

@@ -173,7 +173,11 @@ namespace Debond
       {
         line(out, "minimum") << summary.minimum;
         if (details && summary.search_trials > 0)
-          out << ", " << summary.search_trials << " states searched";
+          out << ", " << summary.search_trials << " states searched"
+              << (summary.search_nodes < summary.contact_nodes ?
+                    " on " + std::to_string(summary.search_nodes) +
+                      " of the contact nodes" :
+                    "");
         out << '\n';
       }
     if (!summary.proof.empty())

@@ -13,6 +13,7 @@
 #include <debond/application/version.h>
 #include <debond/output/atomic_file.h>
 #include <debond/output/displacement.h>
+#include <debond/output/proof_plots.h>
 #include <debond/output/tables.h>
 #include <debond/output/vtu.h>
 
@@ -43,6 +44,14 @@ namespace Debond
                                "contact_profile.csv",
                                "history.csv",
                                "proof.csv",
+                               "proof_time.dat",
+                               "proof_time.gp",
+                               "proof_time.png",
+                               "proof_time.svg",
+                               "proof_nodes.dat",
+                               "proof_nodes.gp",
+                               "proof_nodes.png",
+                               "proof_nodes.svg",
                                "displacement.txt",
                                "summary.json"})
         if (std::filesystem::is_regular_file(directory / name, error))
@@ -90,6 +99,7 @@ namespace Debond
         summary.minimum = to_string(result.minimum.kind);
       summary.search_trials       = result.minimum.search_trials;
       summary.search_improvements = result.minimum.search_improvements;
+      summary.search_nodes        = result.minimum.search_nodes;
       if (result.minimum.proof_attempted)
         summary.proof = to_string(result.minimum.proof_status);
       summary.proof_nodes         = result.minimum.proof_nodes;
@@ -208,13 +218,15 @@ namespace Debond
 
 
 
-    /// Writes what the scene asks for, and returns the names of the files.
+    /// Writes what the scene asks for, and returns the names of the files. The
+    /// note says why there are no pictures.
     template <int dim>
     std::vector<std::string>
     write_fields(const Parameters        &parameters,
                  const Scene<dim>        &scene,
                  const Verification<dim> &verification,
-                 const SolveResult       &result)
+                 const SolveResult       &result,
+                 std::string             &note)
     {
       const OutputParameters &output = parameters.output;
       const auto              path   = [&output](const std::string &name) {
@@ -258,6 +270,16 @@ namespace Debond
         {
           files.push_back(path("proof.csv"));
           write_history(result.minimum.proof_history, files.back());
+          for (const Plot &plot : proof_plots(result.minimum.proof_history))
+            {
+              write_gnuplot(plot, output.directory);
+              for (const char *ending : {".dat", ".gp"})
+                files.push_back(path(plot.name + ending));
+              note = run_gnuplot(plot, output.directory);
+              if (note.empty())
+                for (const char *ending : {".png", ".svg"})
+                  files.push_back(path(plot.name + ending));
+            }
         }
       return files;
     }
@@ -265,12 +287,13 @@ namespace Debond
 
 
     ExitCode
-    exit_code(const SolverStatus status)
+    exit_code(const SolveResult &result)
     {
-      switch (status)
+      switch (result.status)
         {
           case SolverStatus::success:
-            return ExitCode::success;
+            return result.minimum.interrupted ? ExitCode::interrupted :
+                                                ExitCode::success;
           case SolverStatus::interrupted:
             return ExitCode::interrupted;
           default:
@@ -371,7 +394,7 @@ namespace Debond
     try
       {
         const std::vector<std::string> fields =
-          write_fields(parameters, scene, verification, result);
+          write_fields(parameters, scene, verification, result, plot_note);
         files.insert(files.end(), fields.begin(), fields.end());
         if (has_path)
           {
@@ -397,7 +420,7 @@ namespace Debond
     if (parameters.output.machine_details)
       report_files(files, out);
     if (!plot_note.empty())
-      out << "No pictures of the load path: " << plot_note << std::endl;
+      out << "No pictures: " << plot_note << std::endl;
 
     if (result.status != SolverStatus::success || !failure.empty())
       std::cerr << "debond: NOT CONVERGED (" << summary.status
@@ -409,7 +432,7 @@ namespace Debond
       }
     return result.status == SolverStatus::success && !failure.empty() ?
              ExitCode::not_converged :
-             exit_code(result.status);
+             exit_code(result);
   }
 
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/application/method_choice.h>
 #include <debond/application/which_minimum.h>
+#include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
 #include <debond/optimization/bond_search.h>
+#include <debond/optimization/coarse_start.h>
 #include <debond/optimization/condensed_problem.h>
 
 #include <cmath>
@@ -17,7 +19,8 @@ namespace Debond
 
 
     /// On contact boundaries with more nodes a search takes more than a fifth
-    /// of the solve, so that it has to be asked for.
+    /// of the solve, so that it has to be asked for: automatic searches on a
+    /// coarser one.
     constexpr unsigned int largest_automatic_search = 200;
 
 
@@ -38,12 +41,107 @@ namespace Debond
 
 
     bool
-    wants_search(const Parameters &parameters, const unsigned int n_nodes)
+    wants_search(const Parameters &parameters)
     {
       return parameters.search == BondSearchChoice::automatic ?
-               parameters.method == SolverMethod::automatic &&
-                 n_nodes <= largest_automatic_search :
+               parameters.method == SolverMethod::automatic :
                parameters.search != BondSearchChoice::none;
+    }
+
+
+
+    void
+    add_search(const BondSearchResult &search,
+               const unsigned int      n_nodes,
+               WhichMinimum           &result)
+    {
+      for (const unsigned int trials : search.trials)
+        result.search_trials += trials;
+      for (const unsigned int improvements : search.improvements)
+        result.search_improvements += improvements;
+      result.search_nodes = n_nodes;
+      if (search.complete)
+        result.kind = MinimumKind::best_known;
+    }
+
+
+
+    /// The coarse unknowns of a prolongation that meet at a fine one.
+    NeighbourGraph
+    coarse_neighbours(const Eigen::SparseMatrix<double> &P)
+    {
+      const Eigen::SparseMatrix<double> meeting = P.transpose() * P;
+      NeighbourGraph                    graph(P.cols());
+      for (unsigned int j = 0; j < meeting.cols(); ++j)
+        for (Eigen::SparseMatrix<double>::InnerIterator entry(meeting, j);
+             entry;
+             ++entry)
+          if (entry.row() != j)
+            graph[j].insert(entry.row());
+      return graph;
+    }
+
+
+
+    /// A search on a coarser contact mesh. The best of it is minimised on the
+    /// finer ones, and taken if it is lower there.
+    template <int dim>
+    void
+    search_on_coarse_mesh(const Parameters            &parameters,
+                          const ContactBoundary<dim>  &boundary,
+                          const AdhesiveLaw           &law,
+                          const AdhesionIntegral<dim> &adhesion,
+                          const Condensation          &condensed,
+                          const std::function<bool()> &may_go_on,
+                          dealii::Vector<double>      &s,
+                          WhichMinimum                &result)
+    {
+      const MajoriseMinimise method(parameters.majorise_minimise);
+      const auto prolongations = coarsen(boundary, largest_automatic_search);
+      const auto monitor       = [&](const auto &) { return may_go_on(); };
+
+      std::vector<std::string> failures;
+      dealii::Vector<double>   point = coarse_start(
+        condensed.schur_complement(),
+        condensed.load(),
+        adhesion,
+        prolongations,
+        method,
+        failures,
+        monitor,
+        [&](const dealii::FullMatrix<double> &S,
+            const dealii::Vector<double>     &g,
+            const PiecewiseQuadratic         &phi,
+            dealii::Vector<double>           &coarse_s) {
+          add_search(search_bonds(S,
+                                  g,
+                                  phi,
+                                  law.bond_threshold(),
+                                  coarse_neighbours(prolongations.back()),
+                                  method,
+                                  search_parameters(parameters),
+                                  coarse_s,
+                                  may_go_on),
+                     coarse_s.size(),
+                     result);
+        });
+      CondensedProblem             problem(condensed.schur_complement(),
+                               condensed.load(),
+                               adhesion,
+                               point);
+      const MajoriseMinimiseResult minimum = method.minimize(problem, monitor);
+      const auto given = CondensedProblem(condensed.schur_complement(),
+                                          condensed.load(),
+                                          adhesion,
+                                          s)
+                           .evaluate();
+      result.search_improvements = 0;
+      if (minimum.status == SolverStatus::success &&
+          minimum.functional < given.functional - given.functional_rounding)
+        {
+          s                          = point;
+          result.search_improvements = 1;
+        }
     }
 
 
@@ -70,6 +168,7 @@ namespace Debond
         c_0;
       BranchAndBoundParameters proof_parameters = parameters.proof;
       proof_parameters.tolerance *= std::abs(J);
+      proof_parameters.maximum_bytes = memory_left(parameters);
       const BranchAndBoundResult proof =
         BranchAndBound(proof_parameters)
           .minimize(S, condensed.load(), bonds, s, [&](const ProofProgress &) {
@@ -154,27 +253,37 @@ namespace Debond
     if (result.kind == MinimumKind::global)
       return result;
 
-    if (wants_search(parameters, s.size()))
+    if (wants_search(parameters))
       {
-        const BondSearchResult search =
-          search_bonds(condensed.schur_complement(),
-                       condensed.load(),
-                       adhesion,
-                       law.bond_threshold(),
-                       neighbours(boundary),
-                       MajoriseMinimise(parameters.majorise_minimise),
-                       search_parameters(parameters),
-                       s,
-                       may_go_on);
-        for (const unsigned int trials : search.trials)
-          result.search_trials += trials;
-        for (const unsigned int improvements : search.improvements)
-          result.search_improvements += improvements;
-        result.kind = search.complete ? MinimumKind::best_known :
-                                        kind_without_search(law, adhesion, s);
+        if (parameters.search == BondSearchChoice::automatic &&
+            s.size() > largest_automatic_search)
+          search_on_coarse_mesh(parameters,
+                                boundary,
+                                law,
+                                adhesion,
+                                condensed,
+                                may_go_on,
+                                s,
+                                result);
+        else
+          add_search(search_bonds(condensed.schur_complement(),
+                                  condensed.load(),
+                                  adhesion,
+                                  law.bond_threshold(),
+                                  neighbours(boundary),
+                                  MajoriseMinimise(
+                                    parameters.majorise_minimise),
+                                  search_parameters(parameters),
+                                  s,
+                                  may_go_on),
+                     s.size(),
+                     result);
+        if (result.kind != MinimumKind::best_known)
+          result.kind = kind_without_search(law, adhesion, s);
       }
     if (parameters.prove)
       prove(parameters, law, adhesion, condensed, may_go_on, s, result);
+    result.interrupted = !may_go_on();
     return result;
   }
 

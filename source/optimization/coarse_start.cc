@@ -86,7 +86,8 @@ namespace Debond
                    const Level                       end,
                    const MajoriseMinimise           &method,
                    std::vector<std::string>         &failures,
-                   const MajoriseMinimise::Monitor  &monitor)
+                   const MajoriseMinimise::Monitor  &monitor,
+                   const CoarseVisitor              &on_coarsest)
     {
       if (level == end)
         return dealii::Vector<double>(g.size());
@@ -103,12 +104,15 @@ namespace Debond
                                                 end,
                                                 method,
                                                 failures,
-                                                monitor);
+                                                monitor,
+                                                on_coarsest);
       CondensedProblem             problem(coarse_S, coarse_g, coarse_phi, s);
       const MajoriseMinimiseResult result = method.minimize(problem, monitor);
       if (result.status != SolverStatus::success)
         failures.push_back("start on " + std::to_string(s.size()) +
                            " of the contact nodes: " + result.message);
+      if (on_coarsest && level + 1 == end)
+        on_coarsest(coarse_S, coarse_g, coarse_phi, s);
       return times(P, s);
     }
   } // namespace
@@ -122,7 +126,8 @@ namespace Debond
                const std::vector<Eigen::SparseMatrix<double>> &prolongations,
                const MajoriseMinimise                         &method,
                std::vector<std::string>                       &failures,
-               const MajoriseMinimise::Monitor                &monitor)
+               const MajoriseMinimise::Monitor                &monitor,
+               const CoarseVisitor                            &on_coarsest)
   {
     return start_on_level(S,
                           g,
@@ -131,6 +136,7 @@ namespace Debond
                           prolongations.end(),
                           method,
                           failures,
-                          monitor);
+                          monitor,
+                          on_coarsest);
   }
 } // namespace Debond

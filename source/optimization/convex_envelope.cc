@@ -40,6 +40,14 @@ namespace Debond
 
 
   double
+  BondEnergy::energy_if_broken() const
+  {
+    return 0.5 * stiffness * threshold * threshold;
+  }
+
+
+
+  double
   BondEnergy::least_bonded(const double r,
                            const double lower,
                            const double upper) const
@@ -58,7 +66,7 @@ namespace Debond
                            const double upper) const
   {
     return least_on_parabola(r, convexity, lower, std::min(upper, -threshold)) +
-           0.5 * stiffness * threshold * threshold;
+           energy_if_broken();
   }
 
 
@@ -71,7 +79,7 @@ namespace Debond
     const double M  = f.threshold;
     const double c0 = f.convexity;               // of the broken parabola
     const double c1 = f.convexity + f.stiffness; // of the bonded one
-    const double h  = 0.5 * f.stiffness * M * M;
+    const double h  = f.energy_if_broken();
 
     double first = lower, second = upper;
     if (f.stiffness == 0. || lower >= -M)
@@ -119,5 +127,14 @@ namespace Debond
     if (s <= pieces[1].lower || s >= pieces[1].upper)
       return f.value(s);
     return f.value(pieces[1].lower) + pieces[1].slope * (s - pieces[1].lower);
+  }
+
+
+
+  double
+  ConvexEnvelope::spread(const double s) const
+  {
+    return std::max(0., s - pieces[1].lower) *
+           std::max(0., pieces[1].upper - s);
   }
 } // namespace Debond

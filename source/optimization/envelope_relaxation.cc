@@ -19,6 +19,9 @@ namespace Debond
 
     constexpr unsigned int maximum_halvings = 10;
 
+    /// Covers the rounding of a diagonal entry of an inverse.
+    constexpr double inverse_rounding = 1. + 1e-6;
+
     enum Place
     {
       at_lower,
@@ -184,31 +187,84 @@ namespace Debond
 
 
   LowerBound::LowerBound(const BoxProblem &problem, const Eigen::VectorXd &x)
-    : bonded_excess(x.size())
-    , broken_excess(x.size())
+    : problem(problem)
+    , x(x)
+    , least(x.size())
   {
-    const unsigned int    n         = x.size();
-    const Eigen::VectorXd product   = problem.A * x;
-    const Eigen::VectorXd magnitude = problem.A.cwiseAbs() * x.cwiseAbs();
-
-    value       = -0.5 * x.dot(product);
-    double size = 0.5 * x.cwiseAbs().dot(magnitude);
+    // Sums of n terms lose at most n units of their absolute sum, so that sums
+    // of products take more digits; the rest are single operations.
+    const unsigned int n     = x.size();
+    long double        sum   = 0.;
+    double             sums  = 0.; // absolute ones, times the largest |s_i|
+    double             terms = 0.; // the same of single terms
+    r.resize(n);
     for (unsigned int i = 0; i < n; ++i)
       {
-        const double r = product(i) - problem.g(i);
-        const double bonded =
-          problem.f[i].least_bonded(r, problem.lower(i), problem.upper(i));
-        const double broken =
-          problem.f[i].least_broken(r, problem.lower(i), problem.upper(i));
-        const double least = std::min(bonded, broken);
-        bonded_excess(i)   = bonded - least;
-        broken_excess(i)   = broken - least;
-        value += least;
-        size += std::abs(least) + (magnitude(i) + std::abs(problem.g(i))) *
-                                    std::max(std::abs(problem.lower(i)),
-                                             std::abs(problem.upper(i)));
+        long double product = 0.;
+        double      size    = 0.;
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            product += static_cast<long double>(problem.A(j, i)) * x(j);
+            size += std::abs(problem.A(j, i) * x(j));
+          }
+        const BondEnergy &f = problem.f[i];
+        r(i)                = product - problem.g(i);
+        least(i) =
+          std::min(f.least_bonded(r(i), problem.lower(i), problem.upper(i)),
+                   f.least_broken(r(i), problem.lower(i), problem.upper(i)));
+        sum += least(i) - 0.5 * x(i) * product;
+
+        const double largest =
+          std::max(std::abs(problem.lower(i)), std::abs(problem.upper(i)));
+        sums += size * (std::abs(x(i)) + largest);
+        // The diagonal of A is a sum as well.
+        terms += (std::abs(r(i)) + (f.convexity + problem.A(i, i)) * largest) *
+                   largest +
+                 2. * f.energy_if_broken() + std::abs(least(i));
       }
-    // Sums of n terms lose at most n units of their absolute sum.
-    value -= (n + 16.) * std::numeric_limits<double>::epsilon() * size;
+    value = sum;
+    rounding =
+      (n + 16.) * std::numeric_limits<long double>::epsilon() * (sums + terms) +
+      8. * std::numeric_limits<double>::epsilon() * terms;
+    value -= rounding;
+  }
+
+
+
+  Growth
+  LowerBound::growth(const unsigned int i,
+                     const double       inverse_diagonal,
+                     const double       curvature,
+                     const double       energy) const
+  {
+    return {x(i),
+            value - rounding +
+              (r(i) * x(i) + 0.5 * curvature * x(i) * x(i) + energy - least(i)),
+            r(i) + curvature * x(i),
+            curvature + 1. / (inverse_rounding * inverse_diagonal)};
+  }
+
+
+
+  Growth
+  LowerBound::growth_if_bonded(const unsigned int i,
+                               const double       inverse_diagonal) const
+  {
+    return growth(i,
+                  inverse_diagonal,
+                  problem.f[i].convexity + problem.f[i].stiffness,
+                  0.);
+  }
+
+
+
+  Growth
+  LowerBound::growth_if_broken(const unsigned int i,
+                               const double       inverse_diagonal) const
+  {
+    return growth(i,
+                  inverse_diagonal,
+                  problem.f[i].convexity,
+                  problem.f[i].energy_if_broken());
   }
 } // namespace Debond

@@ -80,7 +80,8 @@ namespace Debond
     json["functional"]    = summary.functional;
     json["minimum"]       = {{"state", summary.minimum},
                              {"search_trials", summary.search_trials},
-                             {"search_improvements", summary.search_improvements}};
+                             {"search_improvements", summary.search_improvements},
+                             {"search_nodes", summary.search_nodes}};
     if (!summary.proof.empty())
       json["proof"] = {{"status", summary.proof},
                        {"nodes", summary.proof_nodes},

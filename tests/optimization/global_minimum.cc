@@ -10,6 +10,10 @@
 #include <debond/optimization/branch_and_bound.h>
 #include <debond/optimization/condensed_problem.h>
 #include <debond/optimization/convex_envelope.h>
+#include <debond/optimization/convexity_shift.h>
+#include <debond/optimization/node_bound.h>
+
+#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
@@ -89,9 +93,32 @@ namespace
 
 
 
-  /// The least value of all bond states' convex problems.
+  /// A string that is pulled off on one half, which gains hardly more than the
+  /// bonds cost.
+  Problem
+  hard_problem(std::mt19937_64 &engine, const unsigned int n)
+  {
+    std::uniform_real_distribution<double> uniform(-1., 1.);
+    Problem p = {Eigen::MatrixXd::Identity(n, n) * 40.02,
+                 dealii::FullMatrix<double>(n, n),
+                 Vector(n),
+                 SeparableBonds(Eigen::VectorXd::Constant(n, 500.), 0.007)};
+    for (unsigned int i = 1; i < n; ++i)
+      p.S_eigen(i, i - 1) = p.S_eigen(i - 1, i) = -20.;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        p.g(i) = i < n / 2 ? -0.07 * (1. + 0.2 * uniform(engine)) : 0.03;
+        for (unsigned int j = 0; j < n; ++j)
+          p.S(i, j) = p.S_eigen(i, j);
+      }
+    return p;
+  }
+
+
+
+  /// The least value of all bond states' convex problems, and where it is.
   double
-  enumerated_minimum(const Problem &p)
+  enumerated_minimum(const Problem &p, Vector &minimiser)
   {
     const unsigned int    n = p.g.size();
     const Eigen::VectorXd g = Eigen::Map<const Eigen::VectorXd>(p.g.begin(), n);
@@ -107,7 +134,11 @@ namespace
           solve_bound_qp(M, g, Eigen::VectorXd::Zero(n), active);
         Vector s(n);
         std::copy(qp.x.begin(), qp.x.end(), s.begin());
-        least = std::min(least, p.value(s));
+        if (const double value = p.value(s); value < least)
+          {
+            least     = value;
+            minimiser = s;
+          }
       }
     return least;
   }
@@ -124,6 +155,158 @@ namespace
         graph[i].insert(i - 1);
       }
     return graph;
+  }
+
+
+
+  /// The interval where a parabola is below a level, against bisection.
+  void
+  test_growth(std::mt19937_64 &engine)
+  {
+    std::uniform_real_distribution<double> uniform(-1., 1.);
+    unsigned int                           too_small = 0, too_large = 0;
+    for (unsigned int k = 0; k < 1000; ++k)
+      {
+        const Growth growth = {uniform(engine),
+                               uniform(engine),
+                               uniform(engine),
+                               1.01 + uniform(engine)};
+        const double centre = growth.x - growth.slope / growth.curvature;
+        const double least  = growth.value(centre);
+        const double level  = least + 1. + uniform(engine);
+        double       inside = centre, outside = centre + 1e3;
+        for (unsigned int step = 0; step < 60; ++step)
+          {
+            const double middle = 0.5 * (inside + outside);
+            (growth.value(middle) <= level ? inside : outside) = middle;
+          }
+        const double   radius = inside - centre;
+        const Interval all    = {-1e4, 1e4};
+        const Interval found  = growth.where_at_most(level, all);
+        const double   margin = 1e-5 * (radius + std::abs(centre - growth.x));
+        too_small += found.lower > centre - radius || found.upper < inside;
+        too_large += found.lower < centre - radius - margin ||
+                     found.upper > inside + margin;
+
+        // Cut off, and out of reach.
+        const Interval half = growth.where_at_most(level, {centre, 1e4});
+        too_small += half.lower != centre || half.upper != found.upper;
+        const Interval far = {inside + 1.1 * margin + 1e-3, 1e4};
+        too_large += !growth.where_at_most(level, far).is_empty() ||
+                     growth.least(far) <= level;
+      }
+    std::cout << "where a parabola is below a level: no point left out: "
+              << verdict(too_small == 0)
+              << ", and no more than these: " << verdict(too_large == 0)
+              << '\n';
+  }
+
+
+
+  /// Without bonds distances are known: if s_i moves from the minimum by d and
+  /// all others follow, the value rises by d^2 / (2 (S^{-1})_ii).
+  void
+  test_distances(std::mt19937_64 &engine)
+  {
+    std::uniform_real_distribution<double> uniform(0.1, 1.);
+    bool growth_holds = true, box_holds = true, close = true;
+    for (unsigned int k = 0; k < 200; ++k)
+      {
+        const unsigned int    n       = 3 + k % 4;
+        const Problem         p       = random_problem(engine, n, k % 2 == 0);
+        const Eigen::MatrixXd inverse = p.S_eigen.inverse();
+        const Eigen::VectorXd g =
+          Eigen::Map<const Eigen::VectorXd>(p.g.begin(), n);
+        const Eigen::VectorXd minimum = inverse * g;
+        const double          value   = -0.5 * g.dot(minimum);
+        const SeparableBonds  no_bonds(Eigen::VectorXd::Zero(n), 1.);
+        const double          more = uniform(engine);
+        const auto root = NodeBound(p.S, p.g, no_bonds).root(value + more);
+
+        const BoxProblem problem = {p.S_eigen,
+                                    g,
+                                    std::vector<BondEnergy>(n, {0., 0., 1.}),
+                                    Eigen::VectorXd::Constant(n, -1e3),
+                                    Eigen::VectorXd::Constant(n, 1e3)};
+        const LowerBound lower_bound(problem, minimum);
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            // The point with the least s_i among those with this value.
+            const double          d = -std::sqrt(2. * more * inverse(i, i));
+            const Eigen::VectorXd s =
+              minimum + d / inverse(i, i) * inverse.col(i);
+            const double s_value = s.dot(0.5 * p.S_eigen * s - g);
+            const double claimed =
+              lower_bound.growth_if_bonded(i, inverse(i, i)).value(s(i));
+            growth_holds = growth_holds && claimed <= s_value;
+            close        = close && claimed > s_value - 1e-5 * more;
+            box_holds    = box_holds && root->lower(i) <= std::min(s(i), 0.);
+            close        = close && root->lower(i) >= std::min(s(i), 0.) -
+                                                 1e-5 * (1. + std::abs(s(i)));
+          }
+      }
+    std::cout << "distances without bonds: growth holds: "
+              << verdict(growth_holds)
+              << ", the first box holds: " << verdict(box_holds)
+              << ", both to 1e-5: " << verdict(close) << '\n';
+  }
+
+
+
+  /// The inverse and the multiple against eigenvalues; the sweep raises
+  /// v'D + mu log det (A - D), and where that is stationary it stays.
+  void
+  test_shift(std::mt19937_64 &engine)
+  {
+    bool inverses = true, multiples = true, rises = true, stays = true;
+    for (unsigned int k = 0; k < 100; ++k)
+      {
+        const unsigned int    n       = 3 + k % 5;
+        const Eigen::MatrixXd A       = random_problem(engine, n, true).S_eigen;
+        const auto            inverse = safe_inverse(A);
+        inverses =
+          inverses && inverse &&
+          (*inverse * A - Eigen::MatrixXd::Identity(n, n)).norm() < 1e-9 &&
+          !safe_inverse(A - A.trace() * Eigen::MatrixXd::Identity(n, n));
+        const double least =
+          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A).eigenvalues()(0);
+        const double multiple =
+          largest_multiple(*inverse, Eigen::VectorXd::Ones(n));
+        multiples =
+          multiples && multiple > 0.99 * least && multiple < 2. * least;
+
+        std::vector<unsigned int> all(n);
+        for (unsigned int i = 0; i < n; ++i)
+          all[i] = i;
+        const double          mu = 0.1;
+        const Eigen::VectorXd v  = Eigen::VectorXd::LinSpaced(n, 0.1, 1.);
+        Eigen::VectorXd       D  = Eigen::VectorXd::Zero(n);
+        const auto            objective = [&]() {
+          const Eigen::MatrixXd rest = A - Eigen::MatrixXd(D.asDiagonal());
+          return v.dot(D) + mu * std::log(rest.determinant());
+        };
+        double before = objective();
+        for (unsigned int sweep = 0; sweep < 2000; ++sweep)
+          {
+            const Eigen::MatrixXd rest = A - Eigen::MatrixXd(D.asDiagonal());
+            raise_bound(rest.inverse(), v, mu, all, D);
+            const double after = objective();
+            rises              = rises && after > before - 1e-9;
+            before             = after;
+          }
+        const Eigen::MatrixXd rest = A - Eigen::MatrixXd(D.asDiagonal());
+        const Eigen::MatrixXd P    = rest.inverse();
+        for (unsigned int i = 0; i < n; ++i)
+          stays = stays && D(i) >= 0. &&
+                  (D(i) * P(i, i) < 2e-3 ?
+                     v(i) < 1.01 * mu * P(i, i) :
+                     std::abs(v(i) - mu * P(i, i)) < 0.01 * v(i));
+      }
+    std::cout << "shift of convexity: inverse: " << verdict(inverses)
+              << ", largest multiple: " << verdict(multiples)
+              << ", sweeps rise: " << verdict(rises)
+              << ", to where the derivative is zero: " << verdict(stays)
+              << '\n';
   }
 
 
@@ -186,13 +369,15 @@ namespace
   test_bounds(std::mt19937_64 &engine, const unsigned int n_problems)
   {
     unsigned int invalid = 0, not_proved = 0, wrong = 0, most_nodes = 0;
+    unsigned int lost        = 0;
     unsigned int interrupted = 0, found = 0, n_chains = 0, incomplete = 0;
     double       closest = std::numeric_limits<double>::infinity();
     for (unsigned int k = 0; k < n_problems; ++k)
       {
-        const unsigned int n         = 2 + k % 6;
-        const Problem      p         = random_problem(engine, n, k % 2 == 0);
-        const double       minimum   = enumerated_minimum(p);
+        const unsigned int n = 2 + k % 6;
+        const Problem      p = random_problem(engine, n, k % 2 == 0);
+        Vector             minimiser;
+        const double       minimum   = enumerated_minimum(p, minimiser);
         const double       tolerance = 1e-10 * std::max(1., std::abs(minimum));
 
         // From rest, of which nothing is known.
@@ -206,6 +391,17 @@ namespace
         invalid += proof.lower > minimum;
         closest    = std::min(closest, minimum - proof.lower);
         most_nodes = std::max(most_nodes, proof.nodes);
+
+        // The box must not lose the minimum, also if all but it is known to be
+        // worse.
+        const NodeBound node_bound(p.S, p.g, p.bonds);
+        ProofNode       node = *node_bound.root(minimum + tolerance);
+        const auto result    = node_bound.bound(node, minimum + tolerance, 0.);
+        for (unsigned int i = 0; i < n; ++i)
+          lost += result.bond && (minimiser(i) < node.lower(i) - 1e-9 ||
+                                  minimiser(i) > node.upper(i) + 1e-9);
+        lost +=
+          node.bound > minimum || (!result.bond && result.least < node.bound);
 
         parameters.maximum_nodes = 1;
         const auto stopped =
@@ -230,6 +426,7 @@ namespace
               << verdict(invalid == 0)
               << ", the minimum proved: " << verdict(not_proved == 0)
               << ", and found: " << verdict(wrong == 0)
+              << ", never outside the shrunk box: " << verdict(lost == 0)
               << "\n  some proofs stopped after one node: "
               << verdict(interrupted > n_problems / 100)
               << "\nsearch: values as points say: " << verdict(incomplete == 0)
@@ -252,7 +449,8 @@ namespace
       {
         const unsigned int       n = 11 + k;
         const Problem            p = random_problem(engine, n, k % 2 == 0);
-        const double             minimum = enumerated_minimum(p);
+        Vector                   minimiser;
+        const double             minimum = enumerated_minimum(p, minimiser);
         BranchAndBoundParameters parameters;
         parameters.tolerance = 1e-10;
         const auto proof =
@@ -269,10 +467,67 @@ namespace
 
 
 
+  /// The same nodes in the same order, whatever the number of threads.
+  void
+  test_threads(std::mt19937_64 &engine)
+  {
+    bool         same       = true;
+    unsigned int most_nodes = 0;
+    for (unsigned int k = 0; k < 3; ++k)
+      {
+        const Problem            p = hard_problem(engine, 80);
+        BranchAndBoundParameters parameters;
+        parameters.tolerance     = 1e-9;
+        parameters.maximum_nodes = 300;
+        const auto one =
+          BranchAndBound(parameters).minimize(p.S, p.g, p.bonds, Vector(80));
+        for (const unsigned int n_threads : {2, 3, 16})
+          {
+            parameters.n_threads = n_threads;
+            const auto more      = BranchAndBound(parameters)
+                                .minimize(p.S, p.g, p.bonds, Vector(80));
+            same = same && more.nodes == one.nodes && more.lower == one.lower &&
+                   more.upper == one.upper && more.s == one.s &&
+                   more.status == one.status;
+          }
+        most_nodes = std::max(most_nodes, one.nodes);
+      }
+    std::cout << "threads change nothing: " << verdict(same)
+              << ", in proofs of several batches: " << verdict(most_nodes > 8)
+              << '\n';
+    if (print_figures)
+      std::cout << "  " << most_nodes << " nodes\n";
+  }
+
+
+
   void
   test_limits(std::mt19937_64 &engine)
   {
     const Problem            p = random_problem(engine, 8, true);
+    const Problem            q = hard_problem(engine, 80);
+    BranchAndBoundParameters little;
+    little.tolerance     = 1e-9;
+    little.maximum_bytes = 2 * 4 * 80 * sizeof(double);
+    const auto full =
+      BranchAndBound(little).minimize(q.S, q.g, q.bonds, Vector(80));
+    std::cout << "room for 2 nodes: " << to_string(full.status)
+              << ", valid gap: "
+              << verdict(std::isfinite(full.lower) && full.lower <= full.upper)
+              << ", at most a batch more: "
+              << verdict(full.history.back().open <= 2 + 8) << '\n';
+    unsigned int rounds = 0;
+    const auto   interrupted =
+      BranchAndBound({}).minimize(q.S,
+                                  q.g,
+                                  q.bonds,
+                                  Vector(80),
+                                  [&](const auto &) { return ++rounds < 3; });
+    std::cout << "stopped by the monitor: " << to_string(interrupted.status)
+              << ", at once: " << verdict(rounds == 3) << ", valid gap: "
+              << verdict(std::isfinite(interrupted.lower) &&
+                         interrupted.lower <= full.upper)
+              << '\n';
     BranchAndBoundParameters parameters;
     parameters.maximum_seconds = 0.;
     const auto late =
@@ -296,7 +551,11 @@ main(int argc, char *[])
   print_figures = argc > 1;
   std::mt19937_64 engine(20261122);
   test_envelope(engine);
+  test_growth(engine);
+  test_distances(engine);
+  test_shift(engine);
   test_bounds(engine, 10000);
   test_larger(engine);
+  test_threads(engine);
   test_limits(engine);
 }

@@ -47,6 +47,12 @@ namespace Debond
   /// memory that is needed exceeds the limit.
   MethodChoice
   choose_method(const Parameters &parameters);
+
+
+
+  /// What the scene may still take of its memory limit, in bytes.
+  double
+  memory_left(const Parameters &parameters);
 } // namespace Debond
 
 #endif

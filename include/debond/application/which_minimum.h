@@ -18,7 +18,7 @@ namespace Debond
   {
     stationary,    ///< it satisfies the contact law
     local_minimum, ///< and no bond is on the kink, so that J rises around it
-    best_known,    ///< and no move of the search lowers J
+    best_known,    ///< and no state that the search tried has a lower J
     global         ///< and no point is lower, but for the gap
   };
 
@@ -33,6 +33,9 @@ namespace Debond
 
     unsigned int search_trials       = 0;
     unsigned int search_improvements = 0;
+    unsigned int search_nodes = 0; ///< contact nodes of the mesh of the search
+
+    bool interrupted = false; ///< search or proof, by a signal
 
     bool         proof_attempted = false;
     ProofStatus  proof_status    = ProofStatus::no_bound;

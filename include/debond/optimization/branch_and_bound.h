@@ -21,6 +21,11 @@ namespace Debond
 
     unsigned int maximum_nodes   = 1000000;
     double       maximum_seconds = std::numeric_limits<double>::infinity();
+
+    /// For the open nodes.
+    double maximum_bytes = std::numeric_limits<double>::infinity();
+
+    unsigned int n_threads = 1;
   };
 
 
@@ -38,12 +43,13 @@ namespace Debond
 
   enum class ProofStatus
   {
-    proved,      ///< upper - lower is at most the tolerance
-    node_limit,  ///< the nodes were used up
-    time_limit,  ///< the time was used up
-    interrupted, ///< by the monitor
-    rounding,    ///< all bonds are decided, rounding leaves a larger gap
-    no_bound     ///< S is not safely positive definite: there is no bound
+    proved,       ///< upper - lower is at most the tolerance
+    node_limit,   ///< the nodes were used up
+    time_limit,   ///< the time was used up
+    memory_limit, ///< the open nodes take too much
+    interrupted,  ///< by the monitor
+    rounding,     ///< all bonds are decided, rounding leaves a larger gap
+    no_bound      ///< S is not safely positive definite: there is no bound
   };
 
   std::string
@@ -69,17 +75,10 @@ namespace Debond
    * The global minimum of 1/2 s'S s - g's + Phi(s), s <= 0, by branch and bound
    * on which bonds are broken.
    *
-   * A node decides some bonds. What is undecided is replaced by its convex
-   * envelope on an interval, after an amount of convexity was moved from S to
-   * the undecided bonds, which makes the envelope tighter (the D.C. splitting
-   * of alpha-BB: Androulakis, Maranas, Floudas, J. Global Optim. 7, 1995). The
-   * bound is LowerBound, which needs no exact minimum. The intervals shrink,
-   * and bonds are decided, by what the bound leaves below the best known value.
-   * The node with the lowest bound comes next, and from it one goes down to the
-   * more promising half each time until it is left out.
-   *
-   * Runs in one thread; the order of the nodes is always the same, so that only
-   * a limit of time makes a result depend on the machine.
+   * A node decides some bonds, and NodeBound bounds it. The open nodes with the
+   * lowest bounds are next, some at a time, in as many threads as there are.
+   * The order of the nodes does not depend on the number of threads, so that
+   * only a limit of time makes a result depend on the machine.
    */
   class BranchAndBound
   {

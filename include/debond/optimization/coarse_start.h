@@ -11,6 +11,14 @@
 
 namespace Debond
 {
+  /// Gets the problem of a level and its point.
+  using CoarseVisitor = std::function<void(const dealii::FullMatrix<double> &S,
+                                           const dealii::Vector<double>     &g,
+                                           const PiecewiseQuadratic &phi,
+                                           dealii::Vector<double>   &s)>;
+
+
+
   /**
    * A starting point for 1/2 s'S s - g's + Phi(s), s <= 0, from its minimum
    * over the subspaces s = P_1 P_2 ... P_k s_k, coarsest first, from rest,
@@ -20,7 +28,7 @@ namespace Debond
    *
    * A level on which @p method does not converge passes on what it reached, and
    * is named in @p failures. The method is called with @p monitor on each
-   * level.
+   * level. After the coarsest level, @p on_coarsest may change its point.
    */
   dealii::Vector<double>
   coarse_start(const dealii::FullMatrix<double>               &S,
@@ -29,7 +37,8 @@ namespace Debond
                const std::vector<Eigen::SparseMatrix<double>> &prolongations,
                const MajoriseMinimise                         &method,
                std::vector<std::string>                       &failures,
-               const MajoriseMinimise::Monitor                &monitor = {});
+               const MajoriseMinimise::Monitor                &monitor = {},
+               const CoarseVisitor &on_coarsest                        = {});
 } // namespace Debond
 
 #endif

@@ -14,6 +14,9 @@ namespace Debond
     double
     value(const double s) const;
 
+    double
+    energy_if_broken() const;
+
     /// The least value of r s + f(s) on [lower, upper] where the bond is
     /// bonded (s >= -M) and where it is broken (s <= -M); infinite if there
     /// is no such s.
@@ -39,6 +42,11 @@ namespace Debond
 
     double
     value(const double s) const;
+
+    /// (s - first)(second - s) on the line, zero elsewhere: twice the
+    /// derivative of the envelope less c/2 s^2 with respect to c.
+    double
+    spread(const double s) const;
 
     /// The envelope's derivative is slope + curvature s on each piece.
     struct Piece

@@ -3,6 +3,7 @@
 #define debond_optimization_envelope_relaxation_h
 
 #include <debond/optimization/convex_envelope.h>
+#include <debond/optimization/growth.h>
 
 #include <Eigen/Core>
 
@@ -38,20 +39,38 @@ namespace Debond
    *
    *     q(s) = 1/2 (s - x)'A (s - x) - 1/2 x'A x + sum_i r_i s_i + f_i(s_i)
    *
-   * with r = A x - g, and each term of the sum has a least value where its
-   * bond is bonded and where it is broken. At the minimum of the relaxation
-   * the bound is the minimum. `value` accounts for the rounding in its own
-   * evaluation.
+   * with r = A x - g, and each term of the sum has a least value. At the
+   * minimum of the relaxation the bound is the minimum. `value` accounts for
+   * the rounding in its own evaluation.
    */
-  struct LowerBound
+  class LowerBound
   {
+  public:
     double value;
 
-    /// How much more q is at least if bond i is bonded, and if it is broken,
-    /// not counting the quadratic term.
-    Eigen::VectorXd bonded_excess, broken_excess;
-
     LowerBound(const BoxProblem &problem, const Eigen::VectorXd &x);
+
+    /// How the bound grows with s_i if bond i is bonded, or if it is broken,
+    /// by its own term and the quadratic one, of which
+    ///     1/2 (s - x)'A (s - x) >= 1/2 (s_i - x_i)^2 / (A^{-1})_ii
+    /// is left if all others are free.
+    Growth
+    growth_if_bonded(const unsigned int i, const double inverse_diagonal) const;
+
+    Growth
+    growth_if_broken(const unsigned int i, const double inverse_diagonal) const;
+
+  private:
+    const BoxProblem      &problem;
+    const Eigen::VectorXd &x;
+    Eigen::VectorXd        r, least;
+    double                 rounding;
+
+    Growth
+    growth(const unsigned int i,
+           const double       inverse_diagonal,
+           const double       curvature,
+           const double       energy) const;
   };
 } // namespace Debond
 

@@ -32,6 +32,7 @@ namespace Debond
     std::string  minimum;
     unsigned int search_trials       = 0;
     unsigned int search_improvements = 0;
+    unsigned int search_nodes = 0; ///< contact nodes on which it searched
     std::string  proof; ///< to_string(ProofStatus), empty if none was tried
     unsigned int proof_nodes  = 0;
     double       lower_bound  = 0.; ///< of J, by the proof

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/output/proof_plots.h>
+
+#include <cmath>
+
+namespace Debond
+{
+  std::vector<Plot>
+  proof_plots(const std::vector<ProofProgress> &history)
+  {
+    if (history.empty() || history.back().nodes <= 1)
+      return {};
+    Plot  time  = {"proof_time", "", "s", "gap relative to J", false, true};
+    Plot  nodes = {"proof_nodes", "", "nodes", "gap relative to J", true, true};
+    Curve against_time, against_nodes;
+    against_time.title = against_nodes.title = "gap";
+    for (const ProofProgress &step : history)
+      {
+        const double gap = (step.upper - step.lower) / std::abs(step.upper);
+        against_time.points.emplace_back(step.seconds, gap);
+        against_nodes.points.emplace_back(step.nodes, gap);
+      }
+    time.curves.push_back(against_time);
+    nodes.curves.push_back(against_nodes);
+    if (!has_points(time))
+      return {};
+    return {time, nodes};
+  }
+} // namespace Debond
