@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/output/atomic_file.h>
 #include <debond/output/load_path.h>
+#include <debond/output/number_text.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 
 namespace Debond
@@ -69,18 +68,6 @@ namespace Debond
 
   namespace
   {
-    /// The shortest text that reads back as the same number.
-    std::string
-    shortest(const double number)
-    {
-      std::array<char, 32> text;
-      const auto           end =
-        std::to_chars(text.data(), text.data() + text.size(), number).ptr;
-      return {text.data(), end};
-    }
-
-
-
     /// The titles of write_state() with @p prefix.
     template <int dim>
     void
@@ -124,15 +111,15 @@ namespace Debond
                                   state.mean_gap,
                                   state.largest_gap,
                                   state.normal_force})
-        out << ',' << shortest(number);
+        out << ',' << shortest_text(number);
       for (const auto &reaction :
            {state.contact_reaction, state.clamped_reaction})
         for (unsigned int d = 0; d < dim; ++d)
-          out << ',' << shortest(reaction[d]);
+          out << ',' << shortest_text(reaction[d]);
       for (const double number : {state.law_violation,
                                   state.equilibrium_residual,
                                   state.force_imbalance})
-        out << ',' << shortest(number);
+        out << ',' << shortest_text(number);
     }
 
 
@@ -142,7 +129,7 @@ namespace Debond
     {
       out << ',';
       if (number)
-        out << shortest(*number);
+        out << shortest_text(*number);
     }
   } // namespace
 
@@ -163,7 +150,7 @@ namespace Debond
 
       for (const LoadPathStep<dim> &step : steps)
         {
-          out << step.step << ',' << shortest(step.factor) << ','
+          out << step.step << ',' << shortest_text(step.factor) << ','
               << step.status;
           write_state(step.state, out);
           out << ',' << step.iterations;

@@ -3,10 +3,9 @@
 #include <deal.II/base/table_handler.h>
 
 #include <debond/output/atomic_file.h>
+#include <debond/output/number_text.h>
 #include <debond/study/data_table.h>
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -34,12 +33,7 @@ namespace Debond
     readable_number(const double number, const unsigned int digits)
     {
       if (digits == all_digits)
-        {
-          std::array<char, 32> text;
-          return {
-            text.data(),
-            std::to_chars(text.data(), text.data() + text.size(), number).ptr};
-        }
+        return shortest_text(number);
       std::ostringstream text;
       if (is_handy(number))
         text << std::setprecision(digits) << number;

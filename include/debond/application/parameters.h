@@ -2,6 +2,7 @@
 #ifndef debond_application_parameters_h
 #define debond_application_parameters_h
 
+#include <debond/application/load_parameters.h>
 #include <debond/application/load_path_parameters.h>
 #include <debond/application/parameter_table.h>
 #include <debond/contact/law.h>
@@ -27,20 +28,6 @@ namespace Debond
     explicit BadInput(const std::vector<std::string> &errors);
 
     const std::vector<std::string> lines;
-  };
-
-
-
-  /// f_0 and f_2 as expressions in x, y[, z], components separated by ';'.
-  struct LoadParameters
-  {
-    std::string body_force; ///< empty for none
-
-    /// By the name of the side; sides without traction are left out.
-    std::map<std::string, std::string> tractions;
-
-    /// Names that the expressions may use.
-    std::map<std::string, double> constants;
   };
 
 
