@@ -66,17 +66,18 @@ namespace Debond
     std::vector<std::string>
     geometric_range(const std::string &text)
     {
-      std::istringstream words(text);
-      std::string        keyword, first_text, last_text;
-      unsigned int       count = 0;
-      double             first = 0., last = 0.;
+      constexpr unsigned int largest_count = 1000; // each is a case to run
+      std::istringstream     words(text);
+      std::string            keyword, first_text, last_text;
+      unsigned int           count = 0;
+      double                 first = 0., last = 0.;
       words >> keyword >> first_text >> last_text >> count;
       if (!words || !(words >> std::ws).eof() ||
           !read_number(first_text, first) || !read_number(last_text, last) ||
-          !(first > 0.) || !(last > 0.) || count < 2)
+          !(first > 0.) || !(last > 0.) || count < 2 || count > largest_count)
         throw std::invalid_argument(
-          "expected 'geometric FIRST LAST COUNT' with numbers > 0 and at "
-          "least 2 values");
+          "expected 'geometric FIRST LAST COUNT' with numbers > 0 and 2 to " +
+          std::to_string(largest_count) + " values");
 
       std::vector<std::string> values;
       for (unsigned int i = 0; i < count; ++i)

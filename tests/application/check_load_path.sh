@@ -45,7 +45,7 @@ for plot in load_path load_path_energy load_path_force load_path_displacement; d
   done
   [ ! -e "output/bar/$plot.png" ] || fail "Who has drawn $plot.png?"
 done
-grep -q "No pictures of the load path: gnuplot is not installed" log ||
+grep -q "No pictures: gnuplot is not installed" log ||
   fail "The log does not say that gnuplot is missing: $(cat log)"
 files=$(sed -n 's/.*file="\([^"]*\)".*/\1/p' output/bar/load_path_contact.pvd)
 [ "$(echo "$files" | wc -l)" -eq 7 ] || fail "The record has $files"
