@@ -302,7 +302,8 @@ namespace Debond
   double
   Condensation::condition_estimate() const
   {
-    const dealii::types::blas_int n_kept = S.m();
+    const dealii::types::blas_int n_kept =
+      static_cast<dealii::types::blas_int>(S.m());
     if (n_kept == 0)
       return 1.;
     const double                         norm = S.l1_norm();

@@ -27,8 +27,9 @@ namespace Debond
     {
       if (free.empty())
         return;
-      dealii::LAPACKFullMatrix<double> M_free(free.size());
-      dealii::Vector<double>           x_free(free.size());
+      dealii::LAPACKFullMatrix<double> M_free(
+        static_cast<unsigned int>(free.size()));
+      dealii::Vector<double> x_free(static_cast<unsigned int>(free.size()));
       for (unsigned int l = 0; l < free.size(); ++l)
         {
           x_free(l) = r(free[l]);
@@ -76,7 +77,7 @@ namespace Debond
                  const Eigen::VectorXd                   &b,
                  ActiveSet                               &active)
   {
-    const unsigned int n = r.size();
+    const unsigned int n = static_cast<unsigned int>(r.size());
     BoundQPResult      result;
     ActiveSetRule      rule;
     while (result.steps < maximum_active_set_steps)

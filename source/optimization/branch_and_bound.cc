@@ -264,7 +264,7 @@ namespace Debond
               take_if_better(job);
               branch(job);
             }
-          result.nodes += batch.size();
+          result.nodes += static_cast<unsigned int>(batch.size());
           if (monitor && !monitor(progress()) && !open.empty())
             result.status = ProofStatus::interrupted;
           if (result.nodes >= next_record)

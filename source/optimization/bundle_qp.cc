@@ -98,10 +98,11 @@ namespace Debond
 
     // The dual objective rises from one working set to the next, but for ties:
     // as long as it does there is reason to go on.
-    const unsigned int patience = 20 + 2 * (m + mu.size());
-    const unsigned int limit    = solution.steps + 10 * patience;
-    double             best     = -std::numeric_limits<double>::infinity();
-    step_limit                  = solution.steps + patience;
+    const unsigned int patience =
+      20 + 2 * (m + static_cast<unsigned int>(mu.size()));
+    const unsigned int limit = solution.steps + 10 * patience;
+    double             best  = -std::numeric_limits<double>::infinity();
+    step_limit               = solution.steps + patience;
     while (solution.steps <= step_limit)
       {
         if (move_towards(maximum_on_working_set(), false))
@@ -187,7 +188,7 @@ namespace Debond
     const Eigen::MatrixXd components = load_matrix(archive);
     require_fit(products.rows() <= gram.rows() &&
                 components.rows() == bounded.rows());
-    m                        = products.rows();
+    m                        = static_cast<unsigned int>(products.rows());
     gram.topLeftCorner(m, m) = products;
     bounded.leftCols(m)      = components;
     archive >> cuts >> bound_active >> kappa >> factor_u >> factor_valid;

@@ -23,7 +23,7 @@ namespace Debond
   Eigen::VectorXd
   BundleQP::h_times(const Eigen::VectorXd &x) const
   {
-    const unsigned int n       = cuts.size();
+    const unsigned int n       = static_cast<unsigned int>(cuts.size());
     Eigen::VectorXd    in_free = Eigen::VectorXd::Zero(mu.size());
     for (unsigned int k = 0; k < n; ++k)
       in_free += x(k) * bounded.col(cuts[k]);
@@ -127,7 +127,7 @@ namespace Debond
   BundleQP::DualPoint
   BundleQP::maximum_on_working_set()
   {
-    const unsigned int n = cuts.size();
+    const unsigned int n = static_cast<unsigned int>(cuts.size());
 
     Eigen::VectorXd b_active =
       (b.array() * (1. - free_bounds.array())).matrix();
@@ -195,7 +195,7 @@ namespace Debond
   bool
   BundleQP::move_towards(const DualPoint &target, const bool direction_only)
   {
-    const unsigned int    n = cuts.size();
+    const unsigned int    n = static_cast<unsigned int>(cuts.size());
     const Eigen::VectorXd lambda_step =
       direction_only ? target.lambda : Eigen::VectorXd(target.lambda - lambda);
     const Eigen::VectorXd mu_step =
@@ -240,7 +240,8 @@ namespace Debond
   void
   BundleQP::drop_cut(const unsigned int position)
   {
-    const unsigned int behind        = cuts.size() - position - 1;
+    const unsigned int behind =
+      static_cast<unsigned int>(cuts.size()) - position - 1;
     lambda.segment(position, behind) = lambda.tail(behind).eval();
     lambda.conservativeResize(cuts.size() - 1);
     cuts.erase(cuts.begin() + position);

@@ -164,7 +164,7 @@ namespace Debond
   {
     const Eigen::MatrixXd loaded = load_matrix(archive);
     require_fit(loaded.rows() <= factor.rows());
-    n                          = loaded.rows();
+    n                          = static_cast<unsigned int>(loaded.rows());
     factor.topLeftCorner(n, n) = loaded;
   }
 } // namespace Debond

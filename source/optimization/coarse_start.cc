@@ -17,7 +17,7 @@ namespace Debond
     {
       const Eigen::VectorXd product =
         matrix * Eigen::Map<const Eigen::VectorXd>(v.begin(), v.size());
-      dealii::Vector<double> result(product.size());
+      dealii::Vector<double> result(static_cast<unsigned int>(product.size()));
       std::copy(product.begin(), product.end(), result.begin());
       return result;
     }
@@ -44,7 +44,7 @@ namespace Debond
       subgradient(const dealii::Vector<double> &s,
                   dealii::Vector<double>       &xi) const override
       {
-        dealii::Vector<double> fine(P.rows());
+        dealii::Vector<double> fine(static_cast<unsigned int>(P.rows()));
         phi.subgradient(times(P, s), fine);
         xi = times(P.transpose(), fine);
       }

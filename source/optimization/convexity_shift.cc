@@ -25,7 +25,7 @@ namespace Debond
   std::optional<Eigen::MatrixXd>
   safe_inverse(const Eigen::MatrixXd &A)
   {
-    const unsigned int n = A.rows();
+    const unsigned int n = static_cast<unsigned int>(A.rows());
     const double       shift =
       (n + 3.) * 2. * std::numeric_limits<double>::epsilon() * A.trace();
     dealii::LAPACKFullMatrix<double> matrix(n);
@@ -73,7 +73,7 @@ namespace Debond
               const std::vector<unsigned int> &which,
               Eigen::VectorXd                 &D)
   {
-    const unsigned int n = which.size();
+    const unsigned int n = static_cast<unsigned int>(which.size());
     Eigen::MatrixXd    P(n, n);
     for (unsigned int l = 0; l < n; ++l)
       for (unsigned int k = 0; k < n; ++k)

@@ -193,7 +193,7 @@ namespace Debond
   {
     // Sums of n terms lose at most n units of their absolute sum, so that sums
     // of products take more digits; the rest are single operations.
-    const unsigned int n     = x.size();
+    const unsigned int n     = static_cast<unsigned int>(x.size());
     long double        sum   = 0.;
     double             sums  = 0.; // absolute ones, times the largest |s_i|
     double             terms = 0.; // the same of single terms
@@ -208,7 +208,7 @@ namespace Debond
             size += std::abs(problem.A(j, i) * x(j));
           }
         const BondEnergy &f = problem.f[i];
-        r(i)                = product - problem.g(i);
+        r(i)                = static_cast<double>(product - problem.g(i));
         least(i) =
           std::min(f.least_bonded(r(i), problem.lower(i), problem.upper(i)),
                    f.least_broken(r(i), problem.lower(i), problem.upper(i)));
@@ -222,10 +222,11 @@ namespace Debond
                    largest +
                  2. * f.energy_if_broken() + std::abs(least(i));
       }
-    value = sum;
-    rounding =
-      (n + 16.) * std::numeric_limits<long double>::epsilon() * (sums + terms) +
-      8. * std::numeric_limits<double>::epsilon() * terms;
+    value = static_cast<double>(sum);
+    constexpr auto eps_of_sums =
+      static_cast<double>(std::numeric_limits<long double>::epsilon());
+    rounding = (n + 16.) * eps_of_sums * (sums + terms) +
+               8. * std::numeric_limits<double>::epsilon() * terms;
     value -= rounding;
   }
 

@@ -17,7 +17,7 @@ namespace Debond
     const VectorType  &model)
     : u(proximal_weight)
     , bounds(upper_bounds)
-    , qp(bundle_size, bounds.indices.size())
+    , qp(bundle_size, static_cast<unsigned int>(bounds.indices.size()))
     , subgradients(bundle_size, model)
   {}
 
@@ -118,7 +118,8 @@ namespace Debond
             factor(k + 1),
             subgradients[active[k + 1]]);
     if (active.size() % 2 == 1)
-      d.add(factor(active.size() - 1), subgradients[active.back()]);
+      d.add(factor(static_cast<unsigned int>(active.size()) - 1),
+            subgradients[active.back()]);
     for (unsigned int i = 0; i < bounds.indices.size(); ++i)
       d(bounds.indices[i]) = d_bounded(i);
   }

@@ -65,7 +65,8 @@ namespace Debond
           break;
 
         MajoriseMinimiseIteration iteration = {};
-        iteration.iteration                 = result.history.size() + 1;
+        iteration.iteration =
+          static_cast<unsigned int>(result.history.size()) + 1;
 
         // As long as the majorant changes it needs no exact minimum.
         double inner_tolerance = 0.5 * tolerance;

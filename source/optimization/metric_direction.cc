@@ -193,7 +193,7 @@ namespace Debond
     require_fit(subgradients.rows() == eta.rows() &&
                 subgradients.cols() <= eta.cols() &&
                 bounds.size() == active.size());
-    m               = subgradients.cols();
+    m               = static_cast<unsigned int>(subgradients.cols());
     eta.leftCols(m) = subgradients;
     active          = bounds;
   }

@@ -57,7 +57,7 @@ namespace Debond
                   ProofNode             &node)
         : S(S)
         , bonds(bonds)
-        , n(g.size())
+        , n(static_cast<unsigned int>(g.size()))
         , node(node)
       {
         problem.g = g;
