@@ -60,8 +60,8 @@ namespace Debond
       for (const unsigned int improvements : search.improvements)
         result.search_improvements += improvements;
       result.search_nodes = n_nodes;
-      if (search.complete)
-        result.kind = MinimumKind::best_known;
+      result.kind =
+        search.complete ? MinimumKind::best_known : MinimumKind::stationary;
     }
 
 
@@ -84,7 +84,8 @@ namespace Debond
 
 
     /// A search on a coarser contact mesh. The best of it is minimised on the
-    /// finer ones, and taken if it is lower there.
+    /// finer ones, and taken if it is lower there; then the edges of patches
+    /// move by a node.
     template <int dim>
     void
     search_on_coarse_mesh(const Parameters            &parameters,
@@ -142,6 +143,23 @@ namespace Debond
           s                          = point;
           result.search_improvements = 1;
         }
+
+      BondSearchParameters edges;
+      edges.starts        = false;
+      edges.flips         = false;
+      edges.splits        = false;
+      edges.maximum_shift = 1;
+      add_search(search_bonds(condensed.schur_complement(),
+                              condensed.load(),
+                              adhesion,
+                              law.bond_threshold(),
+                              neighbours(boundary),
+                              method,
+                              edges,
+                              s,
+                              may_go_on),
+                 result.search_nodes,
+                 result);
     }
 
 
