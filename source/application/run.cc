@@ -425,6 +425,11 @@ namespace Debond
     if (result.status != SolverStatus::success || !failure.empty())
       std::cerr << "debond: NOT CONVERGED (" << summary.status
                 << "): " << summary.message << std::endl;
+    else if (result.minimum.interrupted)
+      std::cerr
+        << "debond: the search or the proof was interrupted; the result "
+           "is what it had found"
+        << std::endl;
     if (!output_error.empty())
       {
         std::cerr << "debond: " << output_error << std::endl;
