@@ -91,7 +91,9 @@ namespace Debond
       return available_memory();
     dealii::Utilities::System::MemoryStats memory;
     dealii::Utilities::System::get_memory_stats(memory);
-    return std::max(0., parameters.memory_limit - 1024. * memory.VmRSS);
+    return std::max(0.,
+                    parameters.memory_limit -
+                      1024. * static_cast<double>(memory.VmRSS));
   }
 
 

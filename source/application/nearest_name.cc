@@ -46,7 +46,7 @@ namespace Debond
             distance[i][j] =
               std::min(distance[i][j], distance[i - 2][j - 2] + 1);
         }
-    return distance[s.size()][t.size()];
+    return static_cast<unsigned int>(distance[s.size()][t.size()]);
   }
 
 

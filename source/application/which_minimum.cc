@@ -77,7 +77,7 @@ namespace Debond
              entry;
              ++entry)
           if (entry.row() != j)
-            graph[j].insert(entry.row());
+            graph[j].insert(static_cast<unsigned int>(entry.row()));
       return graph;
     }
 

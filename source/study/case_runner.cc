@@ -150,9 +150,10 @@ namespace Debond
           text << "time left not known yet";
         else
           text << "about "
-               << in_minutes(left == 0 ? 0. :
-                                         seconds_spent / n_timed * left /
-                                           std::min<double>(jobs, left))
+               << in_minutes(left == 0 ?
+                               0. :
+                               seconds_spent / static_cast<double>(n_timed) *
+                                 left / std::min<double>(jobs, left))
                << " left";
         return text.str();
       }
