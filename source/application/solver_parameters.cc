@@ -141,6 +141,24 @@ namespace Debond
 
 
 
+    /// The moves of a full search by name.
+    BondSearchParameters
+    search_with(const std::vector<std::string> &moves)
+    {
+      const auto has = [&moves](const std::string &move) {
+        return std::find(moves.begin(), moves.end(), move) != moves.end();
+      };
+      BondSearchParameters search;
+      search.starts = has("starts");
+      search.flips  = has("flips");
+      search.splits = has("splits");
+      if (!has("shifts"))
+        search.maximum_shift = 0;
+      return search;
+    }
+
+
+
     void
     declare_which_minimum(ParameterTable &table)
     {
@@ -150,6 +168,12 @@ namespace Debond
         search_names[0],
         one_of(search_names),
         "Whether a lower minimum than the one found is searched for by changing which bonds are broken, with a direct linear solver: quick starts from rest and from all bonds broken and moves the edges of the broken patches by a node, full moves them by up to four nodes and breaks, closes and splits patches; automatic is quick if the method is automatic, on coarser contact nodes if there are more than 200, and none otherwise",
+        "none");
+      table.declare(
+        "Solver/Search moves",
+        "starts, shifts, flips, splits",
+        list_of({"starts", "shifts", "flips", "splits"}),
+        "The moves of Search = full: starts from rest and from all bonds broken; shifts of the edges of broken patches; flips, which break or close a patch; splits of patches",
         "none");
       table.declare(
         "Solver/Prove",
@@ -262,6 +286,7 @@ namespace Debond
                                   table.get("Solver/Search"));
     p.search          = static_cast<BondSearchChoice>(
       std::distance(search_names.begin(), search));
+    p.full_search         = search_with(table.get_list("Solver/Search moves"));
     p.prove               = table.get_bool("Solver/Prove");
     p.proof.tolerance     = table.get_double(proof_section + "Tolerance");
     p.proof.maximum_nodes = table.get_unsigned(proof_section + "Maximum nodes");

@@ -28,14 +28,13 @@ namespace Debond
     BondSearchParameters
     search_parameters(const Parameters &parameters)
     {
-      BondSearchParameters search;
-      if (parameters.search != BondSearchChoice::full)
-        {
-          search.maximum_shift = 1;
-          search.flips         = false;
-          search.splits        = false;
-        }
-      return search;
+      if (parameters.search == BondSearchChoice::full)
+        return parameters.full_search;
+      BondSearchParameters quick;
+      quick.maximum_shift = 1;
+      quick.flips         = false;
+      quick.splits        = false;
+      return quick;
     }
 
 

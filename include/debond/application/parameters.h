@@ -9,6 +9,7 @@
 #include <debond/contact/quadrature.h>
 #include <debond/elasticity/crossed_mesh.h>
 #include <debond/elasticity/material.h>
+#include <debond/optimization/bond_search.h>
 #include <debond/optimization/branch_and_bound.h>
 #include <debond/optimization/majorise_minimise.h>
 #include <debond/optimization/proximal_bundle.h>
@@ -115,8 +116,9 @@ namespace Debond
     double                     checkpoint_interval = 0.; ///< s, 0 for none
     bool                       restart = false;          ///< from a checkpoint
     BondSearchChoice           search  = BondSearchChoice::automatic;
-    bool                       prove   = false;
-    BranchAndBoundParameters   proof   = proof_defaults();
+    BondSearchParameters       full_search;
+    bool                       prove = false;
+    BranchAndBoundParameters   proof = proof_defaults();
     OutputParameters           output;
 
     /// Largest Verification::error() of a result that counts.
