@@ -20,7 +20,8 @@ namespace Debond
 
     /// On contact boundaries with more nodes a search takes more than a fifth
     /// of the solve, so that it has to be asked for: automatic searches on a
-    /// coarser one.
+    /// coarser one. So does a full search at first, whose moves by a few nodes
+    /// lead further there.
     constexpr unsigned int largest_automatic_search = 200;
 
 
@@ -84,7 +85,7 @@ namespace Debond
 
     /// A search on a coarser contact mesh. The best of it is minimised on the
     /// finer ones, and taken if it is lower there; then the edges of patches
-    /// move by a node.
+    /// move by a node, or come all moves of a full search.
     template <int dim>
     void
     search_on_coarse_mesh(const Parameters            &parameters,
@@ -143,6 +144,7 @@ namespace Debond
           result.search_improvements = 1;
         }
 
+      const bool           full = parameters.search == BondSearchChoice::full;
       BondSearchParameters edges;
       edges.starts        = false;
       edges.flips         = false;
@@ -154,10 +156,10 @@ namespace Debond
                               law.bond_threshold(),
                               neighbours(boundary),
                               method,
-                              edges,
+                              full ? search_parameters(parameters) : edges,
                               s,
                               may_go_on),
-                 result.search_nodes,
+                 full ? s.size() : result.search_nodes,
                  result);
     }
 
@@ -272,7 +274,7 @@ namespace Debond
 
     if (wants_search(parameters))
       {
-        if (parameters.search == BondSearchChoice::automatic &&
+        if (parameters.search != BondSearchChoice::quick &&
             s.size() > largest_automatic_search)
           search_on_coarse_mesh(parameters,
                                 boundary,
