@@ -167,7 +167,7 @@ namespace Debond
         "Solver/Search",
         search_names[0],
         one_of(search_names),
-        "Whether a lower minimum than the one found is searched for by changing which bonds are broken, with a direct linear solver: quick starts from rest and from all bonds broken and moves the edges of the broken patches by a node, full moves them by up to four nodes and breaks, closes and splits patches, first on coarser contact nodes if there are more than 200; automatic is quick if the method is automatic, only on coarser contact nodes if there are more than 200, and none otherwise",
+        "Whether a lower minimum than the one found is searched for by changing which bonds are broken, with a direct linear solver: quick starts from rest and from all bonds broken and moves the edges of the broken patches by a node, full moves them by up to four nodes and breaks, closes and splits patches; automatic is quick if the method is automatic, on coarser contact nodes if there are more than 200, and none otherwise",
         "none");
       table.declare(
         "Solver/Search moves",

@@ -20,8 +20,7 @@ namespace Debond
 
     /// On contact boundaries with more nodes a search takes more than a fifth
     /// of the solve, so that it has to be asked for: automatic searches on a
-    /// coarser one. So does a full search at first, whose moves by a few nodes
-    /// lead further there.
+    /// coarser one.
     constexpr unsigned int largest_automatic_search = 200;
 
 
@@ -85,7 +84,7 @@ namespace Debond
 
     /// A search on a coarser contact mesh. The best of it is minimised on the
     /// finer ones, and taken if it is lower there; then the edges of patches
-    /// move by a node, or come all moves of a full search.
+    /// move by a node.
     template <int dim>
     void
     search_on_coarse_mesh(const Parameters            &parameters,
@@ -144,7 +143,6 @@ namespace Debond
           result.search_improvements = 1;
         }
 
-      const bool           full = parameters.search == BondSearchChoice::full;
       BondSearchParameters edges;
       edges.starts        = false;
       edges.flips         = false;
@@ -156,10 +154,10 @@ namespace Debond
                               law.bond_threshold(),
                               neighbours(boundary),
                               method,
-                              full ? search_parameters(parameters) : edges,
+                              edges,
                               s,
                               may_go_on),
-                 full ? s.size() : result.search_nodes,
+                 result.search_nodes,
                  result);
     }
 
@@ -274,7 +272,7 @@ namespace Debond
 
     if (wants_search(parameters))
       {
-        if (parameters.search != BondSearchChoice::quick &&
+        if (parameters.search == BondSearchChoice::automatic &&
             s.size() > largest_automatic_search)
           search_on_coarse_mesh(parameters,
                                 boundary,
