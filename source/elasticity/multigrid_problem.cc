@@ -123,7 +123,9 @@ namespace Debond
 
     dealii::Vector<double> violation = f;
     violation -= internal;
-    largest_force  = std::max({f.l2_norm(), internal.l2_norm(), xi.l2_norm()});
+    // Vectors without entries have no norm in deal.II.
+    const double adhesive_force = xi.size() == 0 ? 0. : xi.l2_norm();
+    largest_force = std::max({f.l2_norm(), internal.l2_norm(), adhesive_force});
     state.n_active = 0;
     for (unsigned int i = 0; i < normals.size(); ++i)
       {
