@@ -284,25 +284,6 @@ namespace Debond
 
 
 
-  std::string
-  to_string(const BondMove move)
-  {
-    switch (move)
-      {
-        case BondMove::start:
-          return "start";
-        case BondMove::shift:
-          return "shift";
-        case BondMove::flip:
-          return "flip";
-        case BondMove::split:
-          return "split";
-      }
-    return "unknown";
-  }
-
-
-
   BondSearchResult
   search_bonds(const dealii::FullMatrix<double> &S,
                const dealii::Vector<double>     &g,

@@ -10,7 +10,6 @@
 #include <array>
 #include <functional>
 #include <set>
-#include <string>
 #include <vector>
 
 namespace Debond
@@ -47,11 +46,6 @@ namespace Debond
     flip,
     split
   };
-
-  std::string
-  to_string(const BondMove move);
-
-
 
   struct BondSearchResult
   {
