@@ -3,18 +3,7 @@
 # check_checkpoint.sh DEBOND: a run that goes on from a checkpoint ends with the
 # same bits as one that was never interrupted, and no run goes on from a
 # checkpoint that is not its own or not whole.
-set -euo pipefail
-export LC_ALL=C
-
-debond=$1
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory"
-
-fail() {
-  echo "$1" >&2
-  exit 1
-}
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
 cat >bar.prm <<'SCENE'
 subsection Mesh

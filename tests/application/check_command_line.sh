@@ -1,18 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # check_command_line.sh DEBOND: the options that do not solve anything.
-set -euo pipefail
-export LC_ALL=C
-
-debond=$1
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory"
-
-fail() {
-  echo "$1" >&2
-  exit 1
-}
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
 "$debond" --help >help
 for code in 0 1 2 3 4 5; do

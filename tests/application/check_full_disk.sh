@@ -2,18 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # check_full_disk.sh DEBOND: a file for which there is no space is named with the
 # reason, the exit code is 5, and nothing half written stays.
-set -euo pipefail
-export LC_ALL=C
-
-debond=$1
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory"
-
-fail() {
-  echo "$1" >&2
-  exit 1
-}
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
 cat >bar.prm <<'SCENE'
 subsection Mesh

@@ -2,18 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # check_load_path.sh DEBOND: which files a load path writes, and what becomes of
 # them if it is interrupted or a file cannot be written.
-set -euo pipefail
-export LC_ALL=C
-
-debond=$1
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory"
-
-fail() {
-  echo "$1" >&2
-  exit 1
-}
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
 cat >bar.prm <<'SCENE'
 subsection Mesh

@@ -2,18 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # check_output.sh DEBOND: which files a run writes, and what it does if it
 # cannot write one.
-set -euo pipefail
-export LC_ALL=C
-
-debond=$1
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory"
-
-fail() {
-  echo "$1" >&2
-  exit 1
-}
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
 cat >bar.prm <<'SCENE'
 subsection Mesh

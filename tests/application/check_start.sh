@@ -2,18 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # check_start.sh DEBOND: a run starts where another one ended, and not from what
 # does not fit its scene.
-set -euo pipefail
-export LC_ALL=C
-
-debond=$1
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory"
-
-fail() {
-  echo "$1" >&2
-  exit 1
-}
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
 cat >bar.prm <<'SCENE'
 subsection Mesh

@@ -18,7 +18,11 @@
 
 namespace Fuzz
 {
+#ifdef DEBUG
+  constexpr unsigned int seconds_for_a_case = 600; // a tenth of the speed
+#else
   constexpr unsigned int seconds_for_a_case = 60;
+#endif
 
   inline std::string current_case;
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # check_claims.sh DEBOND: what Section 6 of the paper says about the parameters
 # of its method, on a coarse mesh of its benchmark.
-. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
 bundle="Solver/Euclidean bundle"
 cat >bar.prm <<'SCENE'

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # check_failures.sh DEBOND: a case that fails says so in its row, the others
 # are not touched by it, and the study does not return 0.
-. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
 cat >bar.prm <<'SCENE'
 subsection Mesh

@@ -3,7 +3,7 @@
 # check_results.sh DEBOND: a study whose outcome is known: without contact and
 # bonds J goes with the square of the load and with 1/E. Its files, and what
 # is repeated when something changes.
-. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
 cat >bar.prm <<'SCENE'
 subsection Mesh

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# For the checks of studies: an empty directory, and how to look at tables.
+# For the checks of the program: an empty directory, and how to look at tables.
 set -euo pipefail
 export LC_ALL=C
 
