@@ -182,7 +182,9 @@ namespace Debond
       common.method[0].ordering = CHOLMOD_GIVEN;
       common.supernodal         = CHOLMOD_SUPERNODAL;
       common.final_ll           = 1;
-      L                         = cholmod_analyze_p(
+      // A postordering is free to mix the kept unknowns with the others.
+      common.postorder = 0;
+      L                = cholmod_analyze_p(
         matrix.get(), permutation.data(), nullptr, 0, &common);
       if (L == nullptr)
         throw std::bad_alloc();
