@@ -9,7 +9,7 @@ trap 'rm -rf "$directory"' EXIT
 cd "$directory"
 
 fail() {
-  echo "$1" >&2
+  echo "$*" >&2
   exit 1
 }
 

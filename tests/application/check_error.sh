@@ -4,20 +4,14 @@
 # in NAME.args if there is such a file, one a line, in an empty directory, and
 # compares what it prints on stderr and its exit code with NAME.expected. With
 # exit code 2 nothing may have been written.
-set -euo pipefail
-
-debond=$1
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 scene=$2
 expected=${scene%.prm}.expected
 arguments=()
 if [ -f "${scene%.prm}.args" ]; then
   mapfile -t arguments <"${scene%.prm}.args"
 fi
-
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cp "$scene" "$directory"
-cd "$directory"
+cp "$scene" .
 
 code=0
 "$debond" "$(basename "$scene")" "${arguments[@]}" \

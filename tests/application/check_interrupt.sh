@@ -2,13 +2,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # check_interrupt.sh DEBOND SCENE.prm: an interrupted solve keeps its last
 # iterate and says so, for both signals.
-set -euo pipefail
-
-debond=$1
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 scene=$2
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory"
 
 for signal in INT TERM; do
   # Without a stop tolerance that can be met the solve would take hours.

@@ -3,18 +3,8 @@
 # check_proof.sh DEBOND SCENE.prm: a proof that is interrupted, or out of
 # nodes, leaves a solution and a valid gap; threads change nothing; pictures
 # only with gnuplot.
-set -euo pipefail
-
-debond=$1
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 scene=$2
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory"
-
-fail() {
-  echo "$*"
-  exit 1
-}
 
 # value FILE KEY: of a number or word in a summary.
 value() {

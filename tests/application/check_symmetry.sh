@@ -3,19 +3,8 @@
 # check_symmetry.sh DEBOND BENCHMARK.prm: the same scene twice gives the same
 # files but for times and memory, with another number of threads it gives the
 # same J, and the mirrored scene gives the mirrored answer.
-set -euo pipefail
-export LC_ALL=C
-
-debond=$1
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 scene=$2
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory"
-
-fail() {
-  echo "$1" >&2
-  exit 1
-}
 
 functional() {
   sed -n 's/.*"functional": *\([^,]*\),*$/\1/p' "$1/summary.json"

@@ -16,21 +16,12 @@
 #include <iostream>
 #include <sstream>
 
+#include "../check.h"
+
 using namespace Debond;
 
 namespace
 {
-  // Whether to print the figures behind the verdicts; any argument does it.
-  bool print_figures = false;
-
-  const char *
-  verdict(const bool good)
-  {
-    return good ? "yes" : "NO";
-  }
-
-
-
   struct Run
   {
     SolveResult     result;
@@ -103,7 +94,7 @@ namespace
             std::max(error, std::abs(values[k] / (unit * expected[k]) - 1.));
         std::cout << method << " in " << name << ": same number of steps: "
                   << verdict(values.size() == expected.size())
-                  << ", same values to 1e-10: " << verdict(error < 1e-10)
+                  << ", same values to 1e-10: " << verdict(error, 1e-10)
                   << '\n';
         if (print_figures)
           std::cout << "  " << values.size() << " and " << expected.size()
@@ -133,8 +124,8 @@ namespace
                     << ", M = " << std::setw(5) << M << ", " << std::setw(17)
                     << method << ": " << to_string(r.result.status)
                     << ", at most 40 iterations: "
-                    << verdict(r.result.iterations <= 40) << ", law to 1e-9: "
-                    << verdict(r.verification.law_violation < 1e-9)
+                    << verdict(r.result.iterations, 40) << ", law to 1e-9: "
+                    << verdict(r.verification.law_violation, 1e-9)
                     << ", J = " << std::scientific << std::setprecision(10)
                     << r.result.functional << std::defaultfloat << '\n';
           if (print_figures)

@@ -17,21 +17,12 @@
 #include <iostream>
 #include <sstream>
 
+#include "../check.h"
+
 using namespace Debond;
 
 namespace
 {
-  // Whether to print the figures behind the verdicts; any argument does it.
-  bool print_figures = false;
-
-  const char *
-  verdict(const bool good)
-  {
-    return good ? "yes" : "NO";
-  }
-
-
-
   using Real    = long double;
   using VectorX = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 
@@ -278,11 +269,11 @@ namespace
     // What the products with A would give, for comparison.
     const double from_matrix = scene.functional().value(result.u);
     std::cout << name << ": " << to_string(result.status)
-              << ", J to 1e-12: " << verdict(error(result.functional) < 1e-12)
+              << ", J to 1e-12: " << verdict(error(result.functional), 1e-12)
               << ", J of u is the minimum to 1e-12: "
-              << verdict(error(minimum.value_at_u) < 1e-12)
+              << verdict(error(minimum.value_at_u), 1e-12)
               << ", effect of the load's error to 1e-12: "
-              << verdict(load_error < 1e-12) << '\n';
+              << verdict(load_error, 1e-12) << '\n';
     if (print_figures)
       std::cout << "  " << error(result.functional) << ", u "
                 << error(minimum.value_at_u) << ", condensed "

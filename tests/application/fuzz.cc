@@ -15,6 +15,7 @@
 #include <regex>
 #include <sstream>
 
+#include "../check.h"
 #include "mutator.h"
 
 using namespace Debond;
@@ -244,8 +245,7 @@ main(int argc, char *argv[])
   std::cout << "failures: " << counts.failed
             << "\nrejections that name nothing: " << counts.unnamed
             << "\nsome of each: "
-            << (counts.rejected > 0 && counts.solved > 0 ? "yes" : "NO")
-            << '\n';
+            << verdict(counts.rejected > 0 && counts.solved > 0) << '\n';
   if (argc > 1)
     std::cout << n_cases << " cases: " << counts.rejected << " rejected, "
               << counts.read << " read, " << counts.solved << " solved ("

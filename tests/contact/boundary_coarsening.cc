@@ -5,6 +5,8 @@
 
 #include <iostream>
 
+#include "../check.h"
+
 using namespace Debond;
 
 namespace
@@ -87,9 +89,9 @@ namespace
         const Eigen::VectorXd sums = P * Eigen::VectorXd::Ones(P.cols());
         one = one && (sums.array() - 1.).abs().maxCoeff() < 1e-14;
       }
-    std::cout << " nodes, spaces fit: " << (fits ? "yes" : "NO")
-              << ", weights positive: " << (positive ? "yes" : "NO")
-              << ", constants kept: " << (one ? "yes" : "NO") << '\n';
+    std::cout << " nodes, spaces fit: " << verdict(fits)
+              << ", weights positive: " << verdict(positive)
+              << ", constants kept: " << verdict(one) << '\n';
   }
 } // namespace
 
@@ -113,6 +115,6 @@ main()
   double                error = 0.;
   for (unsigned int i = 0; i < fine.size(); ++i)
     error = std::max(error, std::abs(fine(i) - i));
-  std::cout << "linear functions on a line kept: "
-            << (error < 1e-14 ? "yes" : "NO") << '\n';
+  std::cout << "linear functions on a line kept: " << verdict(error, 1e-14)
+            << '\n';
 }

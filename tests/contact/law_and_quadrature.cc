@@ -12,36 +12,14 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "../check.h"
+
 using namespace Debond;
 
 
 
 namespace
 {
-  void
-  check(const std::string &what, const bool holds)
-  {
-    std::cout << what << ": " << (holds ? "yes" : "NO") << std::endl;
-  }
-
-
-
-  void
-  print_error(const std::function<void()> &action)
-  {
-    try
-      {
-        action();
-        std::cout << "NO ERROR" << std::endl;
-      }
-    catch (const std::invalid_argument &error)
-      {
-        std::cout << error.what() << std::endl;
-      }
-  }
-
-
-
   bool
   equal(const Interval &interval,
         const double    lower,

@@ -17,34 +17,10 @@
 #include <set>
 #include <stdexcept>
 
+#include "../check.h"
+
 using namespace dealii;
 using namespace Debond;
-
-void
-check(const std::string &what, const double error, const double tolerance)
-{
-  std::cout << what << ", error below " << tolerance << ": ";
-  if (error <= tolerance)
-    std::cout << "yes" << std::endl;
-  else
-    std::cout << "NO, it is " << error << std::endl;
-}
-
-void
-print_exception(const std::function<void()> &action)
-{
-  try
-    {
-      action();
-      std::cout << "no exception" << std::endl;
-    }
-  catch (const std::invalid_argument &exception)
-    {
-      std::cout << exception.what() << std::endl;
-    }
-}
-
-
 
 template <int dim>
 void
@@ -295,26 +271,26 @@ main()
   test_ids<3>();
 
   std::cout << "Meshes that cannot be crossed" << std::endl;
-  print_exception([] {
+  print_error([] {
     Triangulation<2> coarse, crossed;
     GridGenerator::subdivided_hyper_cube(coarse, 2);
     coarse.begin_active()->set_refine_flag();
     coarse.execute_coarsening_and_refinement();
     crossed_subdivision(coarse, crossed);
   });
-  print_exception([] {
+  print_error([] {
     Triangulation<3> coarse, crossed, twice;
     GridGenerator::hyper_cube(coarse);
     crossed_subdivision(coarse, crossed);
     crossed_subdivision(crossed, twice);
   });
-  print_exception([] {
+  print_error([] {
     Triangulation<2> coarse, crossed;
     GridGenerator::hyper_cube(coarse);
     crossed_subdivision(coarse, crossed);
     crossed_subdivision(coarse, crossed);
   });
-  print_exception([] {
+  print_error([] {
     // A dart: the mean of the corners is outside.
     Triangulation<2> coarse, crossed;
     CellData<2>      dart;
@@ -324,11 +300,11 @@ main()
                                 SubCellData());
     crossed_subdivision(coarse, crossed);
   });
-  print_exception([] {
+  print_error([] {
     Triangulation<2> mesh;
     make_box<2>({{{1., 1., 1.}}, {{2, 0, 1}}, 0.}, mesh);
   });
-  print_exception([] {
+  print_error([] {
     Triangulation<3> mesh;
     make_box<3>({{{1., 1., -1.}}, {{2, 1, 1}}, 0.}, mesh);
   });
@@ -350,14 +326,14 @@ main()
           .norm(),
         1e-13);
 
-  print_exception([] { Material{-1., 0.3}.validate<2>(); });
-  print_exception([] { Material{1., 1.}.validate<2>(); });
-  print_exception([] {
+  print_error([] { Material{-1., 0.3}.validate<2>(); });
+  print_error([] { Material{1., 1.}.validate<2>(); });
+  print_error([] {
     Material{1., 0.5, Material::Hypothesis::plane_strain}.validate<2>();
   });
-  print_exception([] { Material{1., -1.}.validate<3>(); });
-  print_exception([] { Material{std::nan(""), 0.3}.validate<3>(); });
-  print_exception([] { Material{1., 0.7}.validate<2>(); });
+  print_error([] { Material{1., -1.}.validate<3>(); });
+  print_error([] { Material{std::nan(""), 0.3}.validate<3>(); });
+  print_error([] { Material{1., 0.7}.validate<2>(); });
 
   std::cout << "Patch tests" << std::endl;
   test_patch<2>(plane_stress, "plane stress");

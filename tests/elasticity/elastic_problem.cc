@@ -22,34 +22,12 @@
 #include <random>
 #include <stdexcept>
 
+#include "../check.h"
+
 using namespace dealii;
 using namespace Debond;
 
 constexpr types::boundary_id left = 0, right = 1, bottom = 2, top = 3;
-
-void
-check(const std::string &what, const double error, const double tolerance)
-{
-  std::cout << what << ", error below " << tolerance << ": ";
-  if (error <= tolerance)
-    std::cout << "yes" << std::endl;
-  else
-    std::cout << "NO, it is " << error << std::endl;
-}
-
-void
-print_exception(const std::function<void()> &action)
-{
-  try
-    {
-      action();
-      std::cout << "no exception" << std::endl;
-    }
-  catch (const std::invalid_argument &exception)
-    {
-      std::cout << exception.what() << std::endl;
-    }
-}
 
 /// A load from a lambda.
 template <int dim>
@@ -280,8 +258,8 @@ test_loads()
                      (0.69 * loaded - 0.345 * (0.016 - loaded)) -
                    1.),
           1e-10);
-    std::cout << "at most 1e7 evaluations: "
-              << (evaluations <= 10000000 ? "yes" : "NO") << std::endl;
+    std::cout << "at most 1e7 evaluations: " << verdict(evaluations, 1e7)
+              << std::endl;
 
     Loads<3> weight;
     weight.body_force = load<3>([](const Point<3> &p) {
@@ -321,7 +299,7 @@ test_algebra(const ElasticProblem<dim> &problem, const std::string &name)
     else
       error = std::max(error, std::abs(residual[i] - expected[i]));
   check("residual", error / residual.linfty_norm(), 1e-13);
-  std::cout << "reactions: " << (reaction > 0. ? "yes" : "NO") << std::endl;
+  std::cout << "reactions: " << verdict(reaction > 0.) << std::endl;
 
   // Internal forces are in balance, so the residual's resultant is the load's.
   const Vector<double> forces = problem.cartesian_forces(residual);
@@ -495,8 +473,8 @@ test_frames()
       }
     // (8 - 2) x 4 corners of the grid and 7 x 3 centres.
     std::cout << nodes.size()
-              << " contact nodes, exact normals: " << (exact ? "yes" : "NO")
-              << ", in order: " << (sorted ? "yes" : "NO") << std::endl;
+              << " contact nodes, exact normals: " << verdict(exact)
+              << ", in order: " << verdict(sorted) << std::endl;
   }
 }
 
@@ -547,26 +525,26 @@ test_errors()
   Triangulation<3> body;
   make_box<3>({{{0.4, 0.04, 0.04}}, {{10, 1, 1}}, 0.}, body);
 
-  print_exception([&] { ElasticProblem<2>(mesh, {{}, {}, true}); });
-  print_exception([&] { ElasticProblem<2>(mesh, {{}, {bottom}, true}); });
-  print_exception([&] { ElasticProblem<2>(mesh, {{}, {left}, true}); });
-  print_exception([&] { ElasticProblem<2>(mesh, {{}, {bottom}, false}); });
-  print_exception([&] { ElasticProblem<3>(body, {{}, {bottom}, true}); });
-  print_exception([&] { ElasticProblem<3>(body, {{}, {}, true}); });
-  print_exception([&] { ElasticProblem<2>(mesh, {{left}, {bottom}, false}); });
-  print_exception([&] {
+  print_error([&] { ElasticProblem<2>(mesh, {{}, {}, true}); });
+  print_error([&] { ElasticProblem<2>(mesh, {{}, {bottom}, true}); });
+  print_error([&] { ElasticProblem<2>(mesh, {{}, {left}, true}); });
+  print_error([&] { ElasticProblem<2>(mesh, {{}, {bottom}, false}); });
+  print_error([&] { ElasticProblem<3>(body, {{}, {bottom}, true}); });
+  print_error([&] { ElasticProblem<3>(body, {{}, {}, true}); });
+  print_error([&] { ElasticProblem<2>(mesh, {{left}, {bottom}, false}); });
+  print_error([&] {
     ElasticProblem<2>(mesh, {{left, bottom}, {bottom}, true});
   });
-  print_exception([&] { ElasticProblem<2>(mesh, {{left, 7}, {}, true}); });
-  print_exception([] {
+  print_error([&] { ElasticProblem<2>(mesh, {{left, 7}, {}, true}); });
+  print_error([] {
     Triangulation<2> quadrilaterals;
     GridGenerator::hyper_cube(quadrilaterals);
     ElasticProblem<2>(quadrilaterals, {{0}, {}, true});
   });
-  print_exception([] {
+  print_error([] {
     contact_frame<2>({Tensor<1, 2>({0., 1.}), Tensor<1, 2>({0., -1.})});
   });
-  print_exception([] {
+  print_error([] {
     contact_frame<2>({Tensor<1, 2>({0., 1.}),
                       Tensor<1, 2>({1., 0.}),
                       Tensor<1, 2>({-1., 0.})});
@@ -579,24 +557,24 @@ test_errors()
     loads.tractions[side] = load<2>(traction);
     problem.assemble(Material(), loads);
   };
-  print_exception([&] {
+  print_error([&] {
     assemble(right, [](const Point<2> &) {
       return Tensor<1, 2>({0., std::numeric_limits<double>::infinity()});
     });
   });
-  print_exception([&] {
+  print_error([&] {
     assemble(top, [](const Point<2> &) -> Tensor<1, 2> {
       throw std::runtime_error("no value");
     });
   });
-  print_exception(
+  print_error(
     [&] { assemble(9, [](const Point<2> &) { return Tensor<1, 2>(); }); });
-  print_exception([&] {
+  print_error([&] {
     Loads<2> loads;
     loads.body_force = std::make_shared<Functions::ZeroFunction<2>>(3);
     problem.assemble(Material(), loads);
   });
-  print_exception([&] { problem.assemble(Material{69., 1.2}, {}); });
+  print_error([&] { problem.assemble(Material{69., 1.2}, {}); });
 }
 
 

@@ -21,26 +21,12 @@
 #include <iostream>
 #include <memory>
 
+#include "../check.h"
+
 using namespace Debond;
 
 namespace
 {
-  // Whether to print the figures behind the verdicts; any argument does it.
-  bool print_figures = false;
-
-
-
-  void
-  check(const std::string &what, const double error, const double tolerance)
-  {
-    std::cout << "  " << what << " to " << tolerance << ": "
-              << (error <= tolerance ? "yes" : "NO") << '\n';
-    if (print_figures)
-      std::cout << "    " << error << '\n';
-  }
-
-
-
   template <int dim>
   struct Body
   {
@@ -105,10 +91,10 @@ namespace
     const dealii::Vector<double> v =
       interpolate_displacement(coarse_box, *coarse.problem, u, *fine.problem);
     const double energy = coarse.problem->matrix().matrix_norm_square(u);
-    check("same energy",
+    check("  difference of the energies",
           std::abs(fine.problem->matrix().matrix_norm_square(v) / energy - 1.),
           1e-12);
-    check("same work",
+    check("  difference of the work",
           std::abs(fine.problem->load() * v - coarse.problem->load() * u) /
             (coarse.problem->load().l2_norm() * u.l2_norm()),
           1e-11);
@@ -117,7 +103,7 @@ namespace
       interpolate_displacement(fine_box, *fine.problem, v, *coarse.problem);
     dealii::Vector<double> difference = back;
     difference -= u;
-    check("values at the vertices of both",
+    check("  difference at the vertices of both",
           difference.linfty_norm() / u.linfty_norm(),
           1e-12);
   }
@@ -147,7 +133,9 @@ namespace
         rows_with_force =
           std::max(rows_with_force, 1. * count / product.size());
       }
-    check("part of the rows where a mode meets a force", rows_with_force, 0.5);
+    check("  part of the rows where a mode meets a force",
+          rows_with_force,
+          0.5);
 
     const Multigrid        multigrid(*body.problem);
     dealii::Vector<double> u(body.problem->n_dofs());
@@ -155,9 +143,8 @@ namespace
     dealii::SolverCG<dealii::Vector<double>>(control).solve(
       A, u, body.problem->load(), multigrid);
     std::cout << "  conjugate gradients within 60 iterations: "
-              << (control.last_step() <= 60 ? "yes" : "NO") << '\n';
-    if (print_figures)
-      std::cout << "    " << control.last_step() << '\n';
+              << verdict(control.last_step(), 60) << '\n';
+
 
     // The same minimum as the condensed problem's, from its neighbourhood.
     ContactLawParameters law_parameters;
@@ -194,17 +181,21 @@ namespace
         std::cout << "  " << rule << ": "
                   << to_string(exact.status) + ", " + to_string(iterated.status)
                   << '\n';
-        check("functional", std::abs(iterated.functional / J - 1.), 1e-11);
+        check("  difference of the functionals",
+              std::abs(iterated.functional / J - 1.),
+              1e-11);
         dealii::Vector<double> difference = condensed.expand(s);
         const double           size       = difference.linfty_norm();
         difference -= u;
-        check("displacement", difference.linfty_norm() / size, 1e-8);
+        check("  difference of the displacements",
+              difference.linfty_norm() / size,
+              1e-8);
         double rise = 0.;
         for (unsigned int k = 1; k < iterated.history.size(); ++k)
           rise = std::max(rise,
                           iterated.history[k].functional -
                             iterated.history[k - 1].functional);
-        check("no rise, relative", rise / std::abs(J), 1e-12);
+        check("  relative rise", rise / std::abs(J), 1e-12);
 
         // From rest, ended in the middle of a linear solve.
         bool ended = true, kept = true;
@@ -228,9 +219,9 @@ namespace
             kept = kept && u == last;
           }
         std::cout << "  an interruption ends it within a linear iteration: "
-                  << (ended ? "yes" : "NO")
-                  << ", with what the last iteration left: "
-                  << (kept ? "yes" : "NO") << '\n';
+                  << verdict(ended)
+                  << ", with what the last iteration left: " << verdict(kept)
+                  << '\n';
       }
   }
 } // namespace

@@ -18,21 +18,12 @@
 #include <numeric>
 #include <random>
 
+#include "../check.h"
+
 using namespace Debond;
 
 namespace
 {
-  // Whether to print the figures behind the verdicts; any argument does it.
-  bool print_figures = false;
-
-  const char *
-  verdict(const bool good)
-  {
-    return good ? "yes" : "NO";
-  }
-
-
-
   template <int dim>
   void
   shuffle(const dealii::Triangulation<dim> &mesh,
@@ -164,8 +155,8 @@ namespace
         return s < -law.bond_threshold;
       });
     std::cout << dim << "D, " << n_broken << " of " << expected.s.size()
-              << " bonds broken: J to 1e-12: " << verdict(value_error < 1e-12)
-              << ", u_nu to 1e-9 M: " << verdict(distance < 1e-9) << '\n';
+              << " bonds broken: J to 1e-12: " << verdict(value_error, 1e-12)
+              << ", u_nu to 1e-9 M: " << verdict(distance, 1e-9) << '\n';
     if (print_figures)
       std::cout << "  " << value_error << ' ' << distance << '\n';
   }

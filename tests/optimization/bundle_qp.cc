@@ -12,15 +12,12 @@
 #include <random>
 #include <string>
 
+#include "../check.h"
+
 using namespace Debond;
 
 namespace
 {
-  // Whether to print the figures behind the verdicts; any argument does it.
-  bool print_figures = false;
-
-
-
   struct Shape
   {
     unsigned int n;             // components of d
@@ -220,15 +217,14 @@ namespace
   void
   print(const std::string &name, const Record &record, const double tolerance)
   {
-    const auto verdict = [](const bool good) { return good ? "yes" : "NO"; };
     std::cout << name << "\n  all optimal: " << verdict(record.not_optimal == 0)
               << "\n  residuals below 1e-10: "
-              << verdict(record.residual < 1e-10) << "\n  known solution to "
-              << tolerance << ": " << verdict(record.error < tolerance)
+              << verdict(record.residual, 1e-10) << "\n  known solution to "
+              << tolerance << ": " << verdict(record.error, tolerance)
               << "\n  warm start takes no step: "
               << verdict(record.warm_steps == 0)
               << "\n  same for the reversed order to " << tolerance << ": "
-              << verdict(record.order_change < tolerance) << '\n';
+              << verdict(record.order_change, tolerance) << '\n';
     if (print_figures)
       std::cout << name << ": residual " << record.residual << ", error "
                 << record.error << ", steps per constraint "
@@ -302,12 +298,12 @@ main(int argc, char *[])
 
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::cout << "finite data are optimal: "
-            << (is_told_from_optimal(2., 1., 0.1, 0.1) ? "NO" : "yes")
+            << verdict(!is_told_from_optimal(2., 1., 0.1, 0.1))
             << ", NaN in products, components, beta, b is not:";
   for (const bool told : {is_told_from_optimal(nan, 1., 0.1, 0.1),
                           is_told_from_optimal(2., nan, 0.1, 0.1),
                           is_told_from_optimal(2., 1., nan, 0.1),
                           is_told_from_optimal(2., 1., 0.1, nan)})
-    std::cout << (told ? " yes" : " NO");
+    std::cout << ' ' << verdict(told);
   std::cout << '\n';
 }

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "../check.h"
 #include "bundle_qp_problems.h"
 
 using namespace Debond;
@@ -309,17 +310,16 @@ main(int argc, char *argv[])
       for (unsigned int k = 0; k < n_problems * c.share / 1000; ++k)
         check(c.make(generator), generator, record);
 
-      const auto verdict = [](const bool good) { return good ? "yes" : "NO"; };
       std::cout << record.name
                 << "\n  all optimal: " << verdict(record.not_optimal == 0)
                 << "\n  residuals below " << residual_tolerance << ": "
-                << verdict(record.residual < residual_tolerance)
+                << verdict(record.residual, residual_tolerance)
                 << "\n  known solution to " << record.tolerance << ": "
-                << verdict(record.error < record.tolerance)
+                << verdict(record.error, record.tolerance)
                 << "\n  warm start takes no step: "
                 << verdict(record.moved == 0) << "\n  the next takes none: "
                 << verdict(record.moved_again == 0) << "\n  the same permuted: "
-                << verdict(record.permutation < record.tolerance) << '\n';
+                << verdict(record.permutation, record.tolerance) << '\n';
       if (argc > 1)
         std::cout << std::setprecision(2) << "  " << record.problems
                   << " problems, " << record.not_optimal << " not optimal, "

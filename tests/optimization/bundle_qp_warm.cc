@@ -10,6 +10,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "../check.h"
 #include "bundle_qp_problems.h"
 
 using namespace Debond;
@@ -129,10 +130,9 @@ main(int argc, char *[])
   for (unsigned int k = 0; k < 200; ++k)
     test_sequence(generator, record);
 
-  const auto verdict = [](const bool good) { return good ? "yes" : "NO"; };
   std::cout << "all optimal: " << verdict(record.failed == 0)
             << "\nas from a cold start to 1e-10: "
-            << verdict(record.difference < 1e-10)
+            << verdict(record.difference, 1e-10)
             << "\nat most half of the steps: "
             << verdict(2 * record.warm_steps < record.cold_steps)
             << "\nthe same bits from a saved state: "

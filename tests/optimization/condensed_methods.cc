@@ -19,16 +19,13 @@
 #include <iostream>
 #include <random>
 
+#include "../check.h"
+
 using namespace Debond;
 
 namespace
 {
   using Vector = dealii::Vector<double>;
-
-  // Whether to print the figures behind the verdicts; any argument does it.
-  bool print_figures = false;
-
-
 
   /// sum_i w_i j_1(s_i) with the paper's j_1.
   class Bonds : public PiecewiseQuadratic
@@ -206,14 +203,6 @@ namespace
 
 
 
-  const char *
-  verdict(const bool good)
-  {
-    return good ? "yes" : "NO";
-  }
-
-
-
   void
   test_bound_qp(std::mt19937_64 &engine)
   {
@@ -265,7 +254,7 @@ namespace
                      (1. + std::abs(best)));
       }
     std::cout << "bound QP on 500 problems: converged: " << verdict(converged)
-              << ", enumerated minimum to 1e-10: " << verdict(worst < 1e-10)
+              << ", enumerated minimum to 1e-10: " << verdict(worst, 1e-10)
               << '\n';
     if (print_figures)
       std::cout << "  worst " << worst << ", most steps " << most_steps << '\n';
@@ -331,11 +320,11 @@ namespace
       << "majorise-minimise on " << n_problems
       << " problems: converged: " << verdict(mm_failures == 0)
       << ", an enumerated stationary value to 1e-12: "
-      << verdict(worst_mm < 1e-12) << ", never rising: " << verdict(rises == 0)
+      << verdict(worst_mm, 1e-12) << ", never rising: " << verdict(rises == 0)
       << "\nenergy bundle on the same: converged: "
       << verdict(bundle_failures == 0)
       << ", an enumerated stationary value to 1e-10: "
-      << verdict(worst_bundle < 1e-10)
+      << verdict(worst_bundle, 1e-10)
       << "\nmore than a quarter of these problems have several stationary values: "
       << verdict(several > n_problems / 4) << '\n';
     if (print_figures)

@@ -21,22 +21,13 @@
 #include <limits>
 #include <random>
 
+#include "../check.h"
+
 using namespace Debond;
 
 namespace
 {
   using Vector = dealii::Vector<double>;
-
-  // Whether to print the figures behind the verdicts; any argument does it.
-  bool print_figures = false;
-
-  const char *
-  verdict(const bool good)
-  {
-    return good ? "yes" : "NO";
-  }
-
-
 
   struct Problem
   {
@@ -356,9 +347,9 @@ namespace
           std::max(worst_least,
                    std::max(found - least, least - found - 20. * h * h));
       }
-    std::cout << "envelope: the least of all chords: " << verdict(worst < 1e-13)
-              << ", least values of r s + f(s): "
-              << verdict(worst_least < 1e-13) << '\n';
+    std::cout << "envelope: the least of all chords: " << verdict(worst, 1e-13)
+              << ", least values of r s + f(s): " << verdict(worst_least, 1e-13)
+              << '\n';
     if (print_figures)
       std::cout << "  " << worst << ' ' << worst_least << '\n';
   }

@@ -17,15 +17,12 @@
 #include <string>
 #include <vector>
 
+#include "../check.h"
+
 using namespace Debond;
 
 namespace
 {
-  // Whether to print the figures behind the verdicts; any argument does it.
-  bool print_figures = false;
-
-
-
   using Values = std::vector<double>;
 
   /// f(x), and one subgradient in the second argument.
@@ -316,16 +313,15 @@ namespace
       monotone = monotone && result.history[k].functional <=
                                result.history[k - 1].functional;
 
-    const double error   = result.functional - test.minimum;
-    const auto   verdict = [](const bool good) { return good ? "yes" : "NO"; };
+    const double error = result.functional - test.minimum;
     std::cout << test.name << ": " << to_string(result.status)
               << ", minimum to 1e-8: "
-              << verdict(std::abs(error) <
-                         1e-8 * std::max(1., std::abs(test.minimum)))
+              << verdict(std::abs(error) / std::max(1., std::abs(test.minimum)),
+                         1e-8)
               << ", monotone: " << verdict(monotone)
               << ", feasible: " << verdict(inside) << ", at most "
               << test.most_iterations << " iterations: "
-              << verdict(result.iterations() <= test.most_iterations) << '\n';
+              << verdict(result.iterations(), test.most_iterations) << '\n';
     if (print_figures)
       std::cout << test.name << ": " << result.iterations() << " iterations ("
                 << result.long_steps << " long, " << result.short_steps
@@ -386,8 +382,8 @@ main(int argc, char *[])
     ProximalBundle<dealii::Vector<double>>(parameters)
       .minimize(TestObjective<dealii::Vector<double>>(cb2), {}, x);
   std::cout << "stopped early: " << to_string(short_run.status)
-            << ", with a message: "
-            << (short_run.message.empty() ? "NO" : "yes") << '\n';
+            << ", with a message: " << verdict(!short_run.message.empty())
+            << '\n';
 
   // A function that is not finite is named.
   const Function broken = [](const Values &v, Values &g) {

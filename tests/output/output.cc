@@ -22,36 +22,14 @@
 #include <limits>
 #include <sstream>
 
+#include "../check.h"
+
 using namespace Debond;
 
 
 
 namespace
 {
-  void
-  check(const std::string &what, const bool holds)
-  {
-    std::cout << what << ": " << (holds ? "yes" : "NO") << std::endl;
-  }
-
-
-
-  void
-  print_error(const std::function<void()> &action)
-  {
-    try
-      {
-        action();
-        std::cout << "NO ERROR" << std::endl;
-      }
-    catch (const std::exception &error)
-      {
-        std::cout << error.what() << std::endl;
-      }
-  }
-
-
-
   std::string
   contents(const std::string &file_name)
   {

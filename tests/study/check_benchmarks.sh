@@ -2,19 +2,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # check_benchmarks.sh DEBOND PRM_DIRECTORY: the quick benchmarks, what they
 # write, and the figures that are the same on all machines.
-set -euo pipefail
-export LC_ALL=C OMP_THREAD_LIMIT=1
-
-debond=$1
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 prm=$2
-directory=$(mktemp -d)
-trap 'rm -rf "$directory"' EXIT
-cd "$directory"
-
-fail() {
-  echo "$1" >&2
-  exit 1
-}
+export OMP_THREAD_LIMIT=1
 
 "$debond" --benchmarks "$prm/benchmarks/quick.json" >log || fail "$(cat log)"
 cd output/benchmarks-quick

@@ -12,6 +12,7 @@
 #include <regex>
 
 #include "../application/mutator.h"
+#include "../check.h"
 
 using namespace Debond;
 using namespace Fuzz;
@@ -126,7 +127,6 @@ namespace
   fuzz(const std::string              &what,
        const std::vector<std::string> &texts,
        const unsigned int              n_cases,
-       const bool                      print_figures,
        const std::function<void()>    &read)
   {
     Mutator mutator(hostile_values);
@@ -141,8 +141,7 @@ namespace
     std::cout << what << ": failures: " << counts.failed
               << ", rejections that name nothing: " << counts.unnamed
               << ", some of each: "
-              << (counts.rejected > 0 && counts.read > 0 ? "yes" : "NO")
-              << '\n';
+              << verdict(counts.rejected > 0 && counts.read > 0) << '\n';
     if (print_figures)
       std::cout << n_cases << " cases: " << counts.rejected << " rejected, "
                 << counts.read << " read\n";
@@ -155,31 +154,26 @@ int
 main(int argc, char *argv[])
 {
   const unsigned int n_cases = argc > 1 ? std::stoul(argv[1]) : 300;
+  print_figures              = argc > 1;
   catch_signals();
 
   const std::filesystem::path prm(SOURCE_DIR "/../../prm");
-  fuzz(
-    "studies", read_files(prm / "studies", ".prm"), n_cases, argc > 1, [&]() {
-      const std::string file = (prm / "studies" / "fuzz.prm").string();
-      ParameterTable    table;
-      declare_study_parameters(table);
-      std::istringstream input(current_case);
-      table.read(input, file);
-      make_cases(to_study_parameters(file, table));
-    });
-  fuzz("benchmarks",
-       read_files(prm / "benchmarks", ".json"),
-       n_cases,
-       argc > 1,
-       [&]() {
-         std::istringstream   input(current_case);
-         const BenchmarkSuite suite =
-           read_benchmark_suite(input,
-                                (prm / "benchmarks" / "fuzz.json").string());
-         suite.start_up.parameters();
-         for (const auto &contact : suite.contact_solves)
-           contact.scene.parameters();
-         for (const auto &mesh : suite.meshes)
-           mesh.scene.parameters();
-       });
+  fuzz("studies", read_files(prm / "studies", ".prm"), n_cases, [&]() {
+    const std::string file = (prm / "studies" / "fuzz.prm").string();
+    ParameterTable    table;
+    declare_study_parameters(table);
+    std::istringstream input(current_case);
+    table.read(input, file);
+    make_cases(to_study_parameters(file, table));
+  });
+  fuzz("benchmarks", read_files(prm / "benchmarks", ".json"), n_cases, [&]() {
+    std::istringstream   input(current_case);
+    const BenchmarkSuite suite =
+      read_benchmark_suite(input, (prm / "benchmarks" / "fuzz.json").string());
+    suite.start_up.parameters();
+    for (const auto &contact : suite.contact_solves)
+      contact.scene.parameters();
+    for (const auto &mesh : suite.meshes)
+      mesh.scene.parameters();
+  });
 }

@@ -10,18 +10,12 @@
 #include <iostream>
 #include <memory>
 
+#include "../check.h"
+
 using namespace Debond;
 
 namespace
 {
-  const char *
-  verdict(const bool good)
-  {
-    return good ? "yes" : "NO";
-  }
-
-
-
   /// |A u - f| / |f|.
   template <int dim>
   double
@@ -60,17 +54,14 @@ namespace
       solve_by_cholesky(problem.matrix(), problem.load());
     dealii::Vector<double> difference = direct.u;
     difference -= iterative.u;
-    const bool few = iterative.iterations <= most_iterations;
     std::cout << "  residuals below 5e-10: "
-              << verdict(residual(problem, direct.u) < 5e-10) << ", "
-              << verdict(residual(problem, iterative.u) < 5e-10)
+              << verdict(residual(problem, direct.u), 5e-10) << ", "
+              << verdict(residual(problem, iterative.u), 5e-10)
               << "; solutions agree to 1e-9: "
-              << verdict(difference.l2_norm() < 1e-9 * direct.u.l2_norm())
+              << verdict(difference.l2_norm() / direct.u.l2_norm(), 1e-9)
               << "; at most " << most_iterations
-              << " CG steps: " << verdict(few);
-    if (!few)
-      std::cout << ", " << iterative.iterations;
-    std::cout << std::endl;
+              << " CG steps: " << verdict(iterative.iterations, most_iterations)
+              << std::endl;
   }
 } // namespace
 

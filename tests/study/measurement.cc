@@ -15,19 +15,13 @@
 #include <stdexcept>
 #include <vector>
 
+#include "../check.h"
+
 using namespace Debond;
 
 namespace
 {
   constexpr double mebibyte = 1024. * 1024.;
-
-
-
-  const char *
-  verdict(const bool good)
-  {
-    return good ? "yes" : "NO";
-  }
 
 
 

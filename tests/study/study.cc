@@ -15,20 +15,14 @@
 #include <iostream>
 #include <sstream>
 
+#include "../check.h"
+
 using namespace Debond;
 
 
 
 namespace
 {
-  void
-  check(const std::string &what, const bool holds)
-  {
-    std::cout << what << ": " << (holds ? "yes" : "NO") << std::endl;
-  }
-
-
-
   bool
   is_near(const double a, const double b)
   {

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the tests print: what holds without its figure, which rounding would
+// change, and what does not hold by how much.
+#ifndef debond_tests_check_h
+#define debond_tests_check_h
+
+#include <exception>
+#include <functional>
+#include <iostream>
+#include <sstream>
+#include <string>
+
+/// Whether to print the figures behind the verdicts; the tests set it if they
+/// get any argument.
+inline bool print_figures = false;
+
+
+
+inline const char *
+verdict(const bool good)
+{
+  return good ? "yes" : "NO";
+}
+
+
+
+/// Whether the value is at most the bound; if not, or if it is not a number,
+/// the value and the bound are said.
+inline std::string
+verdict(const double value, const double bound)
+{
+  std::ostringstream text;
+  text << verdict(value <= bound);
+  if (!(value <= bound))
+    text << ", it is " << value << ", at most " << bound << " is allowed";
+  else if (print_figures)
+    text << " (" << value << ')';
+  return text.str();
+}
+
+
+
+/// Prints a line with the name and the verdict.
+inline void
+check(const std::string &name, const bool holds)
+{
+  std::cout << name << ": " << verdict(holds) << std::endl;
+}
+
+
+
+/// Prints a line with the name, the bound and the verdict.
+inline void
+check(const std::string &name, const double value, const double bound)
+{
+  std::cout << name << ", at most " << bound << ": " << verdict(value, bound)
+            << std::endl;
+}
+
+
+
+/// Prints the message of the exception that the action throws.
+inline void
+print_error(const std::function<void()> &action)
+{
+  try
+    {
+      action();
+      std::cout << "NO ERROR" << std::endl;
+    }
+  catch (const std::exception &error)
+    {
+      std::cout << error.what() << std::endl;
+    }
+}
+
+#endif
