@@ -1,0 +1,752 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A check of results that shares nothing with the solver: the crossed mesh of
+// an unturned box, assembly, condensation, the law and descents of its own, in
+// long double. Unknowns are numbered vertex by vertex, the components along the
+// edges of the box.
+#ifndef debond_tests_application_own_check_h
+#define debond_tests_application_own_check_h
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace OwnCheck
+{
+  using Real    = long double;
+  using VectorX = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+  using MatrixX = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+
+
+
+  /// A force density, affine on each cell: at a point of the cell with the
+  /// given centre.
+  template <int dim>
+  using Density =
+    std::function<std::array<Real, dim>(const std::array<Real, dim> &point,
+                                        const std::array<Real, dim> &centre)>;
+
+
+
+  template <int dim>
+  struct Scene
+  {
+    std::array<double, dim>       lengths;
+    std::array<unsigned int, dim> cells;
+    double                        lambda, mu; ///< of the plane problem in 2D
+
+    std::set<std::string> clamped, contact;
+    bool                  tangential_fixed;
+
+    std::map<std::string, Density<dim>> tractions;
+    Density<dim>                        body_force; ///< empty if there is none
+
+    double      a, M; ///< a = 0 without adhesion
+    std::string quadrature;
+  };
+
+
+
+  /// The axis and the sense of the outward normal of a side.
+  inline std::pair<unsigned int, int>
+  direction(const std::string &side)
+  {
+    static const std::map<std::string, std::pair<unsigned int, int>>
+      directions = {{"left", {0, -1}},
+                    {"right", {0, 1}},
+                    {"bottom", {1, -1}},
+                    {"top", {1, 1}},
+                    {"back", {2, -1}},
+                    {"front", {2, 1}}};
+    return directions.at(side);
+  }
+
+
+
+  template <int dim>
+  class Body
+  {
+  public:
+    using Point = std::array<Real, dim>;
+    using Key   = std::array<int, dim>; ///< twice the indices of the grid
+
+    explicit Body(const Scene<dim> &scene)
+      : scene(scene)
+    {
+      make_mesh();
+      make_unknowns();
+      assemble();
+      condense();
+    }
+
+    unsigned int
+    n_contact() const
+    {
+      return contact_dofs.size();
+    }
+
+    unsigned int
+    n_dofs() const
+    {
+      return dim * points.size();
+    }
+
+    /// The vertex at a point of the box.
+    unsigned int
+    vertex(const std::array<double, dim> &point) const
+    {
+      Key key;
+      for (unsigned int d = 0; d < dim; ++d)
+        key[d] = static_cast<int>(
+          std::lround(2. * scene.cells[d] * point[d] / scene.lengths[d]));
+      return vertices.at(key);
+    }
+
+    /// A u - f.
+    VectorX
+    residual(const VectorX &u) const
+    {
+      return A * u - f;
+    }
+
+    VectorX
+    normal_displacements(const VectorX &u) const
+    {
+      VectorX s(n_contact());
+      for (unsigned int i = 0; i < n_contact(); ++i)
+        s(i) = sense[i] * u(contact_dofs[i]);
+      return s;
+    }
+
+    Real
+    elastic_part(const VectorX &u) const
+    {
+      Real energy = 0;
+      for (const auto &cell : simplices)
+        {
+          Real gradient[dim][dim] = {};
+          for (unsigned int v = 0; v <= dim; ++v)
+            for (unsigned int k = 0; k < dim; ++k)
+              for (unsigned int d = 0; d < dim; ++d)
+                gradient[k][d] +=
+                  u(dim * cell.vertices[v] + k) * cell.gradients[v][d];
+          Real trace = 0, square = 0;
+          for (unsigned int k = 0; k < dim; ++k)
+            {
+              trace += gradient[k][k];
+              for (unsigned int d = 0; d < dim; ++d)
+                {
+                  const Real strain = (gradient[k][d] + gradient[d][k]) / 2;
+                  square += strain * strain;
+                }
+            }
+          energy += cell.volume *
+                    (scene.lambda / 2 * trace * trace + scene.mu * square);
+        }
+      return energy;
+    }
+
+    Real
+    functional(const VectorX &u) const
+    {
+      return elastic_part(u) - f.dot(u) + adhesion(normal_displacements(u));
+    }
+
+    /// What the terms of J are made of, for tolerances.
+    Real
+    size_of_terms(const VectorX &u) const
+    {
+      return elastic_part(u) + std::abs(f.dot(u)) +
+             adhesion(normal_displacements(u));
+    }
+
+    /// The integral of j_1.
+    Real
+    adhesion(const VectorX &s) const
+    {
+      Real energy = 0;
+      integrate(s,
+                [&](const Face &,
+                    const Real weight,
+                    const Real trace,
+                    const std::array<Real, dim> &) {
+                  energy += weight * scene.a / 2 *
+                            (trace > -scene.M ? trace * trace :
+                                                Real(scene.M) * scene.M);
+                });
+      return energy;
+    }
+
+    /// The matrix of the bonds that hold at s: j_1' is its product with s.
+    MatrixX
+    bonds(const VectorX &s) const
+    {
+      MatrixX B = MatrixX::Zero(n_contact(), n_contact());
+      integrate(s,
+                [&](const Face                  &face,
+                    const Real                   weight,
+                    const Real                   trace,
+                    const std::array<Real, dim> &phi) {
+                  if (trace > -scene.M)
+                    for (unsigned int v = 0; v < dim; ++v)
+                      for (unsigned int w = 0; w < dim; ++w)
+                        if (face.contact[v] >= 0 && face.contact[w] >= 0)
+                          B(face.contact[v], face.contact[w]) +=
+                            weight * scene.a * phi[v] * phi[w];
+                });
+      return B;
+    }
+
+    /// The largest measure of a contact node.
+    Real
+    largest_measure() const
+    {
+      VectorX measure = VectorX::Zero(n_contact());
+      for (const Face &face : faces)
+        for (const int i : face.contact)
+          if (i >= 0)
+            measure(i) += face.measure / dim;
+      return n_contact() > 0 ? measure.maxCoeff() : 0;
+    }
+
+    /// Majorise-minimise from the state of the bonds at s.
+    VectorX
+    descend(VectorX s) const
+    {
+      MatrixX B = bonds(s);
+      for (unsigned int k = 0; k < 200; ++k)
+        {
+          s                  = minimise_convex(S + B);
+          const MatrixX next = bonds(s);
+          if (next == B)
+            break;
+          B = next;
+        }
+      return s;
+    }
+
+    /// All unknowns, at the minimum for the given normal displacements.
+    VectorX
+    expand(const VectorX &s) const
+    {
+      VectorX u = VectorX::Zero(n_dofs());
+      for (unsigned int i = 0; i < n_contact(); ++i)
+        u(contact_dofs[i]) = sense[i] * s(i);
+      const VectorX inside = X_f - X * s;
+      for (unsigned int i = 0; i < free_dofs.size(); ++i)
+        u(free_dofs[i]) = inside(i);
+      return u;
+    }
+
+    /// Whether a component is neither fixed nor a contact normal.
+    bool
+    is_free(const unsigned int dof) const
+    {
+      return kind[dof] == Kind::free;
+    }
+
+    bool
+    is_fixed(const unsigned int dof) const
+    {
+      return kind[dof] == Kind::fixed;
+    }
+
+  private:
+    enum class Kind
+    {
+      free,
+      fixed,
+      contact
+    };
+
+    struct Simplex
+    {
+      std::array<unsigned int, dim + 1>          vertices;
+      std::array<std::array<Real, dim>, dim + 1> gradients;
+      Real                                       volume;
+      Point                                      centre; ///< of the cell
+    };
+
+    struct Face
+    {
+      std::array<unsigned int, dim> vertices;
+      std::array<int, dim>          contact; ///< number, -1 where fixed
+      Real                          measure;
+      std::string                   side;
+      Point                         centre;
+    };
+
+    unsigned int
+    add_vertex(const Key &key)
+    {
+      const auto [place, is_new] = vertices.emplace(key, points.size());
+      if (is_new)
+        {
+          Point point;
+          for (unsigned int d = 0; d < dim; ++d)
+            point[d] = Real(scene.lengths[d]) * key[d] / (2 * scene.cells[d]);
+          points.push_back(point);
+        }
+      return place->second;
+    }
+
+    void
+    make_mesh()
+    {
+      unsigned int n_cells = 1;
+      for (const unsigned int n : scene.cells)
+        n_cells *= n;
+      for (unsigned int c = 0; c < n_cells; ++c)
+        {
+          Key          centre;
+          unsigned int rest = c;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              centre[d] = 2 * static_cast<int>(rest % scene.cells[d]) + 1;
+              rest /= scene.cells[d];
+            }
+          const unsigned int middle = add_vertex(centre);
+          for (unsigned int d = 0; d < dim; ++d)
+            for (const int s : {-1, 1})
+              add_pyramid(centre, middle, d, s);
+        }
+    }
+
+    /// The simplices between the centre of a cell and a face of it.
+    void
+    add_pyramid(const Key         &centre,
+                const unsigned int middle,
+                const unsigned int d,
+                const int          s)
+    {
+      Key face = centre;
+      face[d] += s;
+      std::vector<std::array<unsigned int, dim>> parts;
+      if constexpr (dim == 2)
+        {
+          Key first = face, second = face;
+          first[1 - d] -= 1;
+          second[1 - d] += 1;
+          parts.push_back({{add_vertex(first), add_vertex(second)}});
+        }
+      else
+        {
+          const unsigned int e = (d + 1) % 3, g = (d + 2) % 3;
+          const int          turns[5][2] = {
+                     {-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}};
+          for (unsigned int k = 0; k < 4; ++k)
+            {
+              Key first = face, second = face;
+              first[e] += turns[k][0];
+              first[g] += turns[k][1];
+              second[e] += turns[k + 1][0];
+              second[g] += turns[k + 1][1];
+              parts.push_back(
+                {{add_vertex(face), add_vertex(first), add_vertex(second)}});
+            }
+        }
+      const bool at_boundary =
+        face[d] == 0 || face[d] == 2 * static_cast<int>(scene.cells[d]);
+      for (const auto &part : parts)
+        {
+          Simplex simplex;
+          simplex.vertices[0] = middle;
+          for (unsigned int v = 0; v < dim; ++v)
+            simplex.vertices[v + 1] = part[v];
+          Eigen::Matrix<Real, dim, dim> edges;
+          for (unsigned int v = 0; v < dim; ++v)
+            for (unsigned int k = 0; k < dim; ++k)
+              edges(v, k) = points[part[v]][k] - points[middle][k];
+          const Eigen::Matrix<Real, dim, dim> inverse = edges.inverse();
+          simplex.volume = std::abs(edges.determinant()) / (dim == 2 ? 2 : 6);
+          for (unsigned int k = 0; k < dim; ++k)
+            {
+              simplex.gradients[0][k] = 0;
+              for (unsigned int v = 0; v < dim; ++v)
+                {
+                  simplex.gradients[v + 1][k] = inverse(k, v);
+                  simplex.gradients[0][k] -= inverse(k, v);
+                }
+            }
+          simplex.centre = points[middle];
+          simplices.push_back(simplex);
+          if (!at_boundary)
+            continue;
+
+          Face boundary;
+          boundary.vertices = part;
+          boundary.centre   = points[middle];
+          boundary.side     = std::array<std::array<const char *, 2>, 3>{
+                {{{"left", "right"}},
+                 {{"bottom", "top"}},
+                 {{"back", "front"}}}}[d][s > 0];
+          boundary.contact.fill(-1);
+          // The height of the pyramid is half a cell.
+          boundary.measure = simplex.volume * dim /
+                             (Real(scene.lengths[d]) / (2 * scene.cells[d]));
+          faces.push_back(boundary);
+        }
+    }
+
+    void
+    make_unknowns()
+    {
+      kind.assign(n_dofs(), Kind::free);
+      std::map<unsigned int, int> senses;
+      for (const Face &face : faces)
+        if (scene.contact.count(face.side) > 0)
+          for (const unsigned int v : face.vertices)
+            {
+              const auto [d, s] = direction(face.side);
+              if (kind[dim * v + d] == Kind::free)
+                kind[dim * v + d] = Kind::contact;
+              senses[dim * v + d] = s;
+              if (scene.tangential_fixed)
+                for (unsigned int e = 0; e < dim; ++e)
+                  if (e != d)
+                    kind[dim * v + e] = Kind::fixed;
+            }
+      for (const Face &face : faces)
+        if (scene.clamped.count(face.side) > 0)
+          for (const unsigned int v : face.vertices)
+            for (unsigned int e = 0; e < dim; ++e)
+              kind[dim * v + e] = Kind::fixed;
+
+      number.assign(n_dofs(), -1);
+      for (unsigned int i = 0; i < n_dofs(); ++i)
+        if (kind[i] == Kind::free)
+          {
+            number[i] = free_dofs.size();
+            free_dofs.push_back(i);
+          }
+        else if (kind[i] == Kind::contact)
+          {
+            number[i] = contact_dofs.size();
+            contact_dofs.push_back(i);
+            sense.push_back(senses.at(i));
+          }
+
+      std::vector<Face> in_contact;
+      for (Face face : faces)
+        if (scene.contact.count(face.side) > 0)
+          {
+            const unsigned int d = direction(face.side).first;
+            for (unsigned int v = 0; v < dim; ++v)
+              if (kind[dim * face.vertices[v] + d] == Kind::contact)
+                face.contact[v] = number[dim * face.vertices[v] + d];
+            in_contact.push_back(face);
+          }
+      all_faces.swap(faces);
+      faces.swap(in_contact);
+    }
+
+    void
+    assemble()
+    {
+      std::vector<Eigen::Triplet<Real>> entries;
+      f = VectorX::Zero(n_dofs());
+      for (const Simplex &cell : simplices)
+        {
+          for (unsigned int v = 0; v <= dim; ++v)
+            for (unsigned int w = 0; w <= dim; ++w)
+              {
+                Real product = 0;
+                for (unsigned int d = 0; d < dim; ++d)
+                  product += cell.gradients[v][d] * cell.gradients[w][d];
+                for (unsigned int k = 0; k < dim; ++k)
+                  for (unsigned int l = 0; l < dim; ++l)
+                    entries.emplace_back(
+                      dim * cell.vertices[v] + k,
+                      dim * cell.vertices[w] + l,
+                      cell.volume * (scene.lambda * cell.gradients[v][k] *
+                                       cell.gradients[w][l] +
+                                     scene.mu * (cell.gradients[v][l] *
+                                                   cell.gradients[w][k] +
+                                                 (k == l ? product : 0))));
+              }
+          if (scene.body_force)
+            add_load(cell.vertices, cell.volume, cell.centre, scene.body_force);
+        }
+      A.resize(n_dofs(), n_dofs());
+      A.setFromTriplets(entries.begin(), entries.end());
+      for (const Face &face : all_faces)
+        {
+          const auto traction = scene.tractions.find(face.side);
+          if (traction != scene.tractions.end())
+            add_load(face.vertices,
+                     face.measure,
+                     face.centre,
+                     traction->second);
+        }
+    }
+
+    /// The exact integral of an affine density and the basis functions.
+    template <std::size_t n>
+    void
+    add_load(const std::array<unsigned int, n> &corners,
+             const Real                         measure,
+             const Point                       &centre,
+             const Density<dim>                &density)
+    {
+      for (unsigned int v = 0; v < n; ++v)
+        {
+          const std::array<Real, dim> value =
+            density(points[corners[v]], centre);
+          for (unsigned int w = 0; w < n; ++w)
+            for (unsigned int k = 0; k < dim; ++k)
+              f(dim * corners[w] + k) +=
+                measure / (n * (n + 1)) * (v == w ? 2 : 1) * value[k];
+        }
+    }
+
+    void
+    condense()
+    {
+      std::vector<Eigen::Triplet<Real>> inside, coupling, outside;
+      for (int column = 0; column < A.outerSize(); ++column)
+        for (typename Eigen::SparseMatrix<Real>::InnerIterator entry(A, column);
+             entry;
+             ++entry)
+          {
+            const unsigned int i = entry.row(), j = entry.col();
+            if (kind[i] == Kind::free && kind[j] == Kind::free)
+              inside.emplace_back(number[i], number[j], entry.value());
+            else if (kind[i] == Kind::free && kind[j] == Kind::contact)
+              coupling.emplace_back(number[i],
+                                    number[j],
+                                    sense[number[j]] * entry.value());
+            else if (kind[i] == Kind::contact && kind[j] == Kind::contact)
+              outside.emplace_back(number[i],
+                                   number[j],
+                                   sense[number[i]] * sense[number[j]] *
+                                     entry.value());
+          }
+      const unsigned int        n = free_dofs.size(), n_c = n_contact();
+      Eigen::SparseMatrix<Real> A_ii(n, n), A_ic(n, n_c), A_cc(n_c, n_c);
+      A_ii.setFromTriplets(inside.begin(), inside.end());
+      A_ic.setFromTriplets(coupling.begin(), coupling.end());
+      A_cc.setFromTriplets(outside.begin(), outside.end());
+      VectorX f_i(n), f_c(n_c);
+      for (unsigned int i = 0; i < n; ++i)
+        f_i(i) = f(free_dofs[i]);
+      for (unsigned int i = 0; i < n_c; ++i)
+        f_c(i) = sense[i] * f(contact_dofs[i]);
+
+      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<Real>> factor(A_ii);
+      X   = factor.solve(MatrixX(A_ic));
+      X_f = factor.solve(f_i);
+      S   = MatrixX(A_cc) - A_ic.transpose() * X;
+      S   = ((S + S.transpose()) / 2).eval();
+      g   = f_c - A_ic.transpose() * X_f;
+    }
+
+    using Integrand = std::function<void(const Face &,
+                                         const Real                   weight,
+                                         const Real                   trace,
+                                         const std::array<Real, dim> &phi)>;
+
+    void
+    at_point(const Face                  &face,
+             const Real                   weight,
+             const std::array<Real, dim> &t,
+             const std::array<Real, dim> &phi,
+             const Integrand             &integrand) const
+    {
+      Real trace = 0;
+      for (unsigned int v = 0; v < dim; ++v)
+        trace += phi[v] * t[v];
+      integrand(face, weight * face.measure, trace, phi);
+    }
+
+    /// Calls the integrand at the points of the rule of the scene.
+    void
+    integrate(const VectorX &s, const Integrand &integrand) const
+    {
+      if (scene.a == 0.)
+        return;
+      for (const Face &face : faces)
+        {
+          std::array<Real, dim> t;
+          for (unsigned int v = 0; v < dim; ++v)
+            t[v] = face.contact[v] >= 0 ? s(face.contact[v]) : Real(0);
+          std::array<Real, dim> phi = {};
+          if (scene.quadrature == "nodal")
+            for (unsigned int v = 0; v < dim; ++v)
+              {
+                phi.fill(0);
+                phi[v] = 1;
+                at_point(face, Real(1) / dim, t, phi, integrand);
+              }
+          else if (scene.quadrature == "midpoint")
+            {
+              phi.fill(Real(1) / dim);
+              at_point(face, 1, t, phi, integrand);
+            }
+          else if (scene.quadrature == "exact")
+            integrate_exactly(face, t, integrand);
+          else
+            {
+              const dealii::QWitherdenVincentSimplex<dim - 1> rule(
+                std::stoi(scene.quadrature.substr(6)));
+              for (unsigned int q = 0; q < rule.size(); ++q)
+                {
+                  phi[0] = 1;
+                  for (unsigned int k = 1; k < dim; ++k)
+                    {
+                      phi[k] = rule.point(q)[k - 1];
+                      phi[0] -= phi[k];
+                    }
+                  at_point(face,
+                           rule.weight(q) * (dim == 2 ? 1 : 2),
+                           t,
+                           phi,
+                           integrand);
+                }
+            }
+        }
+    }
+
+    /// The face is cut where the trace is -M; quadratics on the pieces are
+    /// integrated by Simpson's rule and by the midpoints of edges.
+    void
+    integrate_exactly(const Face                  &face,
+                      const std::array<Real, dim> &t,
+                      const Integrand             &integrand) const
+    {
+      using Barycentric = std::array<Real, dim>;
+      for (const int side : {1, -1})
+        {
+          std::vector<Barycentric> polygon;
+          for (unsigned int v = 0; v < dim; ++v)
+            {
+              const unsigned int w    = (v + 1) % dim;
+              const Real         at_v = side * (t[v] + scene.M),
+                         at_w         = side * (t[w] + scene.M);
+              if (at_v >= 0)
+                {
+                  Barycentric corner = {};
+                  corner[v]          = 1;
+                  polygon.push_back(corner);
+                }
+              if ((at_v > 0 && at_w < 0) || (at_v < 0 && at_w > 0))
+                {
+                  Barycentric cut = {};
+                  cut[v]          = at_w / (at_w - at_v);
+                  cut[w]          = 1 - cut[v];
+                  if (dim == 3 || polygon.size() < 2)
+                    polygon.push_back(cut);
+                }
+            }
+          const auto visit = [&](const Real weight, const Barycentric &phi) {
+            Real trace = 0;
+            for (unsigned int v = 0; v < dim; ++v)
+              trace += phi[v] * t[v];
+            // On the cut the piece decides.
+            trace = side > 0 ? std::max(trace, -scene.M * (1 - Real(1e-18))) :
+                               std::min(trace, -Real(scene.M));
+            integrand(face, weight * face.measure, trace, phi);
+          };
+          const auto middle = [](const Barycentric &p, const Barycentric &q) {
+            Barycentric m;
+            for (unsigned int v = 0; v < dim; ++v)
+              m[v] = (p[v] + q[v]) / 2;
+            return m;
+          };
+          if constexpr (dim == 2)
+            {
+              if (polygon.size() < 2)
+                continue;
+              const Real part = std::abs(polygon[1][0] - polygon[0][0]);
+              visit(part / 6, polygon[0]);
+              visit(part / 6, polygon[1]);
+              visit(part * 2 / 3, middle(polygon[0], polygon[1]));
+            }
+          else
+            for (unsigned int k = 2; k < polygon.size(); ++k)
+              {
+                const Barycentric &p = polygon[0], &q = polygon[k - 1],
+                                  &r = polygon[k];
+                const Real part      = std::abs((q[1] - p[1]) * (r[2] - p[2]) -
+                                           (q[2] - p[2]) * (r[1] - p[1]));
+                visit(part / 3, middle(p, q));
+                visit(part / 3, middle(q, r));
+                visit(part / 3, middle(r, p));
+              }
+        }
+    }
+
+    /// min 1/2 s'Qs - g's subject to s <= 0: all that is wrong is exchanged
+    /// while fewer and fewer are wrong, else the last one alone, which ends.
+    VectorX
+    minimise_convex(const MatrixX &Q) const
+    {
+      const unsigned int n = n_contact();
+      std::vector<bool>  is_loose(n, true);
+      VectorX            s     = VectorX::Zero(n);
+      unsigned int       least = n + 1, patience = 5;
+      for (unsigned int k = 0; k < 20 * n + 100; ++k)
+        {
+          std::vector<unsigned int> loose;
+          for (unsigned int i = 0; i < n; ++i)
+            if (is_loose[i])
+              loose.push_back(i);
+          MatrixX Q_l(loose.size(), loose.size());
+          VectorX g_l(loose.size());
+          for (unsigned int i = 0; i < loose.size(); ++i)
+            {
+              g_l(i) = g(loose[i]);
+              for (unsigned int j = 0; j < loose.size(); ++j)
+                Q_l(i, j) = Q(loose[i], loose[j]);
+            }
+          s.setZero();
+          if (!loose.empty())
+            {
+              const VectorX s_l = Q_l.ldlt().solve(g_l);
+              for (unsigned int i = 0; i < loose.size(); ++i)
+                s(loose[i]) = s_l(i);
+            }
+          const VectorX force = g - Q * s;
+          const Real    noise = 1e-15 * g.template lpNorm<Eigen::Infinity>();
+          std::vector<unsigned int> wrong;
+          for (unsigned int i = 0; i < n; ++i)
+            if (is_loose[i] ? s(i) > 0 : force(i) < -noise)
+              wrong.push_back(i);
+          if (wrong.empty())
+            break;
+          patience = wrong.size() < least ? 5 : patience - (patience > 0);
+          least    = std::min<unsigned int>(least, wrong.size());
+          if (patience > 0)
+            for (const unsigned int i : wrong)
+              is_loose[i] = !is_loose[i];
+          else
+            is_loose[wrong.back()] = !is_loose[wrong.back()];
+        }
+      return s.cwiseMin(Real(0));
+    }
+
+    const Scene<dim>            scene;
+    std::map<Key, unsigned int> vertices;
+    std::vector<Point>          points;
+    std::vector<Simplex>        simplices;
+    std::vector<Face>           faces, all_faces; ///< faces: of contact
+
+    std::vector<Kind>         kind;
+    std::vector<int>          number, sense;
+    std::vector<unsigned int> free_dofs, contact_dofs;
+
+    Eigen::SparseMatrix<Real> A;
+    VectorX                   f, g, X_f;
+    MatrixX                   S, X;
+  };
+} // namespace OwnCheck
+
+#endif
