@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -101,6 +102,122 @@ namespace
 
 
 
+  /// What every law promises, by differences on a grid that has the kinks:
+  /// value, interval, curvature and kinks fit together, and for s <= 0 the law
+  /// is the least of its convex quadratic branches.
+  void
+  test_conformance(const std::string &name, const double a, const double M)
+  {
+    const auto   law    = make_law({name, a, M});
+    const double energy = a * M * M, strength = a * M, h = 1e-4 * M;
+    const auto   kinks = law->kinks();
+
+    // A quadratic by its value, slope and curvature at a point.
+    struct Branch
+    {
+      double centre, value, slope, curvature;
+
+      double
+      operator()(const double s) const
+      {
+        const double d = s - centre;
+        return value + slope * d + curvature / 2. * d * d;
+      }
+    };
+
+    std::vector<double> ends = kinks;
+    ends.insert(ends.begin(), -5. * M);
+    ends.push_back(3. * M);
+    double slope_error = 0., curvature_error = 0., outside = 0., negative = 0.;
+    double least_curvature = 0., largest_force = 0.;
+    std::vector<Branch> branches;
+    for (unsigned int k = 0; k + 1 < ends.size(); ++k)
+      {
+        const double centre = (ends[k] + ends[k + 1]) / 2.;
+        const Branch branch = {centre,
+                               law->value(centre),
+                               law->clarke_interval(centre).lower,
+                               law->curvature(centre)};
+        if (ends[k] < 0.)
+          branches.push_back(branch);
+        least_curvature = std::min(least_curvature, branch.curvature / a);
+        for (unsigned int i = 1; i < 40; ++i)
+          {
+            const double s    = ends[k] + (ends[k + 1] - ends[k]) * i / 40.;
+            const double left = law->value(s - h), right = law->value(s + h);
+            const double slope      = (right - left) / (2. * h);
+            const auto   interval   = law->clarke_interval(s);
+            const double difference = (right - 2. * law->value(s) + left);
+            slope_error =
+              std::max({slope_error,
+                        std::abs(interval.lower - slope) / strength,
+                        std::abs(interval.upper - slope) / strength});
+            curvature_error =
+              std::max(curvature_error,
+                       std::abs(law->curvature(s) - difference / (h * h)) / a);
+            outside =
+              std::max(outside, std::abs(branch(s) - law->value(s)) / energy);
+            negative      = std::max(negative, -law->value(s) / energy);
+            largest_force = std::max(largest_force, std::abs(interval.lower));
+          }
+      }
+
+    // One-sided differences of second order at the kinks.
+    double jump = 0., at_kinks = 0.;
+    for (const double kink : kinks)
+      {
+        const auto one_sided = [&](const double step) {
+          return (-3. * law->value(kink) + 4. * law->value(kink + step) -
+                  law->value(kink + 2. * step)) /
+                 (2. * step);
+        };
+        const double left = one_sided(-h), right = one_sided(h);
+        const auto   interval = law->clarke_interval(kink);
+        at_kinks              = std::max(
+          {at_kinks,
+                        std::abs(interval.lower - std::min(left, right)) / strength,
+                        std::abs(interval.upper - std::max(left, right)) / strength});
+        largest_force = std::max(largest_force, -interval.lower);
+        for (const double side : {-1e-9, 1e-9})
+          jump =
+            std::max(jump,
+                     std::abs(law->value(kink + side * M) - law->value(kink)) /
+                       energy);
+      }
+
+    double above_least = 0.;
+    for (unsigned int i = 0; i <= 500; ++i)
+      {
+        const double s     = -0.01 * i * M;
+        double       least = std::numeric_limits<double>::infinity();
+        for (const Branch &branch : branches)
+          least = std::min(least, branch(s));
+        above_least =
+          std::max(above_least, std::abs(least - law->value(s)) / energy);
+      }
+
+    std::cout << "== Every law: " << name << std::endl;
+    check("kinks in ascending order, the first one at the threshold",
+          std::is_sorted(kinks.begin(), kinks.end()) &&
+            (kinks.empty() || law->bond_threshold() == -kinks.front()));
+    check("jump at the kinks", jump, 1e-8);
+    check("negative part", negative, 0.);
+    check("value without displacement", std::abs(law->value(0.)), 0.);
+    check("Clarke interval away from kinks against differences",
+          slope_error,
+          1e-8);
+    check("Clarke interval at the kinks against differences", at_kinks, 1e-8);
+    check("curvature against differences", curvature_error, 1e-4);
+    check("concavity of a branch", -least_curvature, 0.);
+    check("distance to one quadratic between kinks", outside, 1e-13);
+    check("distance to the least of the branches", above_least, 1e-13);
+    check("strength and largest force differ by",
+          std::abs(largest_force - law->bond_strength()) / strength,
+          1e-13);
+  }
+
+
+
   void
   test_laws()
   {
@@ -108,6 +225,10 @@ namespace
     test_winkler(69., 0.002);
     std::cout << "== Winkler's law, Pa and m" << std::endl;
     test_winkler(6.9e10, 0.002);
+
+    for (const std::string &name : law_names())
+      for (const double a : {69., 6.9e10})
+        test_conformance(name, a, 0.002);
 
     std::cout << "== Other laws" << std::endl;
     const auto none = make_law({"none", 69., 0.002});
