@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -86,6 +87,17 @@ namespace Debond
       return largest;
     }
 
+    /// Of the first entries, which are the forces themselves.
+    template <int dim, typename Forces>
+    double
+    sum_of_sizes(const Forces &forces)
+    {
+      double sum = 0.;
+      for (unsigned int v = 0; v < dim; ++v)
+        sum += forces[v].norm();
+      return sum;
+    }
+
     template <typename Forces>
     Forces
     sum(Forces a, const Forces &b)
@@ -93,6 +105,25 @@ namespace Debond
       for (unsigned int v = 0; v < a.size(); ++v)
         a[v] += b[v];
       return a;
+    }
+
+
+
+    /// A load is no function with an integral, or one that sampling cannot
+    /// find, if that much of it is in that part of an interval (of a cell), to
+    /// which bisections lead: 1/sqrt(x) has 1e-5 of its integral there, 1/x 4
+    /// %, and 1/x^2 all of it.
+    constexpr unsigned int bisections_to_a_point   = 33; // 1.2e-10
+    constexpr double       largest_part_at_a_point = 1e-3;
+
+    template <int dim>
+    [[noreturn]] void
+    throw_unbounded(const std::string &name, const dealii::Point<dim> &point)
+    {
+      std::ostringstream message;
+      message << "The " << name << " cannot be integrated near (" << point
+              << "): it grows without bound.";
+      throw std::invalid_argument(message.str());
     }
 
 
@@ -127,28 +158,52 @@ namespace Debond
 
         FaceForces<dim> forces;
         if constexpr (dim == 2)
-          forces = integrate(1e-13, [&](const double s) {
-            return integrand({{1. - s, s}});
-          });
+          {
+            Pieces pieces;
+            forces = integrate(1e-13, pieces, [&](const double s) {
+              return integrand({{1. - s, s}});
+            });
+            if (pieces.grow_without_bound())
+              throw_unbounded(name,
+                              point_at({{1. - pieces.place, pieces.place}}));
+          }
         else
           {
             // The means over the lines that are parallel to one side of the
             // triangle, times the length of the line. The means themselves are
             // integrated as well: they notice a jump that cuts off the vertex
-            // where that length is zero.
-            const auto integrals = integrate(1e-11, [&](const double s) {
+            // where that length is zero. The last entry is the part of the
+            // lines on which the load grows without bound.
+            std::array<double, dim> pole;
+            Pieces                  lines;
+            const auto integrals = integrate(1e-11, lines, [&](const double s) {
+              Pieces                pieces;
               const FaceForces<dim> mean =
-                integrate(1e-13, [&](const double t) {
+                integrate(1e-13, pieces, [&](const double t) {
                   return integrand({{(1. - s) * (1. - t), s, (1. - s) * t}});
                 });
-              std::array<dealii::Tensor<1, dim>, 2 * dim> both;
+              std::array<dealii::Tensor<1, dim>, 2 * dim + 1> both;
               for (unsigned int v = 0; v < dim; ++v)
                 {
                   both[v]       = (1. - s) * mean[v];
                   both[dim + v] = mean[v];
                 }
+              if (pieces.grow_without_bound())
+                {
+                  both[2 * dim][0] = pieces.size;
+                  pole             = {{(1. - s) * (1. - pieces.place),
+                                       s,
+                                       (1. - s) * pieces.place}};
+                }
               return both;
             });
+            if (integrals[2 * dim][0] > largest_part_at_a_point * lines.size)
+              throw_unbounded(name, point_at(pole));
+            if (lines.grow_without_bound())
+              throw_unbounded(name,
+                              point_at({{0.5 * (1. - lines.place),
+                                         lines.place,
+                                         0.5 * (1. - lines.place)}}));
             std::copy_n(integrals.begin(), dim, forces.begin());
           }
 
@@ -159,8 +214,22 @@ namespace Debond
       }
 
     private:
-      FaceForces<dim>
-      integrand(const std::array<double, dim> &barycentric)
+      /// How much of the load on an interval is where.
+      struct Pieces
+      {
+        double size   = 0.; ///< of all
+        double narrow = 0.; ///< the largest one in a narrow interval
+        double place  = 0.; ///< of it
+
+        bool
+        grow_without_bound() const
+        {
+          return narrow > largest_part_at_a_point * size;
+        }
+      };
+
+      dealii::Point<dim>
+      point_at(const std::array<double, dim> &barycentric) const
       {
         // The sample points on the edge of the face are moved inwards, so that
         // a traction which jumps there is taken from this side of the jump.
@@ -168,7 +237,13 @@ namespace Debond
         dealii::Point<dim> point;
         for (unsigned int v = 0; v < dim; ++v)
           point += ((1. - inset) * barycentric[v] + inset / dim) * vertices[v];
+        return point;
+      }
 
+      FaceForces<dim>
+      integrand(const std::array<double, dim> &barycentric)
+      {
+        const dealii::Point<dim> point = point_at(barycentric);
         if (++n_evaluations > maximum_evaluations)
           {
             std::ostringstream message;
@@ -188,9 +263,9 @@ namespace Debond
       /// The integral over (0, 1).
       template <typename Integrand>
       auto
-      integrate(const double tolerance, const Integrand &f)
+      integrate(const double tolerance, Pieces &pieces, const Integrand &f)
       {
-        return refine(0., 1., lobatto(0., 1., f), tolerance, 0, f);
+        return refine(0., 1., lobatto(0., 1., f), tolerance, 0, pieces, f);
       }
 
       template <typename Integrand>
@@ -216,6 +291,7 @@ namespace Debond
              const Forces    &whole,
              const double     tolerance,
              const unsigned   depth,
+             Pieces          &pieces,
              const Integrand &f)
       {
         const double middle = 0.5 * (begin + end);
@@ -225,9 +301,21 @@ namespace Debond
 
         if (depth >= minimum_depth &&
             largest_difference(whole, halves) <= tolerance * largest)
-          return halves;
-        return sum(refine(begin, middle, left, tolerance, depth + 1, f),
-                   refine(middle, end, right, tolerance, depth + 1, f));
+          {
+            pieces.size += sum_of_sizes<dim>(halves);
+            return halves;
+          }
+        const double size_before = pieces.size;
+        const Forces result =
+          sum(refine(begin, middle, left, tolerance, depth + 1, pieces, f),
+              refine(middle, end, right, tolerance, depth + 1, pieces, f));
+        if (depth == bisections_to_a_point &&
+            pieces.size - size_before > pieces.narrow)
+          {
+            pieces.narrow = pieces.size - size_before;
+            pieces.place  = middle;
+          }
+        return result;
       }
 
       /// For one face. A jump takes 1e3 in 2D and 1e6 on a coarse face in 3D.
@@ -247,38 +335,148 @@ namespace Debond
 
 
     template <int dim>
+    using Simplex = std::array<dealii::Point<dim>, dim + 1>;
+
+
+
+    /// The points of the rule of degree 2 in a simplex.
+    template <int dim>
+    class SimplexRule
+    {
+    public:
+      SimplexRule()
+        : rule(2)
+      {
+        for (const dealii::Point<dim> &point : rule.get_points())
+          {
+            std::array<double, dim + 1> barycentric;
+            barycentric[0] = 1.;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                barycentric[d + 1] = point[d];
+                barycentric[0] -= point[d];
+              }
+            barycentrics.push_back(barycentric);
+          }
+      }
+
+      unsigned int
+      size() const
+      {
+        return rule.size();
+      }
+
+      const std::array<double, dim + 1> &
+      barycentric(const unsigned int q) const
+      {
+        return barycentrics[q];
+      }
+
+      /// The part of the simplex' measure that belongs to the point.
+      double
+      weight(const unsigned int q) const
+      {
+        return rule.weight(q) * (dim == 2 ? 2. : 6.);
+      }
+
+      dealii::Point<dim>
+      point(const unsigned int q, const Simplex<dim> &simplex) const
+      {
+        dealii::Point<dim> point;
+        for (unsigned int v = 0; v <= dim; ++v)
+          point += barycentrics[q][v] * simplex[v];
+        return point;
+      }
+
+    private:
+      const dealii::QGaussSimplex<dim>         rule;
+      std::vector<std::array<double, dim + 1>> barycentrics;
+    };
+
+
+
+    /// Throws std::invalid_argument if the halves of the cell, of their halves
+    /// and so on, in which most of the body force is, keep too much of it.
+    template <int dim>
+    void
+    check_growth(Simplex<dim>            simplex,
+                 const SimplexRule<dim> &rule,
+                 const std::string      &name,
+                 CheckedLoad<dim>       &body_force)
+    {
+      const auto mean = [&](const Simplex<dim> &part) {
+        double sum = 0.;
+        for (unsigned int q = 0; q < rule.size(); ++q)
+          sum += rule.weight(q) * body_force(rule.point(q, part)).norm();
+        return sum;
+      };
+
+      const double all     = mean(simplex);
+      double       measure = 1.;
+      double       part    = 1.;
+      for (unsigned int k = 0; k < bisections_to_a_point; ++k)
+        {
+          // At the middle of the longest edge.
+          unsigned int a = 0, b = 1;
+          for (unsigned int v = 0; v <= dim; ++v)
+            for (unsigned int w = v + 1; w <= dim; ++w)
+              if (simplex[v].distance_square(simplex[w]) >
+                  simplex[a].distance_square(simplex[b]))
+                {
+                  a = v;
+                  b = w;
+                }
+          const dealii::Point<dim> middle =
+            simplex[a] + 0.5 * (simplex[b] - simplex[a]);
+          Simplex<dim> first = simplex, second = simplex;
+          first[b]              = middle;
+          second[a]             = middle;
+          const double in_first = mean(first), in_second = mean(second);
+          simplex = in_first > in_second ? first : second;
+          measure *= 0.5;
+          part = measure * std::max(in_first, in_second);
+        }
+      if (part > largest_part_at_a_point * all)
+        throw_unbounded(name, simplex[0]);
+    }
+
+
+
+    template <int dim>
     void
     add_body_force(const dealii::DoFHandler<dim> &dof_handler,
                    const dealii::Function<dim>   &function,
                    dealii::Vector<double>        &forces)
     {
-      CheckedLoad<dim>                 body_force(function, "body force");
-      const dealii::QGaussSimplex<dim> rule(2);
-      const double reference_volume = dim == 2 ? 0.5 : 1. / 6.;
+      // Values in a cell that differ by less do not grow without bound there.
+      constexpr double largest_ratio = 2.;
 
+      const std::string      name = "body force";
+      CheckedLoad<dim>       body_force(function, name);
+      const SimplexRule<dim> rule;
       for (const auto &cell : dof_handler.active_cell_iterators())
         {
-          const double measure = cell->measure();
+          Simplex<dim> simplex;
+          for (unsigned int v = 0; v <= dim; ++v)
+            simplex[v] = cell->vertex(v);
+
+          const double measure  = cell->measure();
+          double       smallest = std::numeric_limits<double>::max();
+          double       largest  = 0.;
           for (unsigned int q = 0; q < rule.size(); ++q)
             {
-              std::array<double, dim + 1> barycentric;
-              barycentric[0] = 1.;
-              for (unsigned int d = 0; d < dim; ++d)
-                {
-                  barycentric[d + 1] = rule.point(q)[d];
-                  barycentric[0] -= rule.point(q)[d];
-                }
-              dealii::Point<dim> point;
-              for (unsigned int v = 0; v <= dim; ++v)
-                point += barycentric[v] * cell->vertex(v);
-
-              const dealii::Tensor<1, dim> force =
-                rule.weight(q) / reference_volume * measure * body_force(point);
+              const dealii::Tensor<1, dim> value =
+                body_force(rule.point(q, simplex));
+              smallest = std::min(smallest, value.norm());
+              largest  = std::max(largest, value.norm());
               for (unsigned int v = 0; v <= dim; ++v)
                 for (unsigned int d = 0; d < dim; ++d)
                   forces[cell->vertex_dof_index(v, d)] +=
-                    barycentric[v] * force[d];
+                    rule.barycentric(q)[v] * rule.weight(q) * measure *
+                    value[d];
             }
+          if (largest > largest_ratio * smallest)
+            check_growth(simplex, rule, name, body_force);
         }
     }
 

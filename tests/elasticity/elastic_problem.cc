@@ -2,8 +2,8 @@
 //
 // The operator A and the load f: the paper's numbers of unknowns, the energy
 // of its benchmark without contact, bodies in any direction, tractions that
-// jump inside of a face, the residual, the frames of the contact nodes and the
-// errors in the input.
+// jump inside of a face, loads without an integral, the residual, the frames of
+// the contact nodes and the errors in the input.
 
 #include <deal.II/base/function.h>
 #include <deal.II/grid/grid_generator.h>
@@ -275,6 +275,118 @@ test_loads()
                    1.),
           1e-13);
   }
+}
+
+
+
+/// Loads that are rough but have an integral, which they keep, and loads that
+/// have none.
+void
+test_rough_loads()
+{
+  Triangulation<2> mesh;
+  make_box<2>({{{0.4, 0.04, 1.}}, {{40, 4, 1}}, 0.}, mesh);
+  ElasticProblem<2> problem(mesh, {{left, right}, {}, true});
+  const auto        resultant = [&](const std::function<double(double)> &f) {
+    Loads<2> loads;
+    loads.tractions[top] = load<2>([&](const Point<2> &p) {
+      return Tensor<1, 2>({0., f(p[0])});
+    });
+    problem.assemble(Material(), loads);
+    return problem.total_load()[1];
+  };
+  const auto check_integral = [&](const std::string                   &name,
+                                  const std::function<double(double)> &f,
+                                  const double                         integral,
+                                  const double                         bound) {
+    check(name, std::abs(resultant(f) / integral - 1.), bound);
+  };
+  const double w = 1e6, a = 0.2033;
+  check_integral(
+    "sin(1e6 x)^2",
+    [w](const double x) { return std::pow(std::sin(w * x), 2); },
+    0.2 - std::sin(2. * w * 0.4) / (4. * w),
+    1e-10);
+  check_integral(
+    "a patch of 1e-5 with 1e8 times the load",
+    [](const double x) { return std::abs(x - 0.2) < 5e-6 ? 1e8 : 1.; },
+    1e3 + 0.4 - 1e-5,
+    1e-8);
+  check_integral(
+    "1/sqrt(x)",
+    [](const double x) { return 1. / std::sqrt(x); },
+    2. * std::sqrt(0.4),
+    1e-5);
+  check_integral(
+    "1/sqrt|x - a|",
+    [a](const double x) { return 1. / std::sqrt(std::abs(x - a)); },
+    2. * (std::sqrt(a) + std::sqrt(0.4 - a)),
+    1e-5);
+
+  const auto body = [&](const std::function<double(double)> &f) {
+    Loads<2> loads;
+    loads.body_force = load<2>([&](const Point<2> &p) {
+      return Tensor<1, 2>({f(p[0]), 0.});
+    });
+    problem.assemble(Material(), loads);
+    return problem.total_load()[0];
+  };
+  // The rule has no points near the end: 1 % is what it can.
+  check("1/sqrt(x) in the body",
+        std::abs(body([](const double x) { return 1. / std::sqrt(x); }) /
+                   (2. * std::sqrt(0.4) * 0.04) -
+                 1.),
+        0.05);
+  check("a body force that jumps",
+        std::abs(body([](const double x) { return x < 0.2 ? 1e6 : 1.; }) /
+                   ((1e6 + 1.) * 0.2 * 0.04) -
+                 1.),
+        1e-12);
+  check("sin(1e6 x) in the body",
+        std::abs(body([w](const double x) { return std::sin(w * x); })),
+        0.016);
+
+  const auto near_node = [](const double x) {
+    return 0.001 / ((x - 0.2) * (x - 0.2));
+  };
+  const auto inside = [a](const double x) {
+    return 0.001 / ((x - a) * (x - a));
+  };
+  print_error([&] { resultant(near_node); });
+  print_error([&] { resultant(inside); });
+  print_error([&] { resultant([a](const double x) { return 1. / (x - a); }); });
+  print_error(
+    [&] { resultant([](const double x) { return 1. / std::abs(x); }); });
+  print_error([&] { body(near_node); });
+  print_error([&] { body(inside); });
+
+  // In 3D the pole may run along a line, across the faces or their sides.
+  Triangulation<3> solid;
+  make_box<3>({{{0.4, 0.04, 0.04}}, {{4, 1, 1}}, 0.}, solid);
+  ElasticProblem<3> bar(solid, {{left, right}, {}, true});
+  const auto        on_top = [&](const std::function<double(Point<3>)> &f) {
+    Loads<3> loads;
+    loads.tractions[top] = load<3>([&](const Point<3> &p) {
+      return Tensor<1, 3>({0., f(p), 0.});
+    });
+    bar.assemble(Material(), loads);
+    return bar.total_load()[1];
+  };
+  check("1/sqrt(x) in 3D",
+        std::abs(
+          on_top([](const Point<3> &p) { return 1. / std::sqrt(p[0]); }) /
+            (2. * std::sqrt(0.4) * 0.04) -
+          1.),
+        1e-5);
+  print_error([&] {
+    on_top([](const Point<3> &p) {
+      const double distance = p[0] + 0.7 * p[2] - 0.2;
+      return 1e-6 / (distance * distance);
+    });
+  });
+  print_error([&] {
+    on_top([](const Point<3> &p) { return 1e-6 / std::pow(p[0] - 0.1, 2); });
+  });
 }
 
 
@@ -591,6 +703,8 @@ main()
   test_rotation<3>(false);
   std::cout << "Loads" << std::endl;
   test_loads();
+  std::cout << "Rough loads" << std::endl;
+  test_rough_loads();
   std::cout << "Algebra" << std::endl;
   test_frames();
   std::cout << "Rigid motions" << std::endl;

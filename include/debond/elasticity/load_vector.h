@@ -30,8 +30,6 @@ namespace Debond
    * The nodal forces int f_0 phi + int f_2 phi, as Cartesian components at
    * every degree of freedom of the P1 vector space of @p dof_handler.
    *
-   * The body force is integrated by a rule of degree 2 on each cell.
-   *
    * Tractions are integrated adaptively on each face: the Gauss-Lobatto rule
    * of degree 5 on intervals that are halved until that changes the integral
    * by less than 1e-13 (1e-11 in 3D, where the rule is applied in both
@@ -44,11 +42,15 @@ namespace Debond
    * along a line in the order of 1e5 on each face the line crosses.
    *
    * Body forces are integrated by a rule of degree 2 on each cell: let a jump
-   * of theirs follow the mesh.
+   * of theirs follow the mesh. Where the values in a cell differ by a factor of
+   * two, it is bisected towards the largest ones, to see whether they grow.
    *
    * Throws std::invalid_argument, naming the boundary or the body force, the
    * point and the component, if a load cannot be evaluated, is not finite or is
-   * not piecewise smooth;
+   * not piecewise smooth; if it grows without bound such that a 1e-10th of a
+   * face (of a cell) has more than a thousandth of its load: 1/x on a face
+   * (also 1/r around a point of it in 3D, which is refused although it has an
+   * integral), 1/x^2 in a body, but not 1/sqrt(x);
    * and if it has not dim components or acts on a boundary the mesh has not.
    */
   template <int dim>
