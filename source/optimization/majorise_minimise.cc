@@ -41,7 +41,8 @@ namespace Debond
                              const Monitor   &monitor) const
   {
     MajoriseMinimiseResult result;
-    MajorantProblem::State state = problem.evaluate();
+    MajorantProblem::State state       = problem.evaluate();
+    bool                   interrupted = false;
     while (true)
       {
         result.functional = state.functional;
@@ -60,6 +61,12 @@ namespace Debond
           {
             result.status = SolverStatus::success;
             return result;
+          }
+        // What is converged is a result, whenever the signal came.
+        if (interrupted)
+          {
+            result.status = SolverStatus::interrupted;
+            break;
           }
         if (result.history.size() == parameters.maximum_iterations)
           break;
@@ -125,11 +132,7 @@ namespace Debond
             result.message = text.str();
             return result;
           }
-        if (monitor && !monitor(iteration))
-          {
-            result.status = SolverStatus::interrupted;
-            break;
-          }
+        interrupted = monitor && !monitor(iteration);
       }
 
     result.message = what_is_left(result, parameters.tolerance);

@@ -269,6 +269,7 @@ namespace
     unsigned int           mm_failures = 0, bundle_failures = 0, rises = 0;
     unsigned int           mm_global = 0, bundle_global = 0, several = 0;
     unsigned int           most_mm = 0, most_bundle = 0;
+    unsigned int           misnamed = 0, converged_at_once = 0;
     constexpr unsigned int n_problems = 300;
     for (unsigned int k = 0; k < n_problems; ++k)
       {
@@ -302,6 +303,15 @@ namespace
           rises +=
             mm.history[i].functional > mm.history[i - 1].functional + 1e-14;
 
+        // A signal that came before ends the method after its first iteration.
+        s = start;
+        CondensedProblem once_more(p.S, p.g, p.bonds, s);
+        const auto       stopped = MajoriseMinimise({}).minimize(
+          once_more, [](const MajoriseMinimiseIteration &) { return false; });
+        misnamed +=
+          (stopped.status == SolverStatus::success) != (mm.history.size() <= 1);
+        converged_at_once += mm.history.size() == 1;
+
         ProximalBundleParameters parameters;
         parameters.epsilon_s          = 1e-14;
         parameters.bundle_size        = 50;
@@ -321,6 +331,8 @@ namespace
       << " problems: converged: " << verdict(mm_failures == 0)
       << ", an enumerated stationary value to 1e-12: "
       << verdict(worst_mm, 1e-12) << ", never rising: " << verdict(rises == 0)
+      << ", converged ones are no interrupted ones: "
+      << verdict(misnamed == 0 && converged_at_once > 0)
       << "\nenergy bundle on the same: converged: "
       << verdict(bundle_failures == 0)
       << ", an enumerated stationary value to 1e-10: "
