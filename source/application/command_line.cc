@@ -145,7 +145,13 @@ namespace Debond
       ParameterTable table;
       declare_parameters(table);
       if (options.count("scene") > 0)
-        read_scene(options["scene"].as<std::string>(), table);
+        {
+          const std::string file = options["scene"].as<std::string>();
+          read_scene(file, table);
+          if (table.has_unknown_section("Study"))
+            throw BadInput(
+              {file + ": this is a study; run debond --study " + file});
+        }
       for (const std::string &assignment : assignments)
         table.assign(assignment);
 

@@ -54,6 +54,16 @@ namespace Debond
 
 
 
+    /// A value for a message.
+    std::string
+    shortened(const std::string &value)
+    {
+      constexpr std::size_t longest = 100;
+      return value.size() <= longest ? value : value.substr(0, longest) + "...";
+    }
+
+
+
     std::vector<std::string>
     sections_of(const std::vector<std::string> &paths)
     {
@@ -117,8 +127,8 @@ namespace Debond
       }
     catch (const dealii::ParameterHandler::ExcValueDoesNotMatchPattern &)
       {
-        lines.push_back(location + ": " + path + " = " + value + ": expected " +
-                        expected[path]);
+        lines.push_back(location + ": " + path + " = " + shortened(value) +
+                        ": expected " + expected[path]);
         rejected.insert(path);
       }
     for (std::size_t i = 0; i < sections.size(); ++i)
@@ -148,6 +158,9 @@ namespace Debond
     unsigned int first_line_number = 1;
     for (std::string line; std::getline(input, line);)
       {
+        // Some editors begin a file with the mark of UTF-8.
+        if (line_number == 0 && starts_with(line, "\xef\xbb\xbf"))
+          line.erase(0, 3);
         ++line_number;
         line                 = trim(line);
         const bool continued = !line.empty() && line.back() == '\\';
@@ -184,8 +197,11 @@ namespace Debond
                 known_sections.end())
               ++known_depth;
             else
-              lines.push_back(location + ": unknown subsection " + path +
-                              suggestion(path, known_sections));
+              {
+                unknown_sections.insert(path);
+                lines.push_back(location + ": unknown subsection " + path +
+                                suggestion(path, known_sections));
+              }
           }
         else if (keyword == "end" && rest.empty())
           {
@@ -324,8 +340,8 @@ namespace Debond
   {
     const bool is_default = locations.count(path) == 0;
     add_error(path,
-              path + " = " + get(path) + (is_default ? " (default): " : ": ") +
-                reason,
+              path + " = " + shortened(get(path)) +
+                (is_default ? " (default): " : ": ") + reason,
               others);
   }
 
@@ -346,6 +362,14 @@ namespace Debond
   ParameterTable::errors() const
   {
     return lines;
+  }
+
+
+
+  bool
+  ParameterTable::has_unknown_section(const std::string &path) const
+  {
+    return unknown_sections.count(path) > 0;
   }
 
 

@@ -50,7 +50,7 @@ namespace Debond
     table.declare(
       "Mesh/Lengths",
       to_text(defaults.box.lengths, defaults.dimension),
-      one_for_each_dimension(positive_number()),
+      one_for_each_dimension(quantity()),
       "Edge lengths of the box (0, L_1) x (0, L_2) [x (0, L_3)], one for each dimension",
       "length");
     table.declare(
@@ -68,7 +68,7 @@ namespace Debond
 
     table.declare("Material/Young modulus",
                   shortest_text(defaults.material.young_modulus),
-                  positive_number(),
+                  quantity(),
                   "E",
                   "force per area");
     table.declare(
@@ -108,12 +108,12 @@ namespace Debond
       "none");
     table.declare("Contact law/Bond stiffness",
                   shortest_text(defaults.law.bond_stiffness),
-                  number(">= 0", [](double x) { return x >= 0; }),
+                  quantity(true),
                   "a",
                   "force per volume");
     table.declare("Contact law/Bond threshold",
                   shortest_text(defaults.law.bond_threshold),
-                  positive_number(),
+                  quantity(),
                   "M, the displacement at which bonds break",
                   "length");
     table.declare(
@@ -201,6 +201,9 @@ namespace Debond
   void
   read_scene(const std::string &scene, ParameterTable &table)
   {
+    std::error_code error;
+    if (!std::filesystem::exists(scene, error))
+      throw BadInput({scene + ": there is no such file"});
     std::ifstream input(scene);
     if (!input || std::filesystem::is_directory(scene))
       throw BadInput({scene + ": cannot be read as a scene file"});

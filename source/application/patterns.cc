@@ -87,6 +87,21 @@ namespace Debond
 
 
   Pattern
+  quantity(const bool may_be_zero)
+  {
+    const std::string range = "from 1e-100 to 1e100";
+    return Pattern("a number " + range + (may_be_zero ? ", or 0" : ""),
+                   [may_be_zero](const std::string &value) {
+                     double result;
+                     return read_number(value, result) &&
+                            ((may_be_zero && result == 0.) ||
+                             (result >= 1e-100 && result <= 1e100));
+                   });
+  }
+
+
+
+  Pattern
   whole_number(const unsigned int smallest, const unsigned int largest)
   {
     return Pattern("a whole number from " + std::to_string(smallest) + " to " +

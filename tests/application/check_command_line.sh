@@ -34,5 +34,30 @@ entries=$(grep -cE '^ *set ' defaults.prm)
 units=$(tr -d '\n' <defaults.prm | tr -s '# ' ' ' | grep -o 'Units:' | wc -l)
 [ "$entries" -eq "$units" ] || fail "$entries entries, but $units with units"
 
+# What is wrong with a file is said for what it is.
+expect_code 2 "$debond" missing.prm
+grep -qx "debond: missing.prm: there is no such file" errors ||
+  fail "a missing file: $(cat errors)"
+cat >study.prm <<'STUDY'
+subsection Study
+  set Scene = scene.prm
+end
+STUDY
+expect_code 2 "$debond" study.prm
+grep -qx "debond: study.prm: this is a study; run debond --study study.prm" \
+  errors || fail "a study: $(cat errors)"
+printf '\xef\xbb\xbfset Dimension = 3\n' >mark.prm
+expect_code 0 "$debond" mark.prm --print-parameters
+grep -qE '^set Dimension += 3 ' log ||
+  fail "a file that begins with the mark of UTF-8"
+{
+  echo 'subsection Load path'
+  echo "  set Factors = $(seq -s, 100000)"
+  echo 'end'
+} >long.prm
+expect_code 2 "$debond" long.prm
+[ "$(wc -c <errors)" -lt 300 ] || fail "a message of $(wc -c <errors) letters"
+rm log errors study.prm mark.prm long.prm
+
 [ "$(ls)" = "$(printf '%s\n' again.prm defaults.prm help set.prm version)" ] ||
   fail "Files were written."

@@ -83,6 +83,10 @@ namespace Debond
     const std::vector<std::string> &
     errors() const;
 
+    /// Whether a file had this section, which is not declared.
+    bool
+    has_unknown_section(const std::string &path) const;
+
     /// Prints all entries in the order of their declaration as a scene that
     /// read() accepts.
     void
@@ -98,6 +102,7 @@ namespace Debond
     std::map<std::string, std::string> expected;  ///< by path, in words
     std::map<std::string, std::string> locations; ///< by path, where set
     std::set<std::string>              rejected;
+    std::set<std::string>              unknown_sections;
     std::vector<std::string>           lines;
     std::string                        file_name;
   };

@@ -50,6 +50,11 @@ namespace Debond
   Pattern
   positive_number();
 
+  /// A positive number in units of the user, such that its products with others
+  /// can be computed.
+  Pattern
+  quantity(const bool may_be_zero = false);
+
   Pattern
   whole_number(const unsigned int smallest, const unsigned int largest);
 
