@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/output/directory_lock.h>
 #include <debond/study/case_runner.h>
 #include <debond/study/run_study.h>
 #include <debond/study/study_report.h>
@@ -200,8 +201,8 @@ namespace Debond
         << std::endl;
     try
       {
-        std::filesystem::create_directories(study.directory);
-        CaseRunner runner(jobs, out, terminal);
+        const DirectoryLock lock(study.directory);
+        CaseRunner          runner(jobs, out, terminal);
         if (!run_cases(study, cases, runner))
           {
             std::cerr << "debond: interrupted; the same command goes on where "

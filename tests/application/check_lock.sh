@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# check_lock.sh DEBOND SCENE.prm: two runs do not write into one directory, nor
+# do two studies; a lock that a killed run left behind is no obstacle.
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
+scene=$2
+
+long_run=("$debond" "$scene" --set "Output/Directory=out"
+  --set "Solver/Euclidean bundle/Stop tolerance=1e-300"
+  --set "Solver/Euclidean bundle/Maximum iterations=1000000000")
+wait_for() {
+  for _ in $(seq 400); do
+    ! eval "$1" || return 0
+    sleep 0.05
+  done
+  fail "no $1"
+}
+
+touch first
+# The first run is neither disturbed nor its files removed.
+"${long_run[@]}" >first 2>&1 &
+process=$!
+wait_for "grep -qE '^ +10 ' first"
+expect_code 5 "$debond" "$scene" --set "Output/Directory=out"
+grep -q "^debond: out is being written by process $process on $(uname -n)" \
+  errors || fail "not the process: $(cat errors)"
+[ -s out/parameters.prm ] || fail "The second run removed files of the first."
+expect_code 0 "$debond" "$scene" --set "Output/Directory=other"
+
+# A signal ends it, and the lock with it.
+kill $process
+code=0
+wait $process || code=$?
+[ $code -eq 4 ] || fail "exit code $code in place of 4"
+[ ! -e out/.lock ] || fail "The lock is still there."
+expect_code 0 "$debond" "$scene" --set "Output/Directory=out"
+[ ! -e out/.lock ] || fail "The lock is still there."
+
+# A killed run cannot remove the file.
+"${long_run[@]}" >first 2>&1 &
+process=$!
+wait_for "grep -qE '^ +10 ' first"
+kill -s KILL $process
+wait $process || true
+[ -e out/.lock ] || fail "The lock was not there."
+expect_code 0 "$debond" "$scene" --set "Output/Directory=out"
+[ ! -e out/.lock ] || fail "The lock is still there."
+
+# A study.
+cp "$scene" scene.prm
+cat >study.prm <<'STUDY'
+subsection Study
+  set Scene            = scene.prm
+  set Settings         = Solver/Euclidean bundle/Stop tolerance=1e-300 | Solver/Euclidean bundle/Maximum iterations=1000000000
+  set Output directory = study
+end
+subsection Sweep 1
+  set Parameter = Solver/Euclidean bundle/Proximal weight
+  set Values    = 1 | 0.5
+end
+STUDY
+"$debond" --study study.prm --jobs 1 >first 2>&1 &
+process=$!
+wait_for "[ -e study/.lock ]"
+expect_code 5 "$debond" --study study.prm --jobs 1
+grep -q "^debond: study is being written by process $process " errors ||
+  fail "not the process: $(cat errors)"
+kill $process
+wait $process || true
+[ ! -e study/.lock ] || fail "The lock of the study is still there."
