@@ -23,12 +23,12 @@ warped = WarpByVector(Input=body, Vectors=["POINTS", "displacement"],
 shown = Show(warped, view)
 shown.SetRepresentationType("Surface With Edges")
 shown.EdgeColor = [0.2, 0.2, 0.2]
-ColorBy(shown, ("POINTS", "von_mises"))
+ColorBy(shown, ("CELLS", "von_mises"))
 colours = GetColorTransferFunction("von_mises")
 colours.ApplyPreset("Viridis (matplotlib)", True)
 # The stress at the corners grows without bound with refinement: a range up to
 # a part of the maximum shows the rest of the body.
-top = 0.4 * warped.PointData["von_mises"].GetRange()[1]
+top = 0.4 * warped.CellData["von_mises"].GetRange()[1]
 colours.RescaleTransferFunction(0, top)
 shown.SetScalarBarVisibility(view, True)
 bar = GetScalarBar(colours, view)

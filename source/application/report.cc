@@ -169,6 +169,11 @@ namespace Debond
     for (const std::string &note : summary.notes)
       line(out, "note") << note << '\n';
     line(out, "J") << scientific(summary.functional, 10) << '\n';
+    if (summary.is_replaced)
+      line(out, "J from start")
+        << scientific(*summary.functional_from_start, 10)
+        << ", of the state that loading leads to; the lower one above was found"
+           " beside it\n";
     if (!summary.minimum.empty())
       {
         line(out, "minimum") << summary.minimum;
@@ -211,13 +216,19 @@ namespace Debond
         states += (states.empty() ? "" : ", ") + to_string(state) + " " +
                   std::to_string(count);
     line(out, "contact nodes") << states << '\n';
+    line(out, "largest") << "displacement "
+                         << scientific(summary.largest.displacement, 3)
+                         << ", its gradient "
+                         << scientific(summary.largest.gradient, 1)
+                         << ", von Mises stress "
+                         << scientific(summary.largest.von_mises, 3) << '\n';
 
     out << "Verification, from A u - f\n";
     line(out, "law violation")
       << error(summary.law_violation)
       << (parameters.law.name == "none" ?
-            ", relative to the largest displacement and force\n" :
-            ", relative to M and to a M times a node's share\n");
+            ", relative to the contact forces\n" :
+            ", relative to what bonds bear and to the contact forces\n");
     line(out, "penetration") << scientific(summary.penetration, 2) << '\n';
     line(out, "residual") << error(summary.equilibrium_residual)
                           << ", relative to the reactions\n";
@@ -237,6 +248,9 @@ namespace Debond
           << vector_text<dim>(verification.clamped_reaction) << '\n';
         line(out, "force of foundation")
           << vector_text<dim>(verification.contact_reaction) << '\n';
+        if (parameters.tangential_displacement_fixed)
+          line(out, "  tangential part")
+            << vector_text<dim>(verification.tangential_reaction) << '\n';
         report_timings(summary, out);
         out << "Memory in MB\n" << std::fixed << std::setprecision(0);
         line(out, "peak") << summary.peak_memory / 1e6 << ", estimated "

@@ -6,12 +6,14 @@
 #include <debond/application/expression.h>
 #include <debond/application/load_path.h>
 #include <debond/application/load_path_output.h>
+#include <debond/application/plausibility.h>
 #include <debond/application/report.h>
 #include <debond/application/run.h>
 #include <debond/application/run_checkpoints.h>
 #include <debond/application/solve.h>
 #include <debond/application/version.h>
 #include <debond/output/atomic_file.h>
+#include <debond/output/directory_lock.h>
 #include <debond/output/displacement.h>
 #include <debond/output/proof_plots.h>
 #include <debond/output/tables.h>
@@ -26,17 +28,13 @@ namespace Debond
 {
   namespace
   {
-    /// Creates the directory and writes the effective parameters into it.
+    /// Empties the directory and writes the effective parameters into it.
     /// Throws std::runtime_error naming what cannot be written.
     std::string
     open_output(const Parameters &parameters)
     {
       const std::filesystem::path directory = parameters.output.directory;
       std::error_code             error;
-      std::filesystem::create_directories(directory, error);
-      if (error)
-        throw std::runtime_error("cannot create the output directory " +
-                                 directory.string() + ": " + error.message());
 
       // What an earlier run left must not stand beside the new results.
       for (const char *name : {"body.vtu",
@@ -91,10 +89,12 @@ namespace Debond
     void
     add_result(const SolveResult &result, Summary &summary)
     {
-      summary.status     = to_string(result.status);
-      summary.message    = result.message;
-      summary.notes      = result.notes;
-      summary.functional = result.functional;
+      summary.status                = to_string(result.status);
+      summary.message               = result.message;
+      summary.notes                 = result.notes;
+      summary.functional            = result.functional;
+      summary.functional_from_start = result.functional_from_start;
+      summary.is_replaced           = result.is_replaced;
       if (result.status == SolverStatus::success)
         summary.minimum = to_string(result.minimum.kind);
       summary.search_trials       = result.minimum.search_trials;
@@ -133,6 +133,8 @@ namespace Debond
       summary.applied_force    = components(verification.applied_force);
       summary.clamped_reaction = components(verification.clamped_reaction);
       summary.contact_reaction = components(verification.contact_reaction);
+      summary.tangential_reaction =
+        components(verification.tangential_reaction);
       for (const BondState state : bond_states)
         summary.bond_states[to_string(state)] = verification.count(state);
     }
@@ -256,10 +258,13 @@ namespace Debond
       if (output.history)
         {
           files.push_back(path("history.csv"));
+          const std::optional<double> found =
+            result.is_replaced ? std::make_optional(result.functional) :
+                                 std::nullopt;
           if (result.majorise_history.empty())
-            write_history(result.bundle_history, files.back());
+            write_history(result.bundle_history, found, files.back());
           else
-            write_history(result.majorise_history, files.back());
+            write_history(result.majorise_history, found, files.back());
         }
       if (output.displacement)
         {
@@ -324,10 +329,12 @@ namespace Debond
                scene.problem(),
                dealii::Vector<double>(scene.problem().n_dofs()));
 
-    RunCheckpoints           checkpoints(parameters, choice);
-    std::vector<std::string> files;
+    RunCheckpoints               checkpoints(parameters, choice);
+    std::optional<DirectoryLock> lock;
+    std::vector<std::string>     files;
     try
       {
+        lock.emplace(parameters.output.directory);
         files.push_back(open_output(parameters));
       }
     catch (const std::runtime_error &error)
@@ -367,6 +374,12 @@ namespace Debond
     summary.timings_s["verification"]    = timer.wall_time();
     add_result(result, summary);
     add_verification(verification, summary);
+    summary.largest = largest_values(scene.problem(), result.u);
+    for (const std::string &note : plausibility_notes(
+           parameters,
+           scene.problem().applied_nodal_forces().linfty_norm() > 0.,
+           summary.largest))
+      summary.notes.push_back(note);
     if (!parameters.exact_displacement.empty())
       summary.displacement_error =
         error_of(parameters, scene.problem(), result.u);

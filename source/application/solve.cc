@@ -106,6 +106,31 @@ namespace Debond
 
 
 
+    /// The normal displacements of the contact nodes.
+    template <int dim>
+    Vector
+    normal_displacements(const Scene<dim> &scene, const Vector &u)
+    {
+      const auto &nodes = scene.problem().contact_boundary().nodes;
+      Vector      s(static_cast<unsigned int>(nodes.size()));
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        s(i) = u(nodes[i].dof);
+      return s;
+    }
+
+
+
+    /// J(u), from the strains.
+    template <int dim>
+    double
+    functional_of(const Scene<dim> &scene, const Vector &u)
+    {
+      return scene.problem().elastic_functional(u) +
+             scene.adhesion().value(normal_displacements(scene, u));
+    }
+
+
+
     template <int dim>
     void
     solve_by_euclidean_bundle(const Parameters &parameters,
@@ -245,7 +270,8 @@ namespace Debond
       if (result.status == SolverStatus::success)
         {
           timer.restart();
-          result.minimum = find_better_minimum(
+          const Vector followed = s;
+          result.minimum        = find_better_minimum(
             parameters,
             problem.contact_boundary(),
             scene.law(),
@@ -254,6 +280,13 @@ namespace Debond
             [&]() { return watch.may_go_on(); },
             s);
           result.parts["search and proof"] = timer.wall_time();
+          if (result.minimum.search_trials > 0 ||
+              result.minimum.proof_attempted)
+            {
+              result.functional_from_start =
+                functional_of(scene, condensed.expand(followed));
+              result.is_replaced = s != followed;
+            }
         }
 
       timer.restart();
@@ -401,15 +434,12 @@ namespace Debond
         solve_condensed(
           choice.method, parameters, scene, checkpoints, *watch, result);
     }
-    const auto &nodes = scene.problem().contact_boundary().nodes;
-    Vector      s(static_cast<unsigned int>(nodes.size()));
-    for (unsigned int i = 0; i < nodes.size(); ++i)
-      s(i) = result.u(nodes[i].dof);
     if (choice.linear_solver != LinearSolver::direct)
       result.minimum.kind =
-        kind_without_search(scene.law(), scene.adhesion(), s);
-    result.functional =
-      scene.problem().elastic_functional(result.u) + scene.adhesion().value(s);
+        kind_without_search(scene.law(),
+                            scene.adhesion(),
+                            normal_displacements(scene, result.u));
+    result.functional = functional_of(scene, result.u);
     return result;
   }
 

@@ -11,6 +11,9 @@
 #include <boost/accumulators/statistics/stats.hpp>
 #include <boost/accumulators/statistics/sum_kahan.hpp>
 
+#include <cmath>
+#include <limits>
+
 namespace Debond
 {
   template <int dim>
@@ -235,6 +238,39 @@ namespace Debond
 
 
   template <int dim>
+  dealii::Vector<double>
+  ElasticProblem<dim>::residual_rounding(const dealii::Vector<double> &u,
+                                         const double load_factor) const
+  {
+    const dealii::Vector<double> displacement = cartesian_displacement(u);
+    const double                 modulus      = stiffness.norm();
+
+    dealii::Vector<double> rounding(dofs.n_dofs());
+    for (const auto &cell : dofs.active_cell_iterators())
+      {
+        const LinearSimplex<dim> simplex(cell);
+        double                   gradient = 0.;
+        for (unsigned int v = 0; v <= dim; ++v)
+          {
+            double size = 0.;
+            for (unsigned int d = 0; d < dim; ++d)
+              size += std::abs(displacement[cell->vertex_dof_index(v, d)]);
+            gradient += size * simplex.gradients[v].norm();
+          }
+        for (unsigned int v = 0; v <= dim; ++v)
+          for (unsigned int d = 0; d < dim; ++d)
+            rounding[cell->vertex_dof_index(v, d)] +=
+              simplex.volume * modulus * gradient * simplex.gradients[v].norm();
+      }
+    for (unsigned int i = 0; i < rounding.size(); ++i)
+      rounding[i] = std::numeric_limits<double>::epsilon() *
+                    (rounding[i] + std::abs(load_factor * applied_forces[i]));
+    return rounding;
+  }
+
+
+
+  template <int dim>
   dealii::SymmetricTensor<2, dim>
   ElasticProblem<dim>::stress(
     const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
@@ -328,6 +364,9 @@ namespace Debond
   template dealii::Vector<double>
   ElasticProblem<2>::residual(const dealii::Vector<double> &,
                               const double) const;
+  template dealii::Vector<double>
+  ElasticProblem<2>::residual_rounding(const dealii::Vector<double> &,
+                                       const double) const;
   template std::vector<dealii::Vector<double>>
   ElasticProblem<2>::rigid_body_modes() const;
   template dealii::SymmetricTensor<2, 2>
@@ -359,6 +398,9 @@ namespace Debond
   template dealii::Vector<double>
   ElasticProblem<3>::residual(const dealii::Vector<double> &,
                               const double) const;
+  template dealii::Vector<double>
+  ElasticProblem<3>::residual_rounding(const dealii::Vector<double> &,
+                                       const double) const;
   template std::vector<dealii::Vector<double>>
   ElasticProblem<3>::rigid_body_modes() const;
   template dealii::SymmetricTensor<2, 3>

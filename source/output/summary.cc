@@ -78,10 +78,12 @@ namespace Debond
     json["notes"]         = summary.notes;
     json["dimension"]     = summary.dimension;
     json["functional"]    = summary.functional;
-    json["minimum"]       = {{"state", summary.minimum},
-                             {"search_trials", summary.search_trials},
-                             {"search_improvements", summary.search_improvements},
-                             {"search_nodes", summary.search_nodes}};
+    if (summary.functional_from_start)
+      json["functional_from_start"] = *summary.functional_from_start;
+    json["minimum"] = {{"state", summary.minimum},
+                       {"search_trials", summary.search_trials},
+                       {"search_improvements", summary.search_improvements},
+                       {"search_nodes", summary.search_nodes}};
     if (!summary.proof.empty())
       json["proof"] = {{"status", summary.proof},
                        {"nodes", summary.proof_nodes},
@@ -96,25 +98,29 @@ namespace Debond
     json["linear_iterations"]   = summary.linear_iterations;
     if (summary.condition_estimate)
       json["condition_estimate"] = *summary.condition_estimate;
-    json["memory_estimate_bytes"]    = summary.memory_estimate;
-    json["peak_memory_bytes"]        = summary.peak_memory;
-    json["cells"]                    = summary.cells;
-    json["degrees_of_freedom"]       = summary.degrees_of_freedom;
-    json["degrees_of_freedom_paper"] = summary.degrees_of_freedom_paper;
-    json["contact_nodes"]            = summary.contact_nodes;
-    json["law_violation"]            = summary.law_violation;
-    json["penetration"]              = summary.penetration;
-    json["equilibrium_residual"]     = summary.equilibrium_residual;
-    json["force_imbalance"]          = summary.force_imbalance;
+    json["memory_estimate_bytes"]         = summary.memory_estimate;
+    json["peak_memory_bytes"]             = summary.peak_memory;
+    json["cells"]                         = summary.cells;
+    json["degrees_of_freedom"]            = summary.degrees_of_freedom;
+    json["degrees_of_freedom_paper"]      = summary.degrees_of_freedom_paper;
+    json["contact_nodes"]                 = summary.contact_nodes;
+    json["law_violation"]                 = summary.law_violation;
+    json["penetration"]                   = summary.penetration;
+    json["equilibrium_residual"]          = summary.equilibrium_residual;
+    json["force_imbalance"]               = summary.force_imbalance;
+    json["largest_displacement"]          = summary.largest.displacement;
+    json["largest_displacement_gradient"] = summary.largest.gradient;
+    json["largest_von_mises"]             = summary.largest.von_mises;
     if (const auto &error = summary.displacement_error; error)
       json["displacement_error"] = {{"l2", error->l2},
                                     {"h1", error->h1},
                                     {"energy_norm", error->energy_norm},
                                     {"exact_energy", error->exact_energy}};
-    json["applied_force"]    = summary.applied_force;
-    json["clamped_reaction"] = summary.clamped_reaction;
-    json["contact_reaction"] = summary.contact_reaction;
-    json["bond_states"]      = summary.bond_states;
+    json["applied_force"]       = summary.applied_force;
+    json["clamped_reaction"]    = summary.clamped_reaction;
+    json["contact_reaction"]    = summary.contact_reaction;
+    json["tangential_reaction"] = summary.tangential_reaction;
+    json["bond_states"]         = summary.bond_states;
     if (summary.load_path)
       json["load_path"] = load_path_as_json(*summary.load_path);
     json["timings_s"]       = timings_as_json(summary.timings_s);

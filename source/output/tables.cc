@@ -32,7 +32,11 @@ namespace Debond
       set_full_precision(out);
       out << (dim == 2 ? "x,y," : "x,y,z,")
           << "u_nu,normal_force,normal_force_density,allowed_lower,"
-             "allowed_upper,violation,state\n";
+             "allowed_upper,violation,state";
+      for (unsigned int d = 0; d < dim; ++d)
+        out << ",tangential_force_"
+            << "xyz"[d];
+      out << '\n';
 
       for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
         {
@@ -43,8 +47,10 @@ namespace Debond
           out << state.u_nu << ',' << state.normal_force << ','
               << state.normal_force / node.measure << ','
               << state.allowed_force.lower << ',' << state.allowed_force.upper
-              << ',' << state.violation << ',' << to_string(state.state)
-              << '\n';
+              << ',' << state.violation << ',' << to_string(state.state);
+          for (unsigned int d = 0; d < dim; ++d)
+            out << ',' << verification.tangential_forces[i][d];
+          out << '\n';
         }
     });
   }
@@ -53,6 +59,7 @@ namespace Debond
 
   void
   write_history(const std::vector<BundleIteration> &history,
+                const std::optional<double>        &found,
                 const std::string                  &file_name)
   {
     write_atomically(file_name, [&](std::ostream &out) {
@@ -62,6 +69,8 @@ namespace Debond
         out << step.iteration << ',' << step.functional << ',' << step.v << ','
             << step.t_L << ',' << step.t_R << ',' << step.bundle_size << ','
             << step.qp_steps << ',' << to_string(step.kind) << '\n';
+      if (found)
+        out << history.size() + 1 << ',' << *found << ",,,,,,search\n";
     });
   }
 
@@ -69,6 +78,7 @@ namespace Debond
 
   void
   write_history(const std::vector<MajoriseMinimiseIteration> &history,
+                const std::optional<double>                  &found,
                 const std::string                            &file_name)
   {
     write_atomically(file_name, [&](std::ostream &out) {
@@ -79,6 +89,8 @@ namespace Debond
         out << step.iteration << ',' << step.functional << ',' << step.residual
             << ',' << step.active_set_steps << ',' << step.linear_iterations
             << ',' << step.n_active << '\n';
+      if (found)
+        out << history.size() + 1 << ',' << *found << ",,,,\n";
     });
   }
 

@@ -35,9 +35,8 @@ namespace Debond
   {
     // The comparisons of std::max would lose a NaN.
     return std::isfinite(equilibrium_residual + force_imbalance +
-                         contact_residual) ?
-             std::max(
-               {equilibrium_residual, force_imbalance, contact_residual}) :
+                         law_violation) ?
+             std::max({equilibrium_residual, force_imbalance, law_violation}) :
              std::numeric_limits<double>::infinity();
   }
 
@@ -57,42 +56,51 @@ namespace Debond
 
   namespace
   {
-    /// What displacements and tractions are compared with.
-    struct LawScales
+    /// What the displacement and the force of a node are compared with, see
+    /// Verification::law_violation.
+    struct LawScale
     {
       double length;
-      double traction;
+      double force;
     };
 
 
 
+    /// Of each node. @p rounding: of the nodes' forces.
     template <int dim>
-    double
-    largest_measure(const ContactBoundary<dim> &boundary)
-    {
-      double largest = 0.;
-      for (const auto &node : boundary.nodes)
-        largest = std::max(largest, node.measure);
-      return largest;
-    }
-
-
-
-    template <int dim>
-    LawScales
+    std::vector<LawScale>
     law_scales(const AdhesiveLaw                   &law,
                const ContactBoundary<dim>          &boundary,
                const std::vector<ContactNodeState> &nodes,
-               const double                         largest_reaction)
+               const std::vector<double>           &rounding,
+               const double                         largest_reaction,
+               const double                         largest_displacement)
     {
-      if (law.bond_threshold() > 0. && law.bond_strength() > 0.)
-        return {law.bond_threshold(), law.bond_strength()};
+      constexpr double smallest_contact_force = 1e-3;
+      constexpr double digits_above_rounding  = 1e4;
 
-      LawScales scales = {0., 0.};
+      double largest_force = smallest_contact_force * largest_reaction;
       for (const ContactNodeState &node : nodes)
-        scales.length = std::max(scales.length, std::abs(node.u_nu));
-      if (!boundary.nodes.empty())
-        scales.traction = largest_reaction / largest_measure(boundary);
+        largest_force = std::max(largest_force, std::abs(node.normal_force));
+
+      const bool has_bonds =
+        law.bond_threshold() > 0. && law.bond_strength() > 0.;
+      std::vector<LawScale> scales;
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        {
+          const double strength =
+            law.bond_strength() * boundary.nodes[i].measure;
+          LawScale scale = {largest_displacement, largest_force};
+          if (has_bonds)
+            scale.force = std::min(scale.force, strength);
+          scale.force =
+            std::max(scale.force, digits_above_rounding * rounding[i]);
+          if (has_bonds)
+            scale.length = std::min(scale.length,
+                                    law.bond_threshold() *
+                                      std::min(1., scale.force / strength));
+          scales.push_back(scale);
+        }
       return scales;
     }
 
@@ -101,12 +109,15 @@ namespace Debond
     BondState
     bond_state(const ContactNodeState &node,
                const AdhesiveLaw      &law,
-               const LawScales        &scales,
+               const LawScale         &scale,
                const double            largest_displacement,
                const double            tolerance)
     {
-      if (node.u_nu >=
-          -tolerance * std::min(scales.length, largest_displacement))
+      const bool   has_bonds = law.bond_strength() > 0.;
+      const double M         = law.bond_threshold();
+      if (node.u_nu >= -tolerance * (has_bonds ?
+                                       std::min(M, largest_displacement) :
+                                       largest_displacement))
         return BondState::contact;
 
       // A small gap under pressure is contact that an iterative method has not
@@ -114,15 +125,13 @@ namespace Debond
       constexpr double largest_gap = 1e-3;
       const double     gap =
         std::max(tolerance, std::min(largest_gap, 1.01 * node.violation));
-      if (node.normal_force > 0. && node.u_nu >= -gap * scales.length)
+      if (node.normal_force > 0. && node.u_nu >= -gap * scale.length)
         return BondState::contact;
-      if (!(law.bond_strength() > 0.))
+      if (!has_bonds)
         return BondState::free;
-      if (std::abs(node.u_nu + law.bond_threshold()) <=
-          tolerance * scales.length)
+      if (std::abs(node.u_nu + M) <= tolerance * M)
         return BondState::kink;
-      return node.u_nu < -law.bond_threshold() ? BondState::broken :
-                                                 BondState::bonded;
+      return node.u_nu < -M ? BondState::broken : BondState::bonded;
     }
 
 
@@ -155,10 +164,9 @@ namespace Debond
      */
     template <int dim>
     void
-    compute_violations(const ContactBoundary<dim>    &boundary,
-                       const AdhesionIntegral<dim>   &adhesion,
+    compute_violations(const AdhesionIntegral<dim>   &adhesion,
                        const dealii::Vector<double>  &s,
-                       const LawScales               &scales,
+                       const std::vector<LawScale>   &scales,
                        std::vector<ContactNodeState> &nodes)
     {
       const unsigned int n = static_cast<unsigned int>(nodes.size());
@@ -172,10 +180,9 @@ namespace Debond
           const double force_distance =
             distance(nodes[i].normal_force, nodes[i].allowed_force);
           if (force_distance > 0.)
-            upper[i] =
-              force_distance / (scales.traction * boundary.nodes[i].measure);
+            upper[i] = force_distance / scales[i].force;
           if (s(i) > 0.)
-            upper[i] = std::max(upper[i], s(i) / scales.length);
+            upper[i] = std::max(upper[i], s(i) / scales[i].length);
           if (upper[i] > 0.)
             lower[i] = std::numeric_limits<double>::min();
         }
@@ -188,7 +195,7 @@ namespace Debond
           for (unsigned int i = 0; i < n; ++i)
             {
               delta[i]  = std::sqrt(lower[i]) * std::sqrt(upper[i]);
-              radius[i] = delta[i] * scales.length;
+              radius[i] = delta[i] * scales[i].length;
             }
           const std::vector<Interval> intervals =
             adhesion.force_intervals(s, radius);
@@ -197,9 +204,8 @@ namespace Debond
               const Interval allowed =
                 unbounded_above_if(s(i) >= -radius[i], intervals[i]);
               const bool enough =
-                s(i) <= radius[i] &&
-                distance(nodes[i].normal_force, allowed) <=
-                  delta[i] * scales.traction * boundary.nodes[i].measure;
+                s(i) <= radius[i] && distance(nodes[i].normal_force, allowed) <=
+                                       delta[i] * scales[i].force;
               (enough ? upper : lower)[i] = delta[i];
             }
         }
@@ -249,9 +255,15 @@ namespace Debond
                           const double                  load_factor,
                           Verification<dim>            &result)
     {
-      std::vector<bool> is_normal(problem.n_dofs(), false);
-      for (const auto &node : problem.contact_boundary().nodes)
-        is_normal[node.dof] = true;
+      const auto               &nodes = problem.contact_boundary().nodes;
+      std::vector<bool>         is_normal(problem.n_dofs(), false);
+      std::vector<unsigned int> node_of_dof(
+        problem.n_dofs(), dealii::numbers::invalid_unsigned_int);
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        {
+          is_normal[nodes[i].dof]   = true;
+          node_of_dof[nodes[i].dof] = i;
+        }
 
       // What the supports and the foundation exert is the residual at their
       // degrees of freedom; all of it at a vertex with a contact node comes
@@ -259,6 +271,8 @@ namespace Debond
       dealii::Vector<double>    clamped(problem.n_dofs());
       dealii::Vector<double>    contact(problem.n_dofs());
       std::vector<unsigned int> component(problem.n_dofs());
+      std::vector<std::array<dealii::types::global_dof_index, dim>>
+        vertex_dofs_of_node(nodes.size());
       for (const auto &cell : problem.dof_handler().active_cell_iterators())
         for (const unsigned int v : cell->vertex_indices())
           {
@@ -272,6 +286,10 @@ namespace Debond
                 component[dof] = d;
                 if (is_normal[dof] || problem.is_constrained(dof))
                   (has_contact_node ? contact : clamped)(dof) = residual(dof);
+                if (is_normal[dof])
+                  for (unsigned int e = 0; e < dim; ++e)
+                    vertex_dofs_of_node[node_of_dof[dof]][e] =
+                      cell->vertex_dof_index(v, e);
               }
           }
 
@@ -287,6 +305,19 @@ namespace Debond
       result.applied_force    = load_factor * problem.total_load();
       result.clamped_reaction = resultant(clamped);
       result.contact_reaction = resultant(contact);
+
+      dealii::Vector<double> tangential = contact;
+      for (const auto &node : nodes)
+        tangential(node.dof) = 0.;
+      result.tangential_reaction = resultant(tangential);
+      tangential                 = problem.cartesian_forces(tangential);
+      for (const auto &dofs : vertex_dofs_of_node)
+        {
+          dealii::Tensor<1, dim> force;
+          for (unsigned int d = 0; d < dim; ++d)
+            force[d] = tangential(dofs[d]);
+          result.tangential_forces.push_back(force);
+        }
 
       // Resultants can vanish where forces do not.
       dealii::Vector<double> supports = clamped;
@@ -339,15 +370,26 @@ namespace Debond
         result.penetration = std::max(result.penetration, s(i));
       }
 
-    const LargestResiduals largest = largest_residuals(problem, residual);
-    const LawScales        scales =
-      law_scales(law, boundary, result.nodes, largest.supported);
-    compute_violations(boundary, adhesion, s, scales, result.nodes);
+    const LargestResiduals       largest = largest_residuals(problem, residual);
+    const dealii::Vector<double> rounding =
+      problem.residual_rounding(u, load_factor);
+    std::vector<double> rounding_at_nodes;
+    for (const auto &node : boundary.nodes)
+      rounding_at_nodes.push_back(rounding(node.dof));
+    const std::vector<LawScale> scales = law_scales(law,
+                                                    boundary,
+                                                    result.nodes,
+                                                    rounding_at_nodes,
+                                                    largest.supported,
+                                                    u.linfty_norm());
+    compute_violations(adhesion, s, scales, result.nodes);
 
     result.law_violation = 0.;
-    for (ContactNodeState &node : result.nodes)
+    for (unsigned int i = 0; i < result.nodes.size(); ++i)
       {
-        node.state = bond_state(node, law, scales, s.linfty_norm(), tolerance);
+        ContactNodeState &node = result.nodes[i];
+        node.state =
+          bond_state(node, law, scales[i], s.linfty_norm(), tolerance);
         result.law_violation = std::max(result.law_violation, node.violation);
       }
 
@@ -355,10 +397,6 @@ namespace Debond
       largest.free > 0. ?
         largest.free / std::max(largest.free, largest.supported) :
         0.;
-    result.contact_residual = result.law_violation;
-    if (largest.supported > 0.)
-      result.contact_residual *= std::min(
-        1., scales.traction * largest_measure(boundary) / largest.supported);
     compute_force_balance(problem, residual, load_factor, result);
     return result;
   }

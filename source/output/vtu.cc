@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
 #include <deal.II/numerics/data_out.h>
 
 #include <debond/output/atomic_file.h>
 #include <debond/output/vtu.h>
 
+#include <zlib.h>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
 #include <tuple>
 
 namespace Debond
@@ -23,12 +30,101 @@ namespace Debond
 
 
 
-    /// The fields on the contact boundary, the displacement first.
+    using Field = std::pair<std::string, std::vector<float>>;
+
+
+
+    std::string
+    as_base64(const void *const data, const std::size_t n_bytes)
+    {
+      const auto *const bytes = static_cast<const unsigned char *>(data);
+      return dealii::Utilities::encode_base64({bytes, bytes + n_bytes});
+    }
+
+
+
+    /// The numbers as one compressed block, as VTK reads them.
+    std::string
+    compressed(const std::vector<float> &numbers)
+    {
+      const auto n_bytes = static_cast<uLong>(numbers.size() * sizeof(float));
+      std::vector<unsigned char> block(compressBound(n_bytes));
+      uLongf                     n_compressed = block.size();
+      if (compress2(block.data(),
+                    &n_compressed,
+                    reinterpret_cast<const Bytef *>(numbers.data()),
+                    n_bytes,
+                    Z_BEST_SPEED) != Z_OK)
+        throw std::runtime_error("zlib cannot compress a field of cells");
+
+      const std::array<std::uint32_t, 4> header = {
+        {1,
+         static_cast<std::uint32_t>(n_bytes),
+         static_cast<std::uint32_t>(n_bytes),
+         static_cast<std::uint32_t>(n_compressed)}};
+      return as_base64(header.data(), sizeof(header)) +
+             as_base64(block.data(), n_compressed);
+    }
+
+
+
+    /// deal.II has no cell data in VTU files but numbers at the points of each
+    /// cell: so they are added to its text, a number for each cell.
+    void
+    write_with_cell_data(const std::string        &vtu,
+                         const std::vector<Field> &fields,
+                         std::ostream             &out)
+    {
+      const std::size_t end = vtu.rfind("</Piece>");
+      AssertThrow(end != std::string::npos, dealii::ExcInternalError());
+      out.write(vtu.data(), static_cast<std::streamsize>(end));
+      out << "<CellData>\n";
+      for (const auto &[name, numbers] : fields)
+        out << "<DataArray type=\"Float32\" Name=\"" << name
+            << "\" format=\"binary\">\n"
+            << compressed(numbers) << "\n</DataArray>\n";
+      out << "</CellData>\n";
+      out.write(vtu.data() + end,
+                static_cast<std::streamsize>(vtu.size() - end));
+    }
+
+
+
+    /// bond_state of a vertex that is held, after those of BondState.
+    constexpr float held = static_cast<float>(bond_states.size());
+
+    /// The fields at points of the contact boundary, after two vectors.
     const std::vector<std::string> contact_scalars = {"u_nu",
                                                       "gap",
                                                       "normal_force_density",
-                                                      "bond_state",
                                                       "law_violation"};
+
+    template <int dim>
+    using ContactValues = std::array<double, 2 * dim + 4>;
+
+
+
+    /// Between points, without those at which a value is not known.
+    template <int dim>
+    ContactValues<dim>
+    mean(const ContactValues<dim>              &own,
+         const std::vector<ContactValues<dim>> &others)
+    {
+      ContactValues<dim> result;
+      for (unsigned int c = 0; c < own.size(); ++c)
+        {
+          double       sum = own[c];
+          unsigned int n   = 1;
+          for (const ContactValues<dim> &other : others)
+            if (!std::isnan(other[c]))
+              {
+                sum += other[c];
+                ++n;
+              }
+          result[c] = sum / n;
+        }
+      return result;
+    }
 
 
 
@@ -88,48 +184,54 @@ namespace Debond
         dealii::DataComponentInterpretation::DataComponentInterpretation>(
         dim, component_is_part_of_vector));
 
-    const unsigned int n_cells =
+    const Material   &material = problem.material();
+    const std::size_t n_cells =
       problem.dof_handler().get_triangulation().n_active_cells();
-    std::vector<dealii::Vector<float>> stresses(
-      dealii::SymmetricTensor<2, dim>::n_independent_components,
-      dealii::Vector<float>(n_cells));
-    dealii::Vector<float> von_mises(n_cells);
-    dealii::Vector<float> energy_density(n_cells);
-
-    const dealii::SymmetricTensor<4, dim> compliance =
-      dealii::invert(problem.material().template elasticity_tensor<dim>());
-    for (const auto &cell : problem.dof_handler().active_cell_iterators())
-      {
-        const unsigned int                    index = cell->active_cell_index();
-        const dealii::SymmetricTensor<2, dim> stress =
-          problem.stress(cell, displacement);
-        for (unsigned int c = 0; c < stresses.size(); ++c)
-          stresses[c](index) = static_cast<float>(stress.access_raw_entry(c));
-        von_mises(index) = static_cast<float>(
-          problem.material().template von_mises<dim>(stress));
-        energy_density(index) =
-          static_cast<float>(0.5 * (stress * (compliance * stress)));
-      }
-
-    for (unsigned int c = 0; c < stresses.size(); ++c)
+    std::vector<Field> fields;
+    const auto         add_field = [&](const std::string &name) {
+      fields.emplace_back(name, std::vector<float>());
+      fields.back().second.reserve(n_cells);
+    };
+    constexpr unsigned int n_components =
+      dealii::SymmetricTensor<2, dim>::n_independent_components;
+    for (unsigned int c = 0; c < n_components; ++c)
       {
         const auto ij =
           dealii::SymmetricTensor<2, dim>::unrolled_to_component_indices(c);
-        data_out.add_data_vector(stresses[c],
-                                 std::string("stress_") + axes[ij[0]] +
-                                   axes[ij[1]],
-                                 dealii::DataOut<dim>::type_cell_data);
+        add_field(std::string("stress_") + axes[ij[0]] + axes[ij[1]]);
       }
-    data_out.add_data_vector(von_mises,
-                             "von_mises",
-                             dealii::DataOut<dim>::type_cell_data);
-    data_out.add_data_vector(energy_density,
-                             "strain_energy_density",
-                             dealii::DataOut<dim>::type_cell_data);
-    data_out.build_patches(problem.mapping());
+    const bool plane_strain =
+      dim == 2 && material.hypothesis == Material::Hypothesis::plane_strain;
+    if (plane_strain)
+      add_field("stress_zz");
+    add_field("von_mises");
+    add_field("strain_energy_density");
 
-    write_atomically(file_name,
-                     [&](std::ostream &out) { data_out.write_vtu(out); });
+    // In the order of deal.II's patches.
+    const dealii::SymmetricTensor<4, dim> compliance =
+      dealii::invert(material.template elasticity_tensor<dim>());
+    for (const auto &cell : problem.dof_handler().active_cell_iterators())
+      {
+        const dealii::SymmetricTensor<2, dim> stress =
+          problem.stress(cell, displacement);
+        auto       field = fields.begin();
+        const auto add   = [&field](const double number) {
+          (field++)->second.push_back(static_cast<float>(number));
+        };
+        for (unsigned int c = 0; c < n_components; ++c)
+          add(stress.access_raw_entry(c));
+        if (plane_strain)
+          add(material.poisson_ratio * dealii::trace(stress));
+        add(material.template von_mises<dim>(stress));
+        add(0.5 * (stress * (compliance * stress)));
+      }
+
+    data_out.build_patches(problem.mapping());
+    std::ostringstream vtu;
+    data_out.write_vtu(vtu);
+    write_atomically(file_name, [&](std::ostream &out) {
+      write_with_cell_data(vtu.str(), fields, out);
+    });
   }
 
 
@@ -141,53 +243,106 @@ namespace Debond
                     const Verification<dim>      &verification,
                     const std::string            &file_name)
   {
+    constexpr double            nan = std::numeric_limits<double>::quiet_NaN();
     const ContactBoundary<dim> &boundary = problem.contact_boundary();
     const std::vector<dealii::Tensor<1, dim>> displacements =
       contact_displacements(problem, u);
 
-    std::vector<dealii::DataOutBase::Patch<dim - 1, dim>> patches(
-      boundary.faces.size());
-    for (unsigned int f = 0; f < patches.size(); ++f)
-      {
-        const auto &face  = boundary.faces[f];
-        auto       &patch = patches[f];
+    const auto values_of = [&](const unsigned int node) {
+      ContactValues<dim> values = {};
+      if (node == dealii::numbers::invalid_unsigned_int)
+        {
+          // What a clamp bears there is not the foundation's.
+          std::fill(values.begin() + dim, values.begin() + 2 * dim, nan);
+          values[2 * dim + 2] = values[2 * dim + 3] = nan;
+          return values;
+        }
+      const ContactNodeState &state   = verification.nodes[node];
+      const double            measure = boundary.nodes[node].measure;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          values[d]       = displacements[node][d];
+          values[dim + d] = verification.tangential_forces[node][d] / measure;
+        }
+      values[2 * dim]     = state.u_nu;
+      values[2 * dim + 1] = -state.u_nu;
+      values[2 * dim + 2] = state.normal_force / measure;
+      values[2 * dim + 3] = state.violation;
+      return values;
+    };
 
-        patch.patch_index    = f;
-        patch.reference_cell = dim == 2 ? dealii::ReferenceCells::Line :
-                                          dealii::ReferenceCells::Triangle;
-        patch.data.reinit(dim + contact_scalars.size(), dim);
+    // Each vertex has its share of the face, so that its state can be shown
+    // without a transition to that of its neighbours.
+    std::vector<dealii::DataOutBase::Patch<dim - 1, dim>> patches;
+    Field states = {"bond_state", {}};
+    for (const auto &face : boundary.faces)
+      {
+        std::array<ContactValues<dim>, dim> values;
+        for (unsigned int k = 0; k < dim; ++k)
+          values[k] = values_of(face.nodes[k]);
+
         for (unsigned int k = 0; k < dim; ++k)
           {
-            patch.vertices[k]       = face.vertices[k];
-            const unsigned int node = face.nodes[k];
-            if (node == dealii::numbers::invalid_unsigned_int)
-              continue;
+            const unsigned int next = (k + 1) % dim, last = (k + dim - 1) % dim;
+            dealii::DataOutBase::Patch<dim - 1, dim> patch;
+            patch.patch_index    = static_cast<unsigned int>(patches.size());
+            patch.reference_cell = dim == 2 ?
+                                     dealii::ReferenceCells::Line :
+                                     dealii::ReferenceCells::Quadrilateral;
+            patch.data.reinit(2 * dim + contact_scalars.size(), 2 * (dim - 1));
+            const auto set_point = [&](const unsigned int        point,
+                                       const dealii::Point<dim> &position,
+                                       const ContactValues<dim> &at_point) {
+              patch.vertices[point] = position;
+              for (unsigned int c = 0; c < at_point.size(); ++c)
+                patch.data(c, point) = static_cast<float>(at_point[c]);
+            };
+            const auto middle = [&face, k](const unsigned int other) {
+              return face.vertices[k] +
+                     0.5 * (face.vertices[other] - face.vertices[k]);
+            };
+            set_point(0, face.vertices[k], values[k]);
+            set_point(1, middle(next), mean<dim>(values[k], {values[next]}));
+            if constexpr (dim == 3)
+              {
+                set_point(2,
+                          middle(last),
+                          mean<dim>(values[k], {values[last]}));
+                set_point(3,
+                          face.vertices[0] +
+                            (face.vertices[1] - face.vertices[0]) / 3. +
+                            (face.vertices[2] - face.vertices[0]) / 3.,
+                          mean<dim>(values[k], {values[next], values[last]}));
+              }
+            patches.push_back(patch);
 
-            const ContactNodeState &state = verification.nodes[node];
-            for (unsigned int d = 0; d < dim; ++d)
-              patch.data(d, k) = static_cast<float>(displacements[node][d]);
-            patch.data(dim, k)     = static_cast<float>(state.u_nu);
-            patch.data(dim + 1, k) = static_cast<float>(-state.u_nu);
-            patch.data(dim + 2, k) = static_cast<float>(
-              state.normal_force / boundary.nodes[node].measure);
-            patch.data(dim + 3, k) = static_cast<float>(state.state);
-            patch.data(dim + 4, k) = static_cast<float>(state.violation);
+            const unsigned int node = face.nodes[k];
+            states.second.push_back(
+              node == dealii::numbers::invalid_unsigned_int ?
+                held :
+                static_cast<float>(verification.nodes[node].state));
           }
       }
 
     std::vector<std::string> names(dim, "displacement");
+    names.insert(names.end(), dim, "tangential_force_density");
     names.insert(names.end(), contact_scalars.begin(), contact_scalars.end());
+    const auto vector_at = [](const unsigned int first, const char *name) {
+      return std::make_tuple(
+        first,
+        first + dim - 1,
+        std::string(name),
+        dealii::DataComponentInterpretation::component_is_part_of_vector);
+    };
+    std::ostringstream vtu;
+    dealii::DataOutBase::write_vtu(patches,
+                                   names,
+                                   {vector_at(0, "displacement"),
+                                    vector_at(dim, "tangential_force_density")},
+                                   vtk_flags(),
+                                   vtu);
     write_atomically(file_name, [&](std::ostream &out) {
-      dealii::DataOutBase::write_vtu(
-        patches,
-        names,
-        {std::make_tuple(
-          0U,
-          static_cast<unsigned int>(dim - 1),
-          std::string("displacement"),
-          dealii::DataComponentInterpretation::component_is_part_of_vector)},
-        vtk_flags(),
-        out);
+      write_with_cell_data(vtu.str(), {states}, out);
     });
   }
 

@@ -69,7 +69,8 @@ namespace Debond
         {
           const std::vector<std::string> entries =
             dealii::Utilities::split_string_list(line, ',');
-          if (entries.size() != titles.size() || column == titles.size())
+          // The last row may have nothing but J, see write_history().
+          if (entries.size() > titles.size() || column >= entries.size())
             throw std::runtime_error("Cannot read " + file_name +
                                      ": its rows do not fit its titles");
           functionals.push_back(std::stod(entries[column]));

@@ -31,6 +31,38 @@ mv output/bar first
 cmp first/history.csv output/bar/history.csv ||
   fail "The effective parameters give another result."
 
+# The search finds a lower state than the one that the method led to: with J as
+# it is known from an enumeration of bond states. The log, the summary and the
+# history have both.
+"$debond" bar.prm --set "Mesh/Cells=40, 4" \
+  --set "Contact law/Bond stiffness=690" --set "Output/Directory=found" >log
+grep -q "^  J  *-2.39731275..e-04$" log || fail "the least J: $(cat log)"
+grep -q "^  J from start  *-7.35454955..e-05, " log ||
+  fail "J of the state that was followed: $(cat log)"
+grep -q '"functional_from_start": -7.35454955' found/summary.json ||
+  fail "not in the summary"
+[ "$(column found/history.csv functional | tail -n 2 | cut -c 1-12 | tr '\n' ' ')" = \
+  "-7.354549556 -2.397312753 " ] || fail "history: $(cat found/history.csv)"
+
+# What is suspicious is noted, and nothing else.
+notes() {
+  "$debond" bar.prm "$@" --set "Output/Directory=noted" >log
+  sed -n 's/^  note  *//p' log
+}
+small="Loads/Traction top=0; -1e-3"
+[ -z "$(notes --set "Mesh/Cells=40, 4" --set "$small")" ] || fail "$(cat log)"
+notes --set "Mesh/Cells=40, 4" --set "Loads/Traction top=" |
+  grep -qx "the scene has no load" || fail "no load: $(cat log)"
+# Strained by 0.1 in the direction of a side that nothing holds.
+notes --set "Mesh/Cells=40, 4" --set "Loads/Traction top=0; 6.9" |
+  grep -q "^displacement gradients up to " || fail "gradients: $(cat log)"
+[ "$(notes --set "Mesh/Cells=10, 1" --set "$small")" = "cells of 1 times the\
+ body's thickness: bent, a strip has about 63 % of its J, with a quarter 96 %" ] ||
+  fail "thin: $(cat log)"
+[ "$(notes --set "Mesh/Lengths=1, 1" --set "Mesh/Cells=4, 40" --set "$small")" = \
+  "cells are stretched by a factor of 10, which makes them stiff where they bend" ] ||
+  fail "stretched: $(cat log)"
+
 # Switched off.
 "$debond" bar.prm --set "Output/Directory=few" --set "Output/Body VTU=false" \
   --set "Output/Contact VTU=false" --set "Output/Contact profile=false" \

@@ -7,6 +7,8 @@
 
 #include <debond/elasticity/crossed_mesh.h>
 #include <debond/output/atomic_file.h>
+#include <debond/output/directory_lock.h>
+#include <debond/output/largest_values.h>
 #include <debond/output/progress.h>
 #include <debond/output/summary.h>
 #include <debond/output/tables.h>
@@ -105,7 +107,7 @@ namespace
     const std::vector<BundleIteration> history = {
       {1, -1. / 3e4, -0.1, 1., 1., 1, 4, StepKind::long_step},
       {2, -5.7774619650983e-4, -1e-300, 0., 0.25, 2, 0, StepKind::null_step}};
-    write_history(history, "history.csv");
+    write_history(history, {}, "history.csv");
 
     const auto rows = read_csv("history.csv");
     for (const std::string &title : rows.at(0))
@@ -126,7 +128,20 @@ namespace
                 row[7] == to_string(history[i].kind);
       }
     check("every number is read back to the last bit", same);
-    print_error([&] { write_history(history, "no-such-directory/h.csv"); });
+    print_error([&] { write_history(history, {}, "no-such-directory/h.csv"); });
+
+    write_history(history, -1e-3, "history.csv");
+    const auto found = read_csv("history.csv").back();
+    check("a found state has the last row",
+          found.size() == 8 && found[0] == "3" &&
+            std::stod(found[1]) == -1e-3 && found[7] == "search");
+    write_history(
+      std::vector<MajoriseMinimiseIteration>{{1, -1e-4, 1e-12, 3, 0, 5}},
+      -1e-3,
+      "history.csv");
+    check("also after majorise-minimise",
+          contents("history.csv").find("\n2,-1.0000000000000000e-03,,,,\n") !=
+            std::string::npos);
   }
 
 
@@ -273,6 +288,17 @@ namespace
       return u;
     }
 
+    /// Of the first contact node: the force on it is linear in its
+    /// displacement.
+    double
+    displacement_without_contact() const
+    {
+      const auto force = [this](const double s) {
+        return check_law(equilibrium(s), "none", 0., 1.).nodes[0].normal_force;
+      };
+      return force(0.) / (force(0.) - force(-1.)) * -1.;
+    }
+
     Verification<dim>
     check_law(const dealii::Vector<double> &u,
               const std::string            &name,
@@ -326,24 +352,65 @@ namespace
             near(bonded.nodes[0].allowed_force.lower, force) &&
             near(bonded.nodes[0].allowed_force.upper, force));
 
-    // The law asks for (1 + e) times the force. Displacements within delta M
-    // and forces within delta a M of them close the gap at delta = e / (4 (1 +
-    // e)), as M = 2 |s|.
+    // The law asks for (1 + e) times the force. M = 2 |s|, so that the force of
+    // the node is the scale F, and L = F / (a measure) = |s| / (1 + e):
+    // displacements within delta L and forces within delta F close the gap at
+    // delta = e / 2.
     bool expected = true;
-    for (const double e : {1e-8, 1e-3, 0.2})
+    for (const double e : {1e-8, 1e-3, 0.048, 0.2})
       expected &=
         std::abs(
           pulled.check_law(u, "winkler", a * (1. + e), -2. * s).law_violation -
-          e / (4. * (1. + e))) < 1e-14;
+          e / 2.) < 1e-13;
     check("a bonded node off the graph by a known distance", expected);
 
-    // Bonds that break a little before s: the force is one of those at -M.
+    // The same however far M is above all displacements.
+    expected = true;
+    for (const double M : {1e-3, 1., 1e6, 1e12})
+      {
+        const auto wrong = pulled.check_law(u, "winkler", 1.048 * a, M);
+        const auto right = pulled.check_law(u, "winkler", a, M);
+        expected &= std::abs(wrong.law_violation - 0.024) < 1e-12 &&
+                    wrong.error() > 1e-3 && right.error() < 1e-12;
+      }
+    check("a bond force 4.8 % off is never accepted", expected);
+
+    // Bonds that bear next to nothing beside the reactions, broken, but with
+    // the force of a bond left: that is off by all that they bear, unless they
+    // bear less than rounding.
+    const double free_s = pulled.displacement_without_contact();
+    expected            = true;
+    for (const double strength : {1e-3, 1e-6, 1e-9})
+      {
+        const double F    = strength * std::abs(force);
+        const double M    = -free_s / 10.;
+        const auto   rest = pulled.check_law(pulled.equilibrium(free_s),
+                                           "winkler",
+                                           F / (M * node.measure),
+                                           M);
+        const auto   off =
+          pulled.check_law(pulled.equilibrium(free_s + strength * (s - free_s)),
+                           "winkler",
+                           F / (M * node.measure),
+                           M);
+        expected &= rest.law_violation < 1e-3 && rest.error() < 1e-3 &&
+                    std::abs(off.law_violation - 1.) < 1e-3;
+      }
+    check("weak bonds: a force left over as large as theirs is not accepted",
+          expected);
+    const auto below_rounding =
+      pulled.check_law(pulled.equilibrium(free_s), "winkler", 1e-25 * a, -s);
+    check("bonds weaker than rounding are not the judge of it",
+          below_rounding.law_violation < 1e-3);
+
+    // Bonds that break a little before s: the force is one of those at -M. The
+    // bonds bear twice the force, which is the scale: L = M / (2 (1 - e)).
     expected = true;
     for (const double e : {1e-12, 1e-8, 1e-3, 0.1})
       {
         const auto broken =
           pulled.check_law(u, "winkler", 2. * a, -s * (1. - e));
-        expected &= std::abs(broken.law_violation - e / (1. - e)) < 1e-15 &&
+        expected &= std::abs(broken.law_violation - 2. * e) < 1e-14 &&
                     broken.nodes[0].state ==
                       (e < 1e-6 ? BondState::kink : BondState::broken) &&
                     broken.nodes[0].allowed_force.upper == 0.;
@@ -361,19 +428,19 @@ namespace
     const double M   = -s / 10.;
     const auto   far = pulled.check_law(u, "winkler", a * s / (-0.01 * M), M);
     check("a node far beyond the kink by a known distance",
-          near(far.law_violation, 0.01) &&
+          near(far.law_violation, 1.) &&
             far.nodes[0].state == BondState::broken);
 
-    // Held at zero against a pull, while the bonds give at most twice delta a
-    // M for a distance delta.
+    // Held at zero against a pull, F, while the bonds give at most twice delta
+    // F for a distance delta.
     const auto   held = pulled.equilibrium(0.);
     const double pull =
       -pulled.check_law(held, "none", 0., 1.).nodes[0].normal_force;
-    const double M_held = 1e-3;
+    const double M_held = 1e-4;
     const double a_held = pull / (0.1 * M_held * node.measure);
     check("a node in contact that is pulled by a known distance",
           near(pulled.check_law(held, "winkler", a_held, M_held).law_violation,
-               0.05));
+               0.5));
 
     // Pressed on the foundation: on the graph at 0, off it by the distance
     // from 0 on either side.
@@ -382,7 +449,8 @@ namespace
     const double  push =
       pressed.check_law(at_zero, "none", 0., 1.).nodes[0].normal_force;
     check("the foundation has to push", push > 1e-5 * scale);
-    const double a_pressed = push / (M_held * node.measure);
+    // The bonds bear half of the push.
+    const double a_pressed = push / (2. * M_held * node.measure);
     const auto   in_contact =
       pressed.check_law(at_zero, "winkler", a_pressed, M_held);
     check("a node in contact on the graph",
@@ -411,12 +479,13 @@ namespace
     // ones.
     check("without adhesion, on the graph",
           pressed.check_law(at_zero, "none", 0., 1.).law_violation == 0.);
+    const dealii::Vector<double> penetrating = pressed.equilibrium(1e-5);
+    const auto off_by_little = pressed.check_law(penetrating, "none", 0., 1.);
     check("without adhesion, off the graph",
           near(pulled.check_law(u, "none", 0., 1.).law_violation, 1.) &&
             near(pulled.check_law(held, "winkler", 0., 1.).law_violation, 1.) &&
-            near(pressed.check_law(pressed.equilibrium(1e-5), "none", 0., 1.)
-                   .law_violation,
-                 1.));
+            near(off_by_little.law_violation,
+                 1e-5 / penetrating.linfty_norm()));
   }
 
 
@@ -469,6 +538,15 @@ namespace
           std::abs(result.contact_reaction[1] - push) <
               1e-13 * applied.norm() &&
             std::abs(push) > 1e-3 * applied.norm());
+    dealii::Tensor<1, dim> tangential;
+    for (const auto &force : result.tangential_forces)
+      tangential += force;
+    check("tangential forces are what is not normal",
+          std::abs(result.tangential_reaction[0] - result.contact_reaction[0]) <
+              1e-13 * applied.norm() &&
+            std::abs(result.tangential_reaction[1]) < 1e-13 * applied.norm() &&
+            (tangential - result.tangential_reaction).norm() <
+              1e-13 * applied.norm());
     check("free nodes are in equilibrium", result.equilibrium_residual < 1e-13);
 
     // One free displacement off by a little.
@@ -528,12 +606,15 @@ namespace
                                             node.allowed_force.upper,
                                             node.violation};
         const auto               &row    = rows.at(i + 1);
-        same &= row.size() == dim + values.size() + 1;
+        same &= row.size() == 2 * dim + values.size() + 1;
         for (unsigned int d = 0; d < dim; ++d)
           same &= std::stod(row[d]) == boundary.nodes[i].position[d];
         for (unsigned int k = 0; k < values.size(); ++k)
           same &= std::stod(row[dim + k]) == values[k];
-        same &= row.back() == to_string(node.state);
+        same &= row.at(dim + values.size()) == to_string(node.state);
+        for (unsigned int d = 0; d < dim; ++d)
+          same &= std::stod(row.at(dim + values.size() + 1 + d)) ==
+                  result.tangential_forces[i][d];
       }
     check("every number is read back to the last bit", same);
 
@@ -558,6 +639,7 @@ namespace
     check("contact VTU has its fields",
           has_fields("contact-" + suffix + ".vtu",
                      {"displacement",
+                      "tangential_force_density",
                       "u_nu",
                       "gap",
                       "normal_force_density",
@@ -565,6 +647,66 @@ namespace
                       "law_violation"}));
     print_error(
       [&] { write_body_vtu(problem, u, "no-such-directory/body.vtu"); });
+  }
+
+
+
+  /// Of a displacement (e x, g x), with the stress of plane strain by hand.
+  void
+  test_largest_values()
+  {
+    std::cout << "== Largest values" << std::endl;
+    dealii::Triangulation<2> mesh;
+    make_box<2>({{{2., 1., 1.}}, {{2, 1, 1}}, 0.}, mesh);
+    ElasticProblem<2> problem(
+      mesh, BoundaryConditions{{boundary_names<2>().at("left")}, {}, true});
+    const Material material = {69., 0.3, Material::Hypothesis::plane_strain};
+    problem.assemble(material, {});
+
+    const double           e = 1e-2, g = -3e-2;
+    dealii::Vector<double> u(problem.n_dofs());
+    for (const auto &cell : problem.dof_handler().active_cell_iterators())
+      for (const unsigned int v : cell->vertex_indices())
+        {
+          u(cell->vertex_dof_index(v, 0)) = e * cell->vertex(v)[0];
+          u(cell->vertex_dof_index(v, 1)) = g * cell->vertex(v)[0];
+        }
+    const LargestValues largest = largest_values(problem, u);
+    const double        mu      = 69. / (2. * 1.3);
+    check("displacement, gradient and von Mises stress",
+          near(largest.displacement, 2. * std::hypot(e, g)) &&
+            near(largest.gradient, std::hypot(e, g)) &&
+            near(largest.von_mises, mu * std::sqrt(4. * e * e + 3. * g * g)));
+  }
+
+
+
+  void
+  test_directory_lock()
+  {
+    std::cout << "== Lock of a directory" << std::endl;
+    {
+      const DirectoryLock lock("locked/inside");
+      check("it says who holds it",
+            contents("locked/inside/.lock").find("process ") == 0);
+      bool refused = false;
+      try
+        {
+          const DirectoryLock second("locked/inside");
+        }
+      catch (const std::runtime_error &)
+        {
+          refused = true;
+        }
+      check("there is one at a time", refused);
+    }
+    check("it is removed", !std::filesystem::exists("locked/inside/.lock"));
+    std::ofstream("locked/inside/.lock") << "process 1 on elsewhere\n";
+    const DirectoryLock lock("locked/inside");
+    check("what a killed process left is taken over",
+          contents("locked/inside/.lock").find("elsewhere") ==
+            std::string::npos);
+    print_error([] { const DirectoryLock blocked("history.csv/x"); });
   }
 } // namespace
 
@@ -581,6 +723,8 @@ main()
   test_history();
   test_summary();
   test_progress();
+  test_largest_values();
+  test_directory_lock();
   for (const double young_modulus : {69., 6.9e10})
     {
       test_law_violation(young_modulus);

@@ -46,6 +46,11 @@ namespace Debond
     /// Of a success.
     WhichMinimum minimum;
 
+    /// J of the state that the method led to, if search and proof could replace
+    /// it by a lower one, and whether they did.
+    std::optional<double> functional_from_start;
+    bool                  is_replaced = false;
+
     /// What did not go as it should without keeping the method from its end.
     std::vector<std::string> notes;
 

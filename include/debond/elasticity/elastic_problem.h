@@ -146,6 +146,16 @@ namespace Debond
     residual(const dealii::Vector<double> &u,
              const double                  load_factor = 1.) const;
 
+    /**
+     * What the rounding of u to double precision can make of residual(u,
+     * load_factor) at each degree of freedom: epsilon (|A| |u| + |f|), with
+     * norms of each cell's entries. No u can be expected to have a smaller
+     * residual.
+     */
+    dealii::Vector<double>
+    residual_rounding(const dealii::Vector<double> &u,
+                      const double                  load_factor = 1.) const;
+
     /// The forces in the unknowns' frames (such as a residual) as Cartesian
     /// components.
     dealii::Vector<double>

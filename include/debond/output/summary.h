@@ -3,6 +3,7 @@
 #define debond_output_summary_h
 
 #include <debond/output/displacement_error.h>
+#include <debond/output/largest_values.h>
 #include <debond/output/load_path.h>
 
 #include <map>
@@ -26,6 +27,12 @@ namespace Debond
 
     unsigned int dimension  = 2;
     double       functional = 0.;
+
+    /// J of the state to which the method led from its start, which is rest
+    /// unless the scene says otherwise, if there was a search or a proof: they
+    /// may have found a lower one.
+    std::optional<double> functional_from_start;
+    bool                  is_replaced = false; ///< by a lower state
 
     /// stationary, local minimum, best known or global; empty if there is no
     /// verified result.
@@ -56,6 +63,8 @@ namespace Debond
     double       equilibrium_residual     = 0.;
     double       force_imbalance          = 0.;
 
+    LargestValues largest;
+
     /// Of the elastic problem on the contact normals, if there was one.
     std::optional<double> condition_estimate;
 
@@ -66,6 +75,7 @@ namespace Debond
     std::vector<double> applied_force;
     std::vector<double> clamped_reaction;
     std::vector<double> contact_reaction;
+    std::vector<double> tangential_reaction; ///< part of contact_reaction
 
     /// contact, bonded, kink, broken: number of contact nodes.
     std::map<std::string, unsigned int> bond_states;

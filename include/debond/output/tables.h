@@ -7,6 +7,7 @@
 #include <debond/optimization/proximal_bundle.h>
 #include <debond/output/verification.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,8 @@ namespace Debond
   /**
    * The paper's Figures 5 and 6 as CSV, one row per contact node: x, y[, z],
    * u_nu, normal_force, normal_force_density, allowed_lower, allowed_upper,
-   * violation, state, with 16 digits. Throws std::runtime_error naming the
-   * file if it cannot be written.
+   * violation, state, tangential_force_x, ..., with 16 digits. Throws
+   * std::runtime_error naming the file if it cannot be written.
    */
   template <int dim>
   void
@@ -25,15 +26,20 @@ namespace Debond
                         const std::string          &file_name);
 
   /// The iteration history as CSV: iteration, functional, v, t_L, t_R,
-  /// bundle_size, qp_steps, kind.
+  /// bundle_size, qp_steps, kind. @p found: J of the state that a search or a
+  /// proof put in the place of the last iterate, for a last row with this
+  /// number and the kind "search".
   void
   write_history(const std::vector<BundleIteration> &history,
+                const std::optional<double>        &found,
                 const std::string                  &file_name);
 
   /// The same for majorise-minimise: iteration, functional, residual,
-  /// active_set_steps, linear_iterations, contact_nodes.
+  /// active_set_steps, linear_iterations, contact_nodes. The row of @p found
+  /// has the first two.
   void
   write_history(const std::vector<MajoriseMinimiseIteration> &history,
+                const std::optional<double>                  &found,
                 const std::string                            &file_name);
 
   /// The same for a proof: nodes, open nodes, lower bound, J, seconds.

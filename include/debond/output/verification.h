@@ -67,17 +67,22 @@ namespace Debond
     /**
      * Largest distance to the contact law over all contact nodes: the least
      * delta for which the node's force is within delta F_i of what the law
-     * allows at displacements within delta M of u_nu. Here F_i = a M times
-     * the measure of the node. Without adhesion M is the largest |u_nu| and
-     * a M the largest force on a node (of a support or the foundation) over
-     * the largest measure.
+     * allows at displacements within delta L_i of u_nu.
+     *
+     * F_i is what a bond of the node can bear, a M times the node's measure,
+     * but not more than the largest contact force on a node, so that a law
+     * with M far above all displacements is checked as well; forces below a
+     * thousandth of the largest reaction do not count as the largest one. L_i
+     * is the displacement at which bonds pull with F_i, F_i / (a measure) <= M,
+     * but not more than the largest displacement of the body. Without adhesion
+     * F_i is the largest contact force and L_i the largest displacement.
+     *
+     * What bonds bear can be less than the rounding of A u - f, for which no
+     * displacement in double precision is to blame. So F_i is at least 1e4
+     * times ElasticProblem::residual_rounding(): bonds weaker than that are
+     * not resolved, and rounding alone is a violation of 1e-4.
      */
     double law_violation;
-
-    /// The part of the law violation that matters for the body: the violation
-    /// times min(1, a M measure / largest reaction), with the largest measure
-    /// of a node. Very weak bonds violate their law by rounding alone.
-    double contact_residual;
 
     /// Largest u_nu > 0 (zero if there is none), in length.
     double penetration;
@@ -92,12 +97,19 @@ namespace Debond
     /// Of the foundation on the body, with the tangential part.
     dealii::Tensor<1, dim> contact_reaction;
 
+    /// The tangential part of contact_reaction, zero if tangential
+    /// displacements are free.
+    dealii::Tensor<1, dim> tangential_reaction;
+
+    /// The tangential force of the foundation on the body at the vertex of
+    /// each contact node, in Cartesian components.
+    std::vector<dealii::Tensor<1, dim>> tangential_forces;
+
     /// | applied + clamped + contact | over the sum of all nodal forces' sizes.
     double force_imbalance;
 
     /// The largest of equilibrium_residual, force_imbalance and
-    /// contact_residual: how far the result is from a solution, relative to the
-    /// forces.
+    /// law_violation: how far the result is from a solution.
     double
     error() const;
 
@@ -110,7 +122,7 @@ namespace Debond
   /// @p tolerance: displacements within tolerance * M (and tolerance times the
   /// largest |u_nu|) of 0 and -M count as
   /// contact and kink for ContactNodeState::state (and for nothing else). So
-  /// does a gap under pressure within the node's violation and 1e-3 M.
+  /// does a gap under pressure within the node's violation and 1e-3 L_i.
   template <int dim>
   Verification<dim>
   verify(const ElasticProblem<dim>    &problem,

@@ -9,10 +9,10 @@
 namespace Debond
 {
   /**
-   * Writes the body as VTU: displacement (vector, nodal; warp by it), and per
-   * cell, where P1 elements have them, stress components, von Mises stress
-   * and strain-energy density. Throws std::runtime_error naming the file if
-   * it cannot be written.
+   * Writes the body as VTU: displacement (vector, nodal; warp by it), and as
+   * cell data, where P1 elements have them, stress components (with stress_zz
+   * in plane strain), von Mises stress and strain-energy density. Throws
+   * std::runtime_error naming the file if it cannot be written.
    */
   template <int dim>
   void
@@ -23,8 +23,11 @@ namespace Debond
   /**
    * Writes the contact boundary as VTU: displacement, u_nu, gap (-u_nu),
    * normal_force_density (nodal force over nodal measure, pressure positive),
-   * bond_state (0 contact, 1 bonded, 2 kink, 3 broken, 4 free: no adhesion),
-   * law_violation.
+   * tangential_force_density (of the foundation on the body), law_violation.
+   * A face is cut into the shares of its vertices, which are the cells of the
+   * file, with bond_state as cell data: 0 contact, 1 bonded, 2 kink, 3 broken,
+   * 4 free (no adhesion), 5 held (a vertex that is clamped as well, where
+   * forces and violation are NaN).
    */
   template <int dim>
   void

@@ -1,0 +1,124 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# check_vtu.sh DEBOND: the fields of the VTU files are where ParaView looks for
+# them, and agree with the other files.
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
+
+cat >bar.prm <<'SCENE'
+subsection Mesh
+  set Cells = 10, 2
+end
+subsection Material
+  set Hypothesis = plane strain
+end
+subsection Loads
+  set Traction top = 0.1; if(x < 0.2, 0.69, -0.345)
+end
+SCENE
+cat >solid.prm <<'SCENE'
+set Dimension = 3
+subsection Mesh
+  set Lengths = 0.4, 0.04, 0.08
+  set Cells   = 8, 1, 2
+end
+subsection Loads
+  set Traction top = 0.1; if(x < 0.2, 0.69, -0.345); 0.05
+end
+SCENE
+"$debond" bar.prm >/dev/null
+"$debond" solid.prm >/dev/null
+
+cat >check.py <<'SCRIPT'
+import base64, csv, json, math, struct, sys, zlib
+import xml.etree.ElementTree as xml
+
+directory, n_cells, n_faces = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+dim = 3 if directory.endswith("solid") else 2
+
+
+def numbers(array):
+    """One block, as VTK's format has it: header and data apart in base64."""
+    text = array.text.strip()
+    n_blocks, size, _, n_compressed = struct.unpack(
+        "<4I", base64.b64decode(text[:24]))
+    assert n_blocks == 1
+    data = zlib.decompress(base64.b64decode(text[24:]))
+    assert len(data) == size
+    return struct.unpack("<%df" % (size // 4), data)
+
+
+def read(name):
+    piece = xml.parse(directory + "/" + name).getroot().find(".//Piece")
+    fields = {kind: {a.get("Name"): numbers(a)
+                     for a in piece.find(kind).iter("DataArray")}
+              for kind in ("PointData", "CellData")}
+    points = numbers(piece.find("Points/DataArray"))
+    n = int(piece.get("NumberOfCells"))
+    for field in fields["CellData"].values():
+        assert len(field) == n, (name, len(field), n)
+    return n, points, fields["PointData"], fields["CellData"]
+
+
+def near(a, b, scale=1.):
+    assert abs(a - b) <= 1e-5 * abs(b) + 1e-6 * abs(scale), (a, b)
+
+
+summary = json.load(open(directory + "/summary.json"))
+profile = list(csv.DictReader(open(directory + "/contact_profile.csv")))
+
+n, points, at_points, at_cells = read("body.vtu")
+assert n == n_cells == summary["cells"], n
+assert sorted(at_points) == ["displacement"], at_points.keys()
+near(max(at_cells["von_mises"]), summary["largest_von_mises"])
+u = at_points["displacement"]
+near(max(math.hypot(*u[3 * i:3 * i + 3]) for i in range(len(u) // 3)),
+     summary["largest_displacement"])
+if dim == 2:
+    for xx, yy, xy, zz, mises in zip(*(at_cells[name] for name in (
+            "stress_xx", "stress_yy", "stress_xy", "stress_zz", "von_mises"))):
+        near(zz, 0.33 * (xx + yy), mises)
+        near(mises, math.sqrt(((xx - yy)**2 + (yy - zz)**2 + (zz - xx)**2) / 2
+                              + 3 * xy**2))
+
+n, points, at_points, at_cells = read("contact.vtu")
+assert n == dim * n_faces, n
+states = ["contact", "bonded", "kink", "broken", "free", "held"]
+state_at = {tuple(round(float(row[x]), 5) for x in "xyz"[:dim]):
+            states.index(row["state"]) for row in profile}
+force_at = {tuple(round(float(row[x]), 5) for x in "xyz"[:dim]): row
+            for row in profile}
+n_held = 0
+corners = 2 * (dim - 1)
+for cell in range(n):
+    i = corners * cell  # the vertex that the share belongs to
+    at = tuple(round(points[3 * i + d], 5) for d in range(dim))
+    expected = state_at.get(at, states.index("held"))
+    assert at_cells["bond_state"][cell] == expected, (at, expected)
+    near(at_points["u_nu"][i],
+         float(force_at[at]["u_nu"]) if at in force_at else 0., 1e-3)
+    if at in force_at:
+        near(at_points["normal_force_density"][i],
+             float(force_at[at]["normal_force_density"]), 1.)
+        assert not any(math.isnan(x) for x in at_points[
+            "normal_force_density"][i:i + corners])
+    else:
+        n_held += 1
+        assert math.isnan(at_points["normal_force_density"][i])
+        assert at[0] in (0, 0.4), at
+assert n_held > 0
+
+# The foundation's tangential forces, node by node, are its resultant.
+for d in range(dim):
+    near(sum(float(row["tangential_force_" + "xyz"[d]]) for row in profile),
+         summary["tangential_reaction"][d], 0.01)
+assert abs(summary["tangential_reaction"][0]) > 1e-3
+near(summary["tangential_reaction"][1], 0., 0.01)
+SCRIPT
+python3 check.py output/bar 80 10
+python3 check.py output/solid 384 64
+
+# A body that may slide has no such forces.
+"$debond" bar.prm --set "Contact law/Tangential displacement=free" \
+  --set "Output/Directory=sliding" >/dev/null
+[ "$(column sliding/contact_profile.csv tangential_force_x | sort -u |
+  sed 's/^-//')" = 0.0000000000000000e+00 ] || fail "tangential forces"
