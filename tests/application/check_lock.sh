@@ -4,6 +4,7 @@
 # do two studies; a lock that a killed run left behind is no obstacle.
 . "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 scene=$2
+trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$directory"' EXIT
 
 long_run=("$debond" "$scene" --set "Output/Directory=out"
   --set "Solver/Euclidean bundle/Stop tolerance=1e-300"
