@@ -3,6 +3,7 @@
 #include <deal.II/lac/solver_control.h>
 
 #include <debond/elasticity/multigrid_problem.h>
+#include <debond/optimization/eigen_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,9 +36,8 @@ namespace Debond
     vmult(dealii::Vector<double> &dst, const dealii::Vector<double> &src) const
     {
       problem.A.vmult(dst, src);
-      const dealii::Vector<double> s = problem.normal_trace(src);
-      const Eigen::VectorXd        force =
-        problem.E * Eigen::Map<const Eigen::VectorXd>(s.begin(), s.size());
+      const dealii::Vector<double> s     = problem.normal_trace(src);
+      const Eigen::VectorXd        force = problem.E * eigen_view(s);
       for (unsigned int i = 0; i < s.size(); ++i)
         dst(problem.normals[i]) += force(i);
       problem.restrict_to_free(dst);
@@ -157,9 +157,8 @@ namespace Debond
     const Eigen::SparseMatrix<double> previous_E   = E;
     const Eigen::VectorXd             previous_b_c = b_c;
     E                                              = phi.curvature(s);
-    const Eigen::VectorXd E_s =
-      E * Eigen::Map<const Eigen::VectorXd>(s.begin(), s.size());
-    b_c = E_s - Eigen::Map<const Eigen::VectorXd>(xi.begin(), xi.size());
+    const Eigen::VectorXd E_s                      = E * eigen_view(s);
+    b_c                                            = E_s - eigen_view(xi);
     if (previous_b_c.size() != b_c.size())
       return true;
     constexpr double noise = 1e-12;
@@ -279,9 +278,8 @@ namespace Debond
   {
     A.vmult(force, u);
     force.sadd(-1., 1., f);
-    const dealii::Vector<double> s = normal_trace(u);
-    const Eigen::VectorXd        E_s =
-      E * Eigen::Map<const Eigen::VectorXd>(s.begin(), s.size());
+    const dealii::Vector<double> s   = normal_trace(u);
+    const Eigen::VectorXd        E_s = E * eigen_view(s);
     for (unsigned int i = 0; i < normals.size(); ++i)
       force(normals[i]) += b_c(i) - E_s(i);
   }

@@ -3,6 +3,7 @@
 
 #include <debond/optimization/branch_and_bound.h>
 #include <debond/optimization/condensed_problem.h>
+#include <debond/optimization/eigen_view.h>
 #include <debond/optimization/majorise_minimise.h>
 #include <debond/optimization/node_bound.h>
 
@@ -106,7 +107,7 @@ namespace Debond
       result.upper = std::numeric_limits<double>::infinity();
       result.lower = -std::numeric_limits<double>::infinity();
       Job job;
-      minimise_from(Eigen::Map<const Eigen::VectorXd>(start.begin(), n), job);
+      minimise_from(eigen_view(start), job);
       take_if_better(job);
     }
 

@@ -3,6 +3,7 @@
 
 #include <debond/optimization/coarse_start.h>
 #include <debond/optimization/condensed_problem.h>
+#include <debond/optimization/eigen_view.h>
 
 #include <algorithm>
 
@@ -15,8 +16,7 @@ namespace Debond
     dealii::Vector<double>
     times(const MatrixType &matrix, const dealii::Vector<double> &v)
     {
-      const Eigen::VectorXd product =
-        matrix * Eigen::Map<const Eigen::VectorXd>(v.begin(), v.size());
+      const Eigen::VectorXd  product = matrix * eigen_view(v);
       dealii::Vector<double> result(static_cast<unsigned int>(product.size()));
       std::copy(product.begin(), product.end(), result.begin());
       return result;
@@ -66,11 +66,11 @@ namespace Debond
     galerkin_product(const dealii::FullMatrix<double>  &S,
                      const Eigen::SparseMatrix<double> &P)
     {
-      const Eigen::Map<const Eigen::MatrixXd> fine(&S(0, 0), S.m(), S.n());
-      const Eigen::MatrixXd      coarse = P.transpose() * (fine * P).eval();
+      const Eigen::MatrixXd coarse = P.transpose() * (eigen_view(S) * P).eval();
       dealii::FullMatrix<double> result(P.cols(), P.cols());
-      Eigen::Map<Eigen::MatrixXd>(&result(0, 0), P.cols(), P.cols()) =
-        0.5 * (coarse + coarse.transpose());
+      for (unsigned int i = 0; i < result.m(); ++i)
+        for (unsigned int j = 0; j < result.n(); ++j)
+          result(i, j) = 0.5 * (coarse(i, j) + coarse(j, i));
       return result;
     }
 

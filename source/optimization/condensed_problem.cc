@@ -2,6 +2,7 @@
 #include <deal.II/lac/full_matrix.h>
 
 #include <debond/optimization/condensed_problem.h>
+#include <debond/optimization/eigen_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -71,12 +72,9 @@ namespace Debond
     const Eigen::SparseMatrix<double> E = phi.curvature(s);
     dealii::Vector<double>            xi(n);
     phi.subgradient(s, xi);
-    const auto vector = [](const dealii::Vector<double> &v) {
-      return Eigen::Map<const Eigen::VectorXd>(v.begin(), v.size());
-    };
-    M = Eigen::Map<const Eigen::MatrixXd>(n > 0 ? &S(0, 0) : nullptr, n, n);
+    M = eigen_view(S);
     M += E;
-    r = vector(g) - vector(xi) + E * vector(s);
+    r = eigen_view(g) - eigen_view(xi) + E * eigen_view(s);
     return true;
   }
 

@@ -3,6 +3,7 @@
 
 #include <debond/optimization/archive.h>
 #include <debond/optimization/bundle_qp.h>
+#include <debond/optimization/eigen_view.h>
 #include <debond/optimization/metric_direction.h>
 
 #include <Eigen/Cholesky>
@@ -53,8 +54,7 @@ namespace Debond
   void
   MetricDirection::add(const dealii::Vector<double> &new_eta)
   {
-    eta.col(m++) =
-      Eigen::Map<const Eigen::VectorXd>(new_eta.begin(), new_eta.size());
+    eta.col(m++) = eigen_view(new_eta);
   }
 
 
@@ -64,10 +64,9 @@ namespace Debond
                          const Eigen::VectorXd        &beta)
   {
     const unsigned int n = x.size();
-    Eigen::MatrixXd    M =
-      Eigen::Map<const Eigen::MatrixXd>(n > 0 ? &S(0, 0) : nullptr, n, n);
+    Eigen::MatrixXd    M = eigen_view(S);
     M += phi.curvature(x);
-    const Eigen::VectorXd b = -Eigen::Map<const Eigen::VectorXd>(x.begin(), n);
+    const Eigen::VectorXd b = -eigen_view(x);
     const auto            G = eta.leftCols(m);
 
     ActiveSetRule      rule;

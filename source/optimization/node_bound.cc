@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/optimization/convexity_shift.h>
+#include <debond/optimization/eigen_view.h>
 #include <debond/optimization/node_bound.h>
 
 #include <algorithm>
@@ -308,10 +309,8 @@ namespace Debond
                        const SeparableBonds             &bonds)
     : bonds(bonds)
     , n(g_vector.size())
-    , S(Eigen::Map<const Eigen::MatrixXd>(n > 0 ? &S_matrix(0, 0) : nullptr,
-                                          n,
-                                          n))
-    , g(Eigen::Map<const Eigen::VectorXd>(g_vector.begin(), n))
+    , S(eigen_view(S_matrix))
+    , g(eigen_view(g_vector))
   {}
 
 

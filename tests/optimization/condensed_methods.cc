@@ -8,6 +8,7 @@
 #include <debond/optimization/bound_qp.h>
 #include <debond/optimization/coarse_start.h>
 #include <debond/optimization/condensed_problem.h>
+#include <debond/optimization/eigen_view.h>
 #include <debond/optimization/majorise_minimise.h>
 #include <debond/optimization/metric_direction.h>
 #include <debond/optimization/proximal_bundle.h>
@@ -400,6 +401,24 @@ namespace
               << ", failures of levels are told: "
               << verdict(all_named && n_failed > 0) << '\n';
   }
+
+
+
+  /// Only a matrix that is not symmetric tells rows from columns.
+  void
+  test_view()
+  {
+    dealii::FullMatrix<double> matrix(2, 3);
+    for (unsigned int i = 0; i < 2; ++i)
+      for (unsigned int j = 0; j < 3; ++j)
+        matrix(i, j) = 10. * i + j;
+    const auto view = eigen_view(matrix);
+    bool       same = view.rows() == 2 && view.cols() == 3;
+    for (unsigned int i = 0; i < 2; ++i)
+      for (unsigned int j = 0; j < 3; ++j)
+        same = same && view(i, j) == matrix(i, j);
+    check("a matrix seen by Eigen has its rows", same);
+  }
 } // namespace
 
 
@@ -408,6 +427,7 @@ int
 main(int argc, char *[])
 {
   print_figures = argc > 1;
+  test_view();
 
   std::mt19937_64 engine(20261121);
   test_bound_qp(engine);
