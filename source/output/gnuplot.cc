@@ -11,7 +11,7 @@ namespace Debond
 {
   namespace
   {
-    constexpr unsigned int n_colours = 8;
+    constexpr std::ptrdiff_t n_colours = 8; ///< gnuplot's own
 
 
 
@@ -74,6 +74,16 @@ namespace Debond
         if (is_log)
           out << "set logscale " << axis << "\nset format " << axis
               << " '10^{%L}'\n";
+      // More than gnuplot's own colours: the rainbow in the order of the
+      // curves.
+      const auto n_of_their_own =
+        std::count_if(plot.curves.begin(),
+                      plot.curves.end(),
+                      [](const Curve &curve) {
+                        return !curve.belongs_to_previous;
+                      });
+      if (n_of_their_own > n_colours)
+        out << "set palette rgbformulae 33,13,10\nunset colorbox\n";
       unsigned int colour = 0;
       for (std::size_t i = 0; i < plot.curves.size(); ++i)
         {
@@ -81,14 +91,16 @@ namespace Debond
           if (!curve.belongs_to_previous)
             ++colour;
           out << (i == 0 ? "plot " : ", \\\n     ") << "'" << plot.name
-              << ".dat' index " << i << " with " << curve.style << " lc "
-              << (colour - 1) % n_colours + 1;
+              << ".dat' index " << i << " with " << curve.style << " lc ";
+          if (n_of_their_own > n_colours)
+            out << "palette frac "
+                << (colour - 1.) / static_cast<double>(n_of_their_own - 1);
+          else
+            out << colour;
           if (curve.style == "points")
             out << " pt 7 ps 0.7";
           else
-            out << " lw 1.5 dt "
-                << (curve.belongs_to_previous ? 2 :
-                                                (colour - 1) / n_colours + 1);
+            out << " lw 1.5 dt " << (curve.belongs_to_previous ? 2 : 1);
           out << " title " << quoted(curve.title);
         }
       out

@@ -2,6 +2,8 @@
 #include <debond/application/parameters.h>
 #include <debond/application/text.h>
 #include <debond/study/cases.h>
+#include <debond/study/columns.h>
+#include <debond/study/plots.h>
 
 #include <algorithm>
 #include <cctype>
@@ -154,6 +156,21 @@ namespace Debond
 
 
 
+    bool
+    needs_minima(const StudyParameters &study)
+    {
+      return std::any_of(study.columns.begin(),
+                         study.columns.end(),
+                         [](const std::string &name) {
+                           return Column::parse(name).needs_minimum();
+                         }) ||
+             std::any_of(study.plots.kinds.begin(),
+                         study.plots.kinds.end(),
+                         plot_needs_minimum);
+    }
+
+
+
     void
     replace_preparation(const std::string &directory, Case &one)
     {
@@ -180,7 +197,8 @@ namespace Debond
         // Values that differ only in letters a path does not have.
         while (!directories.insert(one.directory).second)
           one.directory += "_";
-        one.minimum = add_minimum(study, one, result.minima);
+        if (needs_minima(study))
+          one.minimum = add_minimum(study, one, result.minima);
         complete_case(study, one);
       }
     for (Case &one : result.minima)

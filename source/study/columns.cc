@@ -194,4 +194,21 @@ namespace Debond
   {
     return kind == Kind::error;
   }
+
+
+
+  bool
+  Column::needs_minimum() const
+  {
+    return kind == Kind::minimum || kind == Kind::error || kind == Kind::rate ||
+           kind == Kind::window;
+  }
+
+
+
+  const std::string &
+  Column::json_pointer() const
+  {
+    return pointer;
+  }
 } // namespace Debond

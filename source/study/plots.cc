@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <map>
 
 namespace Debond
@@ -257,49 +258,165 @@ namespace Debond
 
 
 
-    /// Two columns of a contact profile.
-    std::vector<std::pair<double, double>>
-    profile_points(const Case &one, const std::string &x, const std::string &y)
+    /// The columns of a contact profile by their titles; empty if there is no
+    /// such file.
+    std::map<std::string, std::vector<double>>
+    read_profile(const Case &one)
     {
       std::ifstream file(one.directory + "/contact_profile.csv");
       std::string   line;
       std::getline(file, line);
       const std::vector<std::string> titles =
         dealii::Utilities::split_string_list(line, ',');
-      const auto column = [&titles](const std::string &title) {
-        return std::find(titles.begin(), titles.end(), title) - titles.begin();
-      };
-      const std::size_t                      i = column(x), j = column(y);
-      std::vector<std::pair<double, double>> points;
+      std::map<std::string, std::vector<double>> columns;
       while (std::getline(file, line))
         {
           const std::vector<std::string> entries =
             dealii::Utilities::split_string_list(line, ',');
-          double a, b;
-          if (std::max(i, j) < entries.size() && read_number(entries[i], a) &&
-              read_number(entries[j], b))
-            points.emplace_back(a, b);
+          for (std::size_t i = 0; i < std::min(titles.size(), entries.size());
+               ++i)
+            {
+              // Words, and values that are not finite.
+              double number = std::numeric_limits<double>::quiet_NaN();
+              read_number(entries[i], number);
+              columns[titles[i]].push_back(number);
+            }
         }
+      return columns;
+    }
+
+
+
+    /// Where the nodes are along the contact boundary.
+    struct Positions
+    {
+      std::string         label;
+      std::vector<double> values;
+      bool                in_a_row = true; ///< no two at the same place
+    };
+
+
+
+    /// The length along a straight boundary from its first node, or the
+    /// coordinate if it is parallel to an axis; on any other boundary, as in
+    /// 3D, the coordinate in which it is longest.
+    Positions
+    positions_along(const std::map<std::string, std::vector<double>> &profile)
+    {
+      std::vector<std::string>                 axes;
+      std::vector<const std::vector<double> *> coordinates;
+      for (const std::string axis : {"x", "y", "z"})
+        if (const auto column = profile.find(axis); column != profile.end())
+          {
+            axes.push_back(axis);
+            coordinates.push_back(&column->second);
+          }
+      Positions positions{"", {}};
+      if (axes.empty())
+        return positions;
+
+      const std::size_t n = coordinates[0]->size();
+      const auto distance = [&](const std::size_t i, const std::size_t j) {
+        double sum = 0.;
+        for (const auto *const x : coordinates)
+          sum += ((*x)[j] - (*x)[i]) * ((*x)[j] - (*x)[i]);
+        return std::sqrt(sum);
+      };
+      const auto farthest = [&](const std::size_t i) {
+        std::size_t result = i;
+        for (std::size_t j = 0; j < n; ++j)
+          if (distance(i, j) > distance(i, result))
+            result = j;
+        return result;
+      };
+      const std::size_t b     = farthest(0);
+      const std::size_t a     = farthest(b);
+      const std::size_t first = std::min(a, b), last = std::max(a, b);
+      const double      length = distance(first, last);
+      if (length == 0.)
+        {
+          positions.label  = axes[0];
+          positions.values = *coordinates[0];
+          return positions;
+        }
+
+      bool        straight = true;
+      std::size_t axis     = 0;
+      double      largest  = 0.;
+      positions.label      = "length along the contact boundary";
+      for (std::size_t i = 0; i < n; ++i)
+        {
+          double along = 0.;
+          for (const auto *const x : coordinates)
+            along +=
+              ((*x)[i] - (*x)[first]) * ((*x)[last] - (*x)[first]) / length;
+          positions.values.push_back(along);
+          const double from_first = distance(first, i);
+          straight = straight && from_first * from_first - along * along <
+                                   1e-12 * length * length;
+        }
+      for (std::size_t d = 0; d < axes.size(); ++d)
+        {
+          const auto [least, most] =
+            std::minmax_element(coordinates[d]->begin(), coordinates[d]->end());
+          const double extent = *most - *least;
+          largest             = std::max(largest, extent);
+          if (extent == largest)
+            axis = d;
+        }
+      if (!straight || largest > (1. - 1e-12) * length)
+        {
+          positions.label  = axes[axis];
+          positions.values = *coordinates[axis];
+        }
+      std::vector<double> sorted = positions.values;
+      std::sort(sorted.begin(), sorted.end());
+      for (std::size_t i = 1; i < n; ++i)
+        positions.in_a_row =
+          positions.in_a_row && sorted[i] - sorted[i - 1] > 1e-9 * length;
+      return positions;
+    }
+
+
+
+    /// The points whose values are both finite.
+    std::vector<std::pair<double, double>>
+    join_columns(const std::vector<double> &x, const std::vector<double> &y)
+    {
+      std::vector<std::pair<double, double>> points;
+      for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i)
+        if (std::isfinite(x[i]) && std::isfinite(y[i]))
+          points.emplace_back(x[i], y[i]);
       return points;
     }
 
 
 
+    /// A quantity along the contact boundary: a curve, or points where several
+    /// nodes have the same place, as in 3D.
     Plot
     profile_plot(const StudyView   &view,
                  const std::string &name,
                  const std::string &caption,
-                 const std::string &x,
                  const std::string &y,
+                 const std::string &y_label,
                  const std::string &style)
     {
-      std::string y_label = y;
-      std::replace(y_label.begin(), y_label.end(), '_', ' ');
-      Plot plot{name, caption, x, y == "u_nu" ? y : y_label};
+      Plot plot{name, caption, "", y_label};
       for (const StudyRow &row : view.rows)
         if (row.result.has_results())
-          plot.curves.push_back(
-            {row.one->label, profile_points(*row.one, x, y), style});
+          {
+            auto            profile   = read_profile(*row.one);
+            const Positions positions = positions_along(profile);
+            if (plot.x_label.empty())
+              plot.x_label = positions.label;
+            else if (plot.x_label != positions.label)
+              plot.x_label = "position along the contact boundary";
+            auto points = join_columns(positions.values, profile[y]);
+            std::sort(points.begin(), points.end());
+            plot.curves.push_back(
+              {row.one->label, points, positions.in_a_row ? style : "points"});
+          }
       return plot;
     }
 
@@ -312,7 +429,7 @@ namespace Debond
                           "displacement",
                           "Normal displacement of the contact boundary; "
                           "negative: lifted off.",
-                          "x",
+                          "u_nu",
                           "u_nu",
                           "lines");
     }
@@ -326,40 +443,93 @@ namespace Debond
                           "force",
                           "Normal force density of the contact boundary; "
                           "positive: pressed, negative: held.",
-                          "x",
                           "normal_force_density",
+                          "normal force density",
                           "linespoints pt 7 ps 0.5");
     }
 
 
 
+    /// What the law allows between two displacements up to 0, and up to a
+    /// pressure there.
+    std::vector<std::pair<double, double>>
+    law_graph(const ContactLawParameters &parameters,
+              const double                least_u,
+              const double                largest_force)
+    {
+      const auto          law  = make_law(parameters);
+      std::vector<double> ends = {
+        std::min(least_u, -1.1 * law->bond_threshold())};
+      for (const double kink : law->kinks())
+        if (kink < 0.)
+          ends.push_back(kink);
+      ends.push_back(0.);
+      std::vector<std::pair<double, double>> points;
+      for (std::size_t k = 0; k + 1 < ends.size(); ++k)
+        {
+          // The force is linear on a branch.
+          const double centre    = (ends[k] + ends[k + 1]) / 2.;
+          const double force     = law->clarke_interval(centre).lower;
+          const double curvature = law->curvature(centre);
+          for (const double end : {ends[k], ends[k + 1]})
+            points.emplace_back(end, force + curvature * (end - centre));
+        }
+      points.emplace_back(0., largest_force);
+      return points;
+    }
+
+
+
+    bool
+    is_same(const ContactLawParameters &a, const ContactLawParameters &b)
+    {
+      return a.name == b.name && a.bond_stiffness == b.bond_stiffness &&
+             a.bond_threshold == b.bond_threshold;
+    }
+
+
+
+    /// One graph if all cases have the same law, else one with each case.
     Plot
     law_plot(const StudyView &view)
     {
-      Plot plot =
-        profile_plot(view,
-                     "law",
-                     "Normal force density of the contact nodes over their "
-                     "normal displacement, on the graph of the contact law.",
-                     "u_nu",
-                     "normal_force_density",
-                     "points");
-      double least_u = 0., largest_force = 0.;
-      for (const Curve &curve : plot.curves)
-        for (const auto &[u, force] : curve.points)
+      Plot                      plot{"law",
+                "Normal force density of the contact nodes over their "
+                                     "normal displacement, on the graph of the contact law.",
+                "u_nu",
+                "normal force density"};
+      std::vector<const Case *> cases;
+      double                    least_u = 0., largest_force = 0.;
+      for (const StudyRow &row : view.rows)
+        if (row.result.has_results())
           {
-            least_u       = std::min(least_u, u);
-            largest_force = std::max(largest_force, force);
+            auto profile = read_profile(*row.one);
+            cases.push_back(row.one);
+            plot.curves.push_back(
+              {row.one->label,
+               join_columns(profile["u_nu"], profile["normal_force_density"]),
+               "points"});
+            for (const auto &[u, force] : plot.curves.back().points)
+              {
+                least_u       = std::min(least_u, u);
+                largest_force = std::max(largest_force, force);
+              }
           }
-      const double a = view.rows.front().one->law.bond_stiffness;
-      const double M = view.rows.front().one->law.bond_threshold;
-      plot.curves.insert(plot.curves.begin(),
-                         {"contact law",
-                          {{std::min(least_u, -M), 0.},
-                           {-M, 0.},
-                           {-M, -a * M},
-                           {0., 0.},
-                           {0., largest_force}}});
+      if (cases.empty())
+        return plot;
+      const auto graph_of = [&](const Case &one) {
+        return law_graph(one.law, least_u, largest_force);
+      };
+      if (std::all_of(cases.begin(), cases.end(), [&](const Case *one) {
+            return is_same(one->law, cases[0]->law);
+          }))
+        plot.curves.insert(plot.curves.begin(),
+                           {"contact law", graph_of(*cases[0])});
+      else
+        for (std::size_t i = cases.size(); i-- > 0;)
+          plot.curves.insert(
+            plot.curves.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+            {"law of " + cases[i]->label, graph_of(*cases[i]), "lines", true});
       return plot;
     }
 
@@ -396,6 +566,7 @@ namespace Debond
       Plot (*make)(const StudyView &);
       bool (*is_possible)(const StudyParameters &) = can_always;
       std::string requirement                      = {};
+      bool        needs_minimum                    = false;
     };
 
 
@@ -406,8 +577,18 @@ namespace Debond
       const std::string                  axis  = "a sweep over numbers > 0";
       static const std::vector<PlotKind> kinds = {
         {"history", "J over k", history_plot},
-        {"convergence", "the error over k, both logarithmic", convergence_plot},
-        {"fit", "the error over k with fitted lines", fit_plot},
+        {"convergence",
+         "the error over k, both logarithmic",
+         convergence_plot,
+         can_always,
+         "",
+         true},
+        {"fit",
+         "the error over k with fitted lines",
+         fit_plot,
+         can_always,
+         "",
+         true},
         {"iterations",
          "iterations over the parameter",
          iterations_plot,
@@ -454,6 +635,17 @@ namespace Debond
                  "" :
                  "the plot " + name + " needs " + kind.requirement;
     return "there is no plot '" + name + "'; known are " + plot_documentation();
+  }
+
+
+
+  bool
+  plot_needs_minimum(const std::string &name)
+  {
+    for (const PlotKind &kind : plot_kinds())
+      if (kind.name == name)
+        return kind.needs_minimum;
+    return false;
   }
 
 

@@ -49,7 +49,9 @@ namespace Debond
       for (const Case &one : cases.cases)
         {
           StudyRow         row{&one, runner.result(one), {}, {}};
-          const CaseResult minimum = runner.result(cases.minima[one.minimum]);
+          const CaseResult minimum =
+            one.minimum ? runner.result(cases.minima[*one.minimum]) :
+                          CaseResult();
           if (minimum.status == "success")
             {
               row.minimum = minimum.number("/functional");
@@ -61,6 +63,30 @@ namespace Debond
           rows.push_back(row);
         }
       return rows;
+    }
+
+
+
+    /// Throws std::runtime_error naming a column whose number is in no summary.
+    void
+    check_pointers(const StudyParameters       &study,
+                   const std::vector<StudyRow> &rows)
+    {
+      const bool any_results =
+        std::any_of(rows.begin(), rows.end(), [](const StudyRow &row) {
+          return row.result.has_results();
+        });
+      for (const std::string &name : study.columns)
+        {
+          const Column column = Column::parse(name);
+          if (any_results && !column.json_pointer().empty() &&
+              std::none_of(rows.begin(), rows.end(), [&](const StudyRow &row) {
+                return row.result.numbers.count(column.json_pointer()) > 0;
+              }))
+            throw std::runtime_error(
+              "Study/Columns: no case has a number " + column.json_pointer() +
+              " in its summary.json, for the column '" + name + "'");
+        }
     }
 
 
@@ -140,9 +166,10 @@ namespace Debond
                  const std::optional<Reference> &reference,
                  std::ostream                   &out)
     {
-      const std::vector<StudyRow> rows  = collect_rows(study, cases, runner);
-      const std::vector<BestRow>  best  = find_best_values(study, rows);
-      const DataTable             table = make_table(study, rows, reference);
+      const std::vector<StudyRow> rows = collect_rows(study, cases, runner);
+      check_pointers(study, rows);
+      const std::vector<BestRow> best  = find_best_values(study, rows);
+      const DataTable            table = make_table(study, rows, reference);
       write_tables(study, table, "table");
       if (!best.empty())
         write_tables(study, make_best_table(study, best), "best");

@@ -26,8 +26,9 @@ namespace Debond
     double               cell_edge = 0.; ///< h, along the first axis
     ContactLawParameters law;
 
-    /// The number of the case that finds the exact minimum.
-    std::size_t minimum = 0;
+    /// The number of the case that finds the exact minimum, if a column or a
+    /// plot needs it.
+    std::optional<std::size_t> minimum;
   };
 
 

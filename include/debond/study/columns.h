@@ -48,6 +48,14 @@ namespace Debond
     bool
     is_error() const;
 
+    /// Whether the column needs the exact minimum.
+    bool
+    needs_minimum() const;
+
+    /// Of the number in summary.json; empty if the column is none.
+    const std::string &
+    json_pointer() const;
+
   private:
     enum class Kind
     {

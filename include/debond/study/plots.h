@@ -20,6 +20,10 @@ namespace Debond
   std::string
   why_no_plot(const std::string &kind, const StudyParameters &study);
 
+  /// Whether a plot needs the exact minima.
+  bool
+  plot_needs_minimum(const std::string &kind);
+
   /// The plots that the study asks for.
   std::vector<Plot>
   make_plots(const StudyParameters       &study,
