@@ -46,7 +46,7 @@ done
 expect_code 2 "$debond" --study
 grep -q "no study is given" errors || fail "$(cat errors)"
 expect_code 2 "$debond" --study nowhere.prm
-grep -q "nowhere.prm: cannot be read" errors || fail "$(cat errors)"
+grep -q "nowhere.prm: there is no such file" errors || fail "$(cat errors)"
 
 cat >combination.prm <<'STUDY'
 subsection Study
