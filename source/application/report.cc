@@ -183,6 +183,12 @@ namespace Debond
                     " on " + std::to_string(summary.search_nodes) +
                       " of the contact nodes" :
                     "");
+        if (details && summary.closed_nodes > 0)
+          out << ", the minimum on " << summary.closed_nodes
+              << " coarser ones leads here";
+        if (summary.search_failures > 0)
+          out << ", " << summary.search_failures
+              << " of them led to no minimum";
         out << '\n';
       }
     if (!summary.proof.empty())
@@ -191,7 +197,8 @@ namespace Debond
         if (details)
           out << " after " << summary.proof_nodes << " nodes, gap "
               << scientific(summary.relative_gap, 1)
-              << " of J, J >= " << scientific(summary.lower_bound, 10);
+              << " of what the bonds can change in J, J >= "
+              << scientific(summary.lower_bound, 10);
         out << '\n';
       }
     if (details)

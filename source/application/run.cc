@@ -95,11 +95,16 @@ namespace Debond
       summary.functional            = result.functional;
       summary.functional_from_start = result.functional_from_start;
       summary.is_replaced           = result.is_replaced;
+      summary.notes.insert(summary.notes.end(),
+                           result.minimum.notes.begin(),
+                           result.minimum.notes.end());
       if (result.status == SolverStatus::success)
         summary.minimum = to_string(result.minimum.kind);
       summary.search_trials       = result.minimum.search_trials;
       summary.search_improvements = result.minimum.search_improvements;
+      summary.search_failures     = result.minimum.search_failures;
       summary.search_nodes        = result.minimum.search_nodes;
+      summary.closed_nodes        = result.minimum.closed_nodes;
       if (result.minimum.proof_attempted)
         summary.proof = to_string(result.minimum.proof_status);
       summary.proof_nodes         = result.minimum.proof_nodes;
@@ -271,7 +276,7 @@ namespace Debond
           files.push_back(path("displacement.txt"));
           write_displacement(result.u, files.back());
         }
-      if (output.history && result.minimum.proof_attempted)
+      if (output.history && !result.minimum.proof_history.empty())
         {
           files.push_back(path("proof.csv"));
           write_history(result.minimum.proof_history, files.back());

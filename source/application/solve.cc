@@ -307,18 +307,20 @@ namespace Debond
 
 
     /// The solution on a mesh of half as many cells in each direction, at the
-    /// nodes of the scene's mesh; zero if that mesh is the coarsest.
+    /// nodes of the scene's mesh; zero if that mesh is the coarsest. The search
+    /// of the scene is done on the first mesh that is factorised; @p search
+    /// gets its counts.
     template <int dim>
     Vector
     solution_on_coarser_mesh(const Parameters         &parameters,
                              const Scene<dim>         &scene,
                              const InterruptGuard     &guard,
-                             std::vector<std::string> &notes)
+                             std::vector<std::string> &notes,
+                             WhichMinimum             &search)
     {
       Parameters coarse = parameters;
       coarse.start.clear(); // belongs to the finest mesh
-      coarse.search = BondSearchChoice::none;
-      coarse.prove  = false;
+      coarse.prove = false;
       for (unsigned int d = 0; d < dim; ++d)
         coarse.box.cells[d] = (coarse.box.cells[d] + 1) / 2;
       if (coarse.box.cells == parameters.box.cells)
@@ -341,6 +343,8 @@ namespace Debond
       else
         solve_by_multigrid(coarse, coarse_scene, guard, watch, result);
       notes.insert(notes.end(), result.notes.begin(), result.notes.end());
+      search                 = result.minimum;
+      search.proof_attempted = false;
       if (result.status != SolverStatus::success)
         notes.push_back(
           "start on the mesh of " + std::to_string(coarse_scene.n_cells()) +
@@ -362,8 +366,8 @@ namespace Debond
                        SolveResult          &result)
     {
       dealii::Timer timer;
-      result.u =
-        solution_on_coarser_mesh(parameters, scene, guard, result.notes);
+      result.u = solution_on_coarser_mesh(
+        parameters, scene, guard, result.notes, result.minimum);
       result.parts["coarser meshes"] = timer.wall_time();
       if (!watch.may_go_on())
         {

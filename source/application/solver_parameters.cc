@@ -167,7 +167,7 @@ namespace Debond
         "Solver/Search",
         search_names[0],
         one_of(search_names),
-        "Whether a lower minimum than the one found is searched for by changing which bonds are broken, with a direct linear solver: quick starts from rest and from all bonds broken and moves the edges of the broken patches by a node, full moves them by up to four nodes and breaks, closes and splits patches; automatic is quick if the method is automatic, on coarser contact nodes if there are more than 200, and none otherwise",
+        "Whether a lower minimum than the one found is searched for by changing which bonds are broken, with a direct linear solver: quick starts from rest and from all bonds broken and moves the edges of the broken patches by a node, full moves them by up to four nodes and breaks, closes and splits patches; automatic is none unless the method is automatic, and then as much of this as it takes until a lower bound of J (with nodal quadrature) or the minimum on coarser contact nodes says that it is enough, with more than 200 contact nodes on coarser ones but for the starts from rest and from all bonds broken",
         "none");
       table.declare(
         "Solver/Search moves",
@@ -184,8 +184,8 @@ namespace Debond
       table.declare(
         proof_section + "Tolerance",
         shortest_text(defaults.proof.tolerance),
-        positive_number(),
-        "The gap between J and its lower bound that counts as a proof, relative to J",
+        number("> 0 and <= 1e-2", [](double x) { return x > 0 && x <= 1e-2; }),
+        "The gap between J and its lower bound that counts as a proof, relative to what the bonds can change in J: the energy of all bonds when they break, or what the contact nodes would gain without foundation and bonds if that is less",
         "none");
       table.declare(
         proof_section + "Maximum nodes",

@@ -11,6 +11,14 @@
 
 namespace Debond
 {
+  LawShape
+  AdhesiveLaw::shape() const
+  {
+    return LawShape::other;
+  }
+
+
+
   Interval
   AdhesiveLaw::goldstein_interval(const double s, const double delta) const
   {

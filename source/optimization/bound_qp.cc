@@ -5,6 +5,8 @@
 
 #include <debond/optimization/bound_qp.h>
 
+#include <set>
+
 namespace Debond
 {
   namespace
@@ -80,6 +82,8 @@ namespace Debond
     const unsigned int n = static_cast<unsigned int>(r.size());
     BoundQPResult      result;
     ActiveSetRule      rule;
+    // A set that comes back is one of several between which rounding decides.
+    std::set<ActiveSet> seen;
     while (result.steps < maximum_active_set_steps)
       {
         ++result.steps;
@@ -112,7 +116,9 @@ namespace Debond
                         result.mu,
                         active_set_noise * result.x.lpNorm<Eigen::Infinity>(),
                         active_set_noise * largest_force,
-                        active) == 0)
+                        active) == 0 ||
+            (result.steps > maximum_joint_updates &&
+             !seen.insert(active).second))
           {
             result.converged = result.x.allFinite();
             result.x         = result.x.cwiseMin(b);

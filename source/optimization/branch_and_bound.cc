@@ -247,11 +247,28 @@ namespace Debond
     BranchAndBoundResult
     ProofTree::run(const BranchAndBound::Monitor &monitor)
     {
-      const auto root = node_bound.root(result.upper);
-      if (!root)
-        return result;
-      open.insert(*root);
-      result.status            = ProofStatus::proved;
+      const double certified = node_bound.certificate(
+        Eigen::Map<const Eigen::VectorXd>(result.s.begin(), n));
+      if (certified >= result.upper - parameters.tolerance)
+        {
+          result.status  = ProofStatus::proved;
+          least_left_out = certified;
+          result.nodes   = 1;
+        }
+      else if (parameters.maximum_nodes > 0)
+        {
+          auto root = node_bound.root(result.upper);
+          if (!root)
+            return result;
+          root->bound = std::max(root->bound, certified);
+          open.insert(*root);
+          result.status = ProofStatus::proved;
+        }
+      else
+        {
+          result.status  = ProofStatus::node_limit;
+          least_left_out = certified;
+        }
       unsigned int next_record = 1;
       while (!open.empty() && result.status == ProofStatus::proved)
         {

@@ -14,15 +14,25 @@ namespace Debond
                                      const dealii::Vector<double>     &load,
                                      const PiecewiseQuadratic &nonsmooth,
                                      dealii::Vector<double>   &start)
-    : S(matrix)
-    , g(load)
-    , phi(nonsmooth)
-    , s(start)
-    , active(start.size())
+    : CondensedProblem(matrix, load, nonsmooth, start, ActiveSet(start.size()))
   {
     for (unsigned int i = 0; i < s.size(); ++i)
       active[i] = s(i) == 0.;
   }
+
+
+
+  CondensedProblem::CondensedProblem(const dealii::FullMatrix<double> &matrix,
+                                     const dealii::Vector<double>     &load,
+                                     const PiecewiseQuadratic &nonsmooth,
+                                     dealii::Vector<double>   &start,
+                                     const ActiveSet          &first_active)
+    : S(matrix)
+    , g(load)
+    , phi(nonsmooth)
+    , s(start)
+    , active(first_active)
+  {}
 
 
 

@@ -9,22 +9,18 @@ namespace Debond
 {
   namespace
   {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-
-
-
     /// min r s + c/2 s^2 on [lower, upper].
-    double
-    least_on_parabola(const double r,
-                      const double c,
-                      const double lower,
-                      const double upper)
+    long double
+    least_on_parabola(const long double r,
+                      const long double c,
+                      const long double lower,
+                      const long double upper)
     {
       if (lower > upper)
-        return infinity;
-      const double s = c > 0. ? std::min(std::max(-r / c, lower), upper) :
-                                (r > 0. ? lower : upper);
-      return r * s + 0.5 * c * s * s;
+        return std::numeric_limits<long double>::infinity();
+      const long double s = c > 0. ? std::min(std::max(-r / c, lower), upper) :
+                                     (r > 0. ? lower : upper);
+      return r * s + 0.5L * c * s * s;
     }
   } // namespace
 
@@ -39,34 +35,47 @@ namespace Debond
 
 
 
-  double
+  long double
   BondEnergy::energy_if_broken() const
   {
-    return 0.5 * stiffness * threshold * threshold;
+    return 0.5L * stiffness * threshold * threshold;
   }
 
 
 
-  double
-  BondEnergy::least_bonded(const double r,
-                           const double lower,
-                           const double upper) const
+  long double
+  BondEnergy::least_bonded(const long double r,
+                           const double      lower,
+                           const double      upper) const
   {
     return least_on_parabola(r,
-                             convexity + stiffness,
+                             static_cast<long double>(convexity) + stiffness,
                              std::max(lower, -threshold),
                              upper);
   }
 
 
 
-  double
-  BondEnergy::least_broken(const double r,
-                           const double lower,
-                           const double upper) const
+  long double
+  BondEnergy::least_broken(const long double r,
+                           const double      lower,
+                           const double      upper) const
   {
     return least_on_parabola(r, convexity, lower, std::min(upper, -threshold)) +
            energy_if_broken();
+  }
+
+
+
+  long double
+  BondEnergy::least(const long double r,
+                    const double      lower,
+                    const double      upper) const
+  {
+    constexpr long double epsilon = std::numeric_limits<long double>::epsilon();
+    return std::min(least_bonded(r, lower, upper),
+                    least_broken(r, lower, upper) -
+                      16.L * epsilon * energy_if_broken());
   }
 
 
@@ -79,7 +88,7 @@ namespace Debond
     const double M  = f.threshold;
     const double c0 = f.convexity;               // of the broken parabola
     const double c1 = f.convexity + f.stiffness; // of the bonded one
-    const double h  = f.energy_if_broken();
+    const double h  = static_cast<double>(f.energy_if_broken());
 
     double first = lower, second = upper;
     if (f.stiffness == 0. || lower >= -M)

@@ -5,6 +5,7 @@
 #include <debond/optimization/convexity_shift.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace Debond
@@ -22,20 +23,54 @@ namespace Debond
 
 
 
+  namespace
+  {
+    /// The factor of A less a shift that covers its rounding. The bound of Rump
+    /// does not change if rows and columns are scaled, so that a shift in
+    /// proportion to each entry of the diagonal will do. Throws ExcSingular.
+    void
+    factorise_safely(const Eigen::MatrixXd            &A,
+                     dealii::LAPACKFullMatrix<double> &matrix)
+    {
+      const unsigned int n = matrix.m();
+      const double       shift =
+        (n + 3.) * 2. * std::numeric_limits<double>::epsilon() * n;
+      std::copy(A.data(), A.data() + A.size(), &matrix(0, 0));
+      for (unsigned int i = 0; i < n; ++i)
+        matrix(i, i) -= shift * std::abs(matrix(i, i));
+      matrix.set_property(dealii::LAPACKSupport::symmetric);
+      matrix.compute_cholesky_factorization();
+    }
+  } // namespace
+
+
+
+  bool
+  is_safely_positive_definite(const Eigen::MatrixXd &A)
+  {
+    dealii::LAPACKFullMatrix<double> matrix(
+      static_cast<unsigned int>(A.rows()));
+    try
+      {
+        factorise_safely(A, matrix);
+      }
+    catch (const dealii::LACExceptions::ExcSingular &)
+      {
+        return false;
+      }
+    return true;
+  }
+
+
+
   std::optional<Eigen::MatrixXd>
   safe_inverse(const Eigen::MatrixXd &A)
   {
-    const unsigned int n = static_cast<unsigned int>(A.rows());
-    const double       shift =
-      (n + 3.) * 2. * std::numeric_limits<double>::epsilon() * A.trace();
+    const unsigned int               n = static_cast<unsigned int>(A.rows());
     dealii::LAPACKFullMatrix<double> matrix(n);
-    std::copy(A.data(), A.data() + A.size(), &matrix(0, 0));
-    for (unsigned int i = 0; i < n; ++i)
-      matrix(i, i) -= shift;
-    matrix.set_property(dealii::LAPACKSupport::symmetric);
     try
       {
-        matrix.compute_cholesky_factorization();
+        factorise_safely(A, matrix);
         matrix.invert();
       }
     catch (const dealii::LACExceptions::ExcSingular &)

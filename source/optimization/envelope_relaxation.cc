@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace Debond
@@ -189,72 +190,67 @@ namespace Debond
   LowerBound::LowerBound(const BoxProblem &problem, const Eigen::VectorXd &x)
     : problem(problem)
     , x(x)
+    , r(x.size())
     , least(x.size())
   {
-    // Sums of n terms lose at most n units of their absolute sum, so that sums
-    // of products take more digits; the rest are single operations.
-    const unsigned int n     = static_cast<unsigned int>(x.size());
-    long double        sum   = 0.;
-    double             sums  = 0.; // absolute ones, times the largest |s_i|
-    double             terms = 0.; // the same of single terms
-    r.resize(n);
+    // Sums of n terms lose at most n units of their absolute sum.
+    const unsigned int n    = static_cast<unsigned int>(x.size());
+    long double        sum  = 0.;
+    long double        size = 0.; // of all terms, at the largest |s_i|
     for (unsigned int i = 0; i < n; ++i)
       {
-        long double product = 0.;
-        double      size    = 0.;
+        long double product = 0., terms = 0.;
         for (unsigned int j = 0; j < n; ++j)
           {
-            product += static_cast<long double>(problem.A(j, i)) * x(j);
-            size += std::abs(problem.A(j, i) * x(j));
+            const long double term =
+              static_cast<long double>(problem.A(j, i)) * x(j);
+            product += term;
+            terms += std::abs(term);
           }
         const BondEnergy &f = problem.f[i];
-        r(i)                = static_cast<double>(product - problem.g(i));
-        least(i) =
-          std::min(f.least_bonded(r(i), problem.lower(i), problem.upper(i)),
-                   f.least_broken(r(i), problem.lower(i), problem.upper(i)));
-        sum += least(i) - 0.5 * x(i) * product;
+        r[i]                = product - problem.g(i);
+        least[i]            = f.least(r[i], problem.lower(i), problem.upper(i));
+        sum += least[i] - 0.5L * x(i) * product;
 
-        const double largest =
-          std::max(std::abs(problem.lower(i)), std::abs(problem.upper(i)));
-        sums += size * (std::abs(x(i)) + largest);
-        // The diagonal of A is a sum as well.
-        terms += (std::abs(r(i)) + (f.convexity + problem.A(i, i)) * largest) *
-                   largest +
-                 2. * f.energy_if_broken() + std::abs(least(i));
+        const double s = largest(i);
+        size += (terms + std::abs(problem.g(i))) * (std::abs(x(i)) + s) +
+                (std::abs(r[i]) + f.convexity * s) * s + std::abs(least[i]);
       }
+    sum -= (n + 16.L) * std::numeric_limits<long double>::epsilon() * size;
     value = static_cast<double>(sum);
-    constexpr auto eps_of_sums =
-      static_cast<double>(std::numeric_limits<long double>::epsilon());
-    rounding = (n + 16.) * eps_of_sums * (sums + terms) +
-               8. * std::numeric_limits<double>::epsilon() * terms;
-    value -= rounding;
+    value -= std::numeric_limits<double>::epsilon() * std::abs(value);
   }
 
 
 
-  Growth
-  LowerBound::growth(const unsigned int i,
-                     const double       inverse_diagonal,
-                     const double       curvature,
-                     const double       energy) const
+  double
+  LowerBound::largest(const unsigned int i) const
   {
-    return {x(i),
-            value - rounding +
-              (r(i) * x(i) + 0.5 * curvature * x(i) * x(i) + energy - least(i)),
-            r(i) + curvature * x(i),
-            curvature + 1. / (inverse_rounding * inverse_diagonal)};
+    return std::max(std::abs(problem.lower(i)), std::abs(problem.upper(i)));
   }
 
 
 
+  // The parabola of the bonded half is steep, and is written about s = 0, where
+  // its terms are no larger than the energies of a bond.
   Growth
   LowerBound::growth_if_bonded(const unsigned int i,
                                const double       inverse_diagonal) const
   {
-    return growth(i,
-                  inverse_diagonal,
-                  problem.f[i].convexity + problem.f[i].stiffness,
-                  0.);
+    const double quadratic = 1. / (inverse_rounding * inverse_diagonal);
+    const double c         = problem.f[i].convexity + problem.f[i].stiffness;
+    const double r_i       = static_cast<double>(r[i]);
+    const double least_i   = static_cast<double>(least[i]);
+    const double offset    = 0.5 * quadratic * x(i) * x(i);
+    const double s         = std::min(largest(i), problem.f[i].threshold);
+    const double rounding =
+      8. * std::numeric_limits<double>::epsilon() *
+      (std::abs(value) + std::abs(least_i) + offset +
+       (std::abs(r_i) + quadratic * std::abs(x(i)) + (c + quadratic) * s) * s);
+    return {0.,
+            value + (offset - least_i) - rounding,
+            r_i - quadratic * x(i),
+            c + quadratic};
   }
 
 
@@ -263,9 +259,20 @@ namespace Debond
   LowerBound::growth_if_broken(const unsigned int i,
                                const double       inverse_diagonal) const
   {
-    return growth(i,
-                  inverse_diagonal,
-                  problem.f[i].convexity,
-                  problem.f[i].energy_if_broken());
+    const double quadratic = 1. / (inverse_rounding * inverse_diagonal);
+    const double c         = problem.f[i].convexity;
+    const double r_i       = static_cast<double>(r[i]);
+    const double least_i   = static_cast<double>(least[i]);
+    const double energy = static_cast<double>(problem.f[i].energy_if_broken());
+    const double size   = std::abs(x(i));
+    const double s      = largest(i) + size;
+    const double rounding = 8. * std::numeric_limits<double>::epsilon() *
+                            (std::abs(value) + std::abs(least_i) + energy +
+                             (std::abs(r_i) + (c + quadratic) * s) * s);
+    return {x(i),
+            value + (r_i * x(i) + 0.5 * c * x(i) * x(i) + energy - least_i) -
+              rounding,
+            r_i + c * x(i),
+            c + quadratic};
   }
 } // namespace Debond

@@ -29,6 +29,11 @@ namespace Debond
     /// beside the bound of the lower one of its halves.
     constexpr double envelope_weight = 0.3;
 
+    /// What a certificate takes more than it needs, relative to that and to the
+    /// stiffness of bond or body: a residual d of s then costs d^2 / (2 D).
+    constexpr double certificate_excess = 1e-2;
+    constexpr double certificate_floor  = 1e-8;
+
 
 
     enum class Bond
@@ -132,8 +137,10 @@ namespace Debond
       for (unsigned int i = 0; i < n; ++i)
         {
           const Bond bond = state(node, i, bonds.threshold);
+          // Rounded down, A gives a bound all the same.
           if (bond == Bond::bonded)
-            problem.A(i, i) += bonds.stiffness(i);
+            problem.A(i, i) = (problem.A(i, i) + bonds.stiffness(i)) *
+                              (1. - std::numeric_limits<double>::epsilon());
           problem.f[i] = {0.,
                           bond == Bond::bonded ? 0. : bonds.stiffness(i),
                           bonds.threshold};
@@ -172,7 +179,9 @@ namespace Debond
       envelopes.clear();
       for (unsigned int i = 0; i < n; ++i)
         {
-          problem.f[i].convexity = shift(i);
+          // What was taken, without the rounding of the difference.
+          if (shift(i) > 0.)
+            problem.f[i].convexity = S(i, i) - problem.A(i, i);
           envelopes.emplace_back(problem.f[i], node.lower(i), node.upper(i));
         }
       return true;
@@ -347,6 +356,55 @@ namespace Debond
     if (!node.lower.allFinite())
       return {};
     return node;
+  }
+
+
+
+  double
+  NodeBound::certificate(const Eigen::VectorXd &s) const
+  {
+    constexpr double nothing = -std::numeric_limits<double>::infinity();
+    // Where the bonds are as in s, r_i s_i + f_i(s_i) is least at s if f_i has
+    // at least this convexity.
+    Eigen::MatrixXd         A = S;
+    std::vector<BondEnergy> f(n);
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const double M_2 = bonds.threshold * bonds.threshold;
+        const double s_2 = s(i) * s(i);
+        const double convexity =
+          bonds.stiffness(i) * std::min(M_2, s_2) / std::abs(M_2 - s_2);
+        A(i, i) -= (1. + certificate_excess) * convexity +
+                   certificate_floor * std::min(bonds.stiffness(i), S(i, i));
+        // What was taken, without the rounding of the difference.
+        f[i] = {S(i, i) - A(i, i), bonds.stiffness(i), bonds.threshold};
+        if (!(A(i, i) > 0.))
+          return nothing;
+      }
+    if (!is_safely_positive_definite(A))
+      return nothing;
+
+    constexpr double      infinity = std::numeric_limits<double>::infinity();
+    constexpr long double epsilon = std::numeric_limits<long double>::epsilon();
+    long double           sum = 0., size = 0.;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        long double product = 0., terms = std::abs(g(i));
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            const long double term = static_cast<long double>(A(j, i)) * s(j);
+            product += term;
+            terms += std::abs(term);
+          }
+        // Of all that r can be the largest gives the least value, as s_i <= 0.
+        const long double r     = product - g(i) + (n + 16.L) * epsilon * terms;
+        const long double least = f[i].least(r, -infinity, 0.);
+        sum += least - 0.5L * s(i) * product;
+        size += std::abs(s(i)) * terms + std::abs(least);
+      }
+    sum -= (n + 16.L) * epsilon * size;
+    const double value = static_cast<double>(sum);
+    return value - std::numeric_limits<double>::epsilon() * std::abs(value);
   }
 
 

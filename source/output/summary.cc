@@ -83,7 +83,9 @@ namespace Debond
     json["minimum"] = {{"state", summary.minimum},
                        {"search_trials", summary.search_trials},
                        {"search_improvements", summary.search_improvements},
-                       {"search_nodes", summary.search_nodes}};
+                       {"search_failures", summary.search_failures},
+                       {"search_nodes", summary.search_nodes},
+                       {"closed_nodes", summary.closed_nodes}};
     if (!summary.proof.empty())
       json["proof"] = {{"status", summary.proof},
                        {"nodes", summary.proof_nodes},

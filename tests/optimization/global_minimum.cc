@@ -36,10 +36,21 @@ namespace
     Vector                     g;
     SeparableBonds             bonds;
 
+    /// As exact as a double can be: bounds come close to it.
     double
     value(const Vector &s) const
     {
-      return 0.5 * S.matrix_norm_square(s) - g * s + bonds.value(s);
+      long double sum = 0.;
+      for (unsigned int i = 0; i < s.size(); ++i)
+        {
+          const long double s_i   = s(i);
+          const long double bond  = std::min(std::abs(s(i)), bonds.threshold);
+          long double       force = -g(i);
+          for (unsigned int j = 0; j < s.size(); ++j)
+            force += 0.5L * S(i, j) * s(j);
+          sum += force * s_i + 0.5L * bonds.stiffness(i) * bond * bond;
+        }
+      return static_cast<double>(sum);
     }
   };
 
@@ -532,6 +543,84 @@ namespace
               << ", no bound: " << verdict(!std::isfinite(nothing.lower))
               << '\n';
   }
+
+
+
+  /// One bond, of which both states are minima: -1/6 intact, -1/4 broken, and
+  /// from the broken state the descent stays there. Then a matrix that is
+  /// indefinite without its bond, so that all states with that broken fail.
+  void
+  test_starts()
+  {
+    Problem p         = {Eigen::MatrixXd::Identity(1, 1),
+                         dealii::FullMatrix<double>(1, 1),
+                         Vector(1),
+                         SeparableBonds(Eigen::VectorXd::Constant(1, 2.), 0.5)};
+    p.S(0, 0)         = 1.;
+    p.g(0)            = -1.;
+    const auto search = [&](Vector &s) {
+      const MajoriseMinimise method({});
+      CondensedProblem       problem(p.S, p.g, p.bonds, s);
+      method.minimize(problem);
+      return search_bonds(
+        p.S, p.g, p.bonds, p.bonds.threshold, chain(s.size()), method, {}, s);
+    };
+    Vector     s(1);
+    const auto found = search(s);
+    std::cout << "a start that is its own minimum is taken: "
+              << verdict(std::abs(found.functional + 0.25) < 1e-14 &&
+                         std::abs(s(0) + 1.) < 1e-14 && found.failures == 0)
+              << '\n';
+
+    p.S(0, 0) = -1.;
+    Vector     rest(1);
+    const auto failed = search(rest);
+    std::cout << "trials that fail are counted: "
+              << verdict(failed.failures > 0) << '\n';
+  }
+
+
+
+  /// Bonds so stiff and short that in a double nothing else is left of a
+  /// diagonal entry with one: as the energy they take to break is moderate,
+  /// their state matters.
+  void
+  test_brittle(std::mt19937_64 &engine)
+  {
+    unsigned int invalid = 0, wrong = 0, proved = 0, certified = 0;
+    for (unsigned int k = 0; k < 300; ++k)
+      {
+        const unsigned int n    = 2 + k % 6;
+        Problem            p    = random_problem(engine, n, k % 2 == 0);
+        const double       unit = 1e-10;
+        p.bonds = SeparableBonds(p.bonds.stiffness / (unit * unit),
+                                 unit * p.bonds.threshold);
+        Vector                   minimiser;
+        const double             minimum = enumerated_minimum(p, minimiser);
+        BranchAndBoundParameters parameters;
+        parameters.tolerance = 1e-10 * std::max(1., std::abs(minimum));
+        const auto proof =
+          BranchAndBound(parameters).minimize(p.S, p.g, p.bonds, Vector(n));
+        invalid += proof.lower > minimum + 1e-15;
+        wrong += std::abs(proof.upper - minimum) > parameters.tolerance;
+        proved += proof.status == ProofStatus::proved;
+
+        parameters.maximum_nodes = 0;
+        const auto certificate =
+          BranchAndBound(parameters).minimize(p.S, p.g, p.bonds, minimiser);
+        invalid += certificate.lower > minimum + 1e-15;
+        certified += certificate.status == ProofStatus::proved;
+      }
+    std::cout << "brittle bonds: bounds never above the enumerated minimum: "
+              << verdict(invalid == 0)
+              << ", the minimum found: " << verdict(wrong == 0)
+              << ", and proved: " << verdict(proved == 300)
+              << ", by a certificate in one of ten: " << verdict(certified > 30)
+              << '\n';
+    if (print_figures)
+      std::cout << "  invalid " << invalid << ", wrong " << wrong << ", proved "
+                << proved << ", certified " << certified << '\n';
+  }
 } // namespace
 
 
@@ -549,4 +638,6 @@ main(int argc, char *[])
   test_larger(engine);
   test_threads(engine);
   test_limits(engine);
+  test_starts();
+  test_brittle(engine);
 }

@@ -52,7 +52,7 @@ namespace Debond
   /// How much a better minimum is searched for.
   enum class BondSearchChoice
   {
-    automatic, ///< quick if the method is chosen automatically, else none
+    automatic, ///< what it takes if the method is automatic, else none
     none,
     quick,
     full
@@ -60,7 +60,7 @@ namespace Debond
 
 
 
-  /// The proof's tolerance is relative to |J|.
+  /// The proof's tolerance is relative to what the bonds can change in J.
   inline BranchAndBoundParameters
   proof_defaults()
   {

@@ -33,18 +33,26 @@ namespace Debond
 
     unsigned int search_trials       = 0;
     unsigned int search_improvements = 0;
+    unsigned int search_failures     = 0; ///< trials without a result
     unsigned int search_nodes = 0; ///< contact nodes of the mesh of the search
+
+    /// Contact nodes of the coarser mesh, with lumped bonds, on which the
+    /// minimum is proved and leads to the result; 0 if there is none.
+    unsigned int closed_nodes = 0;
 
     bool interrupted = false; ///< search or proof, by a signal
 
     bool         proof_attempted = false;
     ProofStatus  proof_status    = ProofStatus::no_bound;
     double       lower_bound     = 0.; ///< of J
-    double       relative_gap    = 0.; ///< (J - lower bound) / |J|
-    unsigned int proof_nodes     = 0;
+    double       relative_gap = 0.; ///< J - lower bound, by what bonds change
+    unsigned int proof_nodes  = 0;
 
-    /// With J in place of the condensed functional.
+    /// With J in place of the condensed functional; of Solver/Prove only.
     std::vector<ProofProgress> proof_history;
+
+    /// Why there was no search or no proof.
+    std::vector<std::string> notes;
   };
 
 
@@ -58,7 +66,8 @@ namespace Debond
                       const dealii::Vector<double> &s);
 
   /// The search and the proof that the scene asks for, from the stationary
-  /// point @p s, which moves if they find a better one.
+  /// point @p s, which moves if they find a better one. Throws BadInput if the
+  /// scene asks for what cannot be done with the law.
   template <int dim>
   WhichMinimum
   find_better_minimum(const Parameters            &parameters,

@@ -2,17 +2,20 @@
 #ifndef debond_contact_law_h
 #define debond_contact_law_h
 
+#include <debond/optimization/interval.h>
+
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace Debond
 {
-  /// A closed interval of real numbers.
-  struct Interval
+  /// What search and proof need to know of a law.
+  enum class LawShape
   {
-    double lower;
-    double upper;
+    convex,       ///< there is one minimum
+    two_branches, ///< a/2 min(s^2, M^2) for s <= 0
+    other
   };
 
 
@@ -41,6 +44,10 @@ namespace Debond
     /// branch on the side of the bonded state).
     virtual double
     curvature(const double s) const = 0;
+
+    /// `other` unless the law says more: nothing is proved of it then.
+    virtual LawShape
+    shape() const;
 
     /// Where j_1 is not twice differentiable, in ascending order.
     virtual std::vector<double>

@@ -49,14 +49,26 @@ namespace Debond
 
   struct BondSearchResult
   {
-    double functional; ///< of the best point
+    double functional = 0.; ///< of the best point
 
     /// Whether all moves were tried from there.
     bool complete = true;
 
     /// States minimised, and those that lowered the functional, by BondMove.
-    std::array<unsigned int, 4> trials, improvements;
+    std::array<unsigned int, 4> trials = {}, improvements = {};
+
+    /// Of the states minimised, those that led to no minimum.
+    unsigned int failures = 0;
   };
+
+
+
+  /// Minimises from the problem's point. If the method does not end with
+  /// success, it goes on with a larger tolerance.
+  MajoriseMinimiseResult
+  minimise_trial(const MajoriseMinimise          &method,
+                 MajorantProblem                 &problem,
+                 const MajoriseMinimise::Monitor &monitor = {});
 
 
 

@@ -61,7 +61,8 @@ namespace Debond
   /**
    * min 1/2 x'M x - r'x subject to x <= b for a dense symmetric positive
    * definite M, started at @p active, which is updated. Each step solves on
-   * the free components with a Cholesky factorisation.
+   * the free components with a Cholesky factorisation. Where rounding makes the
+   * rule go in circles it ends; the caller sees what that leaves.
    */
   BoundQPResult
   solve_bound_qp(const Eigen::Ref<const Eigen::MatrixXd> &M,

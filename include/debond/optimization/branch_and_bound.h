@@ -19,6 +19,7 @@ namespace Debond
     /// this below the best known one, an energy.
     double tolerance = 0.;
 
+    /// With 0 there is only the certificate of the start.
     unsigned int maximum_nodes   = 1000000;
     double       maximum_seconds = std::numeric_limits<double>::infinity();
 

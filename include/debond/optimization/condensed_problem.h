@@ -22,6 +22,13 @@ namespace Debond
                      const PiecewiseQuadratic         &phi,
                      dealii::Vector<double>           &s);
 
+    /// The active set of the first majorant starts at @p first_active.
+    CondensedProblem(const dealii::FullMatrix<double> &S,
+                     const dealii::Vector<double>     &g,
+                     const PiecewiseQuadratic         &phi,
+                     dealii::Vector<double>           &s,
+                     const ActiveSet                  &first_active);
+
     State
     evaluate() override;
 

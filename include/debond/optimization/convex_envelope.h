@@ -14,17 +14,26 @@ namespace Debond
     double
     value(const double s) const;
 
-    double
+    long double
     energy_if_broken() const;
 
     /// The least value of r s + f(s) on [lower, upper] where the bond is
     /// bonded (s >= -M) and where it is broken (s <= -M); infinite if there
     /// is no such s.
-    double
-    least_bonded(const double r, const double lower, const double upper) const;
+    long double
+    least_bonded(const long double r,
+                 const double      lower,
+                 const double      upper) const;
 
-    double
-    least_broken(const double r, const double lower, const double upper) const;
+    long double
+    least_broken(const long double r,
+                 const double      lower,
+                 const double      upper) const;
+
+    /// The lower one, less what rounding can do to the energy of the broken
+    /// bond.
+    long double
+    least(const long double r, const double lower, const double upper) const;
   };
 
 

@@ -18,6 +18,10 @@ namespace Debond
   std::optional<Eigen::MatrixXd>
   safe_inverse(const Eigen::MatrixXd &A);
 
+  /// Whether there is one, at a third of the price.
+  bool
+  is_safely_positive_definite(const Eigen::MatrixXd &A);
+
 
 
   /// The largest t for which A - t diag(weights) is positive semidefinite,

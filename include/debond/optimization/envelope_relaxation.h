@@ -41,7 +41,7 @@ namespace Debond
    *
    * with r = A x - g, and each term of the sum has a least value. At the
    * minimum of the relaxation the bound is the minimum. `value` accounts for
-   * the rounding in its own evaluation.
+   * the rounding in its own evaluation, for which A, g and f_i are exact.
    */
   class LowerBound
   {
@@ -63,14 +63,12 @@ namespace Debond
   private:
     const BoxProblem      &problem;
     const Eigen::VectorXd &x;
-    Eigen::VectorXd        r, least;
-    double                 rounding;
 
-    Growth
-    growth(const unsigned int i,
-           const double       inverse_diagonal,
-           const double       curvature,
-           const double       energy) const;
+    /// In the digits in which they were summed.
+    std::vector<long double> r, least;
+
+    double
+    largest(const unsigned int i) const;
   };
 } // namespace Debond
 

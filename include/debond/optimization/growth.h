@@ -2,21 +2,10 @@
 #ifndef debond_optimization_growth_h
 #define debond_optimization_growth_h
 
+#include <debond/optimization/interval.h>
+
 namespace Debond
 {
-  struct Interval
-  {
-    double lower, upper;
-
-    bool
-    is_empty() const
-    {
-      return lower > upper;
-    }
-  };
-
-
-
   /// The least interval with both.
   Interval
   hull(const Interval &a, const Interval &b);

@@ -70,6 +70,14 @@ namespace Debond
     std::optional<ProofNode>
     root(const double best_value) const;
 
+    /// A lower bound of the functional that is close to its value at @p s if
+    /// the convexity that the broken and bonded states of s need for this,
+    ///     k_i M^2 / (s_i^2 - M^2) and k_i s_i^2 / (M^2 - s_i^2),
+    /// leaves S positive definite; minus infinity if it does not. Takes one
+    /// factorisation.
+    double
+    certificate(const Eigen::VectorXd &s) const;
+
     /// Raises the node's bound and shrinks its box.
     NodeResult
     bound(ProofNode   &node,

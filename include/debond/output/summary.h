@@ -39,11 +39,13 @@ namespace Debond
     std::string  minimum;
     unsigned int search_trials       = 0;
     unsigned int search_improvements = 0;
+    unsigned int search_failures     = 0; ///< trials without a result
     unsigned int search_nodes = 0; ///< contact nodes on which it searched
+    unsigned int closed_nodes = 0; ///< coarser ones with a proof
     std::string  proof; ///< to_string(ProofStatus), empty if none was tried
     unsigned int proof_nodes  = 0;
     double       lower_bound  = 0.; ///< of J, by the proof
-    double       relative_gap = 0.;
+    double       relative_gap = 0.; ///< to what the bonds can change in J
 
     unsigned int total_iterations = 0;
     unsigned int long_steps       = 0;

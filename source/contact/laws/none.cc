@@ -27,6 +27,14 @@ namespace Debond
 
 
 
+  LawShape
+  NoAdhesion::shape() const
+  {
+    return LawShape::convex;
+  }
+
+
+
   std::vector<double>
   NoAdhesion::kinks() const
   {

@@ -70,6 +70,14 @@ namespace Debond
 
 
 
+  LawShape
+  WinklerLaw::shape() const
+  {
+    return a > 0. ? LawShape::two_branches : LawShape::convex;
+  }
+
+
+
   std::vector<double>
   WinklerLaw::kinks() const
   {

@@ -31,6 +31,9 @@ namespace Debond
     double
     curvature(const double s) const override;
 
+    LawShape
+    shape() const override;
+
     std::vector<double>
     kinks() const override;
 

@@ -1,0 +1,466 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the default search misses on random scenes: small ones against the
+// enumeration of all bond states, by a solver of its own in long double, and
+// scenes with many patches against branch and bound. Takes the numbers of small
+// scenes and of scenes with many patches, and prints each miss with its gap.
+
+#include <debond/application/parameters.h>
+#include <debond/application/scene.h>
+#include <debond/application/solve.h>
+#include <debond/contact/laws/winkler.h>
+#include <debond/elasticity/contact_condensation.h>
+#include <debond/optimization/guided_search.h>
+
+#include <Eigen/Dense>
+
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <limits>
+#include <map>
+#include <random>
+#include <sstream>
+
+using namespace Debond;
+
+namespace
+{
+  using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+  using LongVector = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
+
+  // Nodes of a small scene: 2^n bond states take their time.
+  unsigned int most_nodes = 9;
+
+  // A miss is a result above the minimum by more than this part of J without
+  // the energy of the body with its contact nodes held.
+  constexpr double allowed = 1e-9;
+
+
+
+  class Random
+  {
+  public:
+    double
+    operator()(const double lower, const double upper)
+    {
+      return std::uniform_real_distribution<double>(lower, upper)(engine);
+    }
+
+    double
+    log10(const double lower, const double upper)
+    {
+      return std::pow(10., (*this)(lower, upper));
+    }
+
+    unsigned int
+    integer(const unsigned int lower, const unsigned int upper)
+    {
+      return std::uniform_int_distribution<unsigned int>(lower, upper)(engine);
+    }
+
+  private:
+    std::mt19937_64 engine{20261122};
+  };
+
+
+
+  template <typename... Values>
+  std::string
+  text(const Values &...values)
+  {
+    std::ostringstream out;
+    out << std::setprecision(6);
+    (out << ... << values);
+    return out.str();
+  }
+
+
+
+  struct Case
+  {
+    std::string              kind;
+    std::vector<std::string> entries;
+  };
+
+
+
+  /// A load along x that changes its sign.
+  std::string
+  waves(Random &random, const double length, const unsigned int most)
+  {
+    const double n = random(0.6, most), phase = random(0., 6.28);
+    if (random.integer(0, 1) == 0)
+      return text(random(0.5, 1.5),
+                  "*sin(6.283*",
+                  n,
+                  "*x/",
+                  length,
+                  "+",
+                  phase,
+                  ")+",
+                  random(-0.5, 0.8));
+    std::string load = text(random(-1., 1.5));
+    for (unsigned int k = 1; k <= n + 1; ++k)
+      load = text("if(x<",
+                  length * random(0., 1.),
+                  ",",
+                  (k % 2 == 0 ? 1. : -1.) * random(0.2, 1.5),
+                  ",",
+                  load,
+                  ")");
+    return load;
+  }
+
+
+
+  /// Without the law, which depends on the displacements.
+  Case
+  random_case(Random &random, const bool many_patches)
+  {
+    const unsigned int type   = random.integer(0, many_patches ? 3 : 4);
+    const bool         is_3d  = type >= 3;
+    const double       length = random(1., 3.);
+    Case               c;
+    const auto         set = [&](const auto &...values) {
+      c.entries.push_back(text(values...));
+    };
+    set("Dimension=", is_3d ? 3 : 2);
+    set("Material/Poisson ratio=", random(0., 0.45));
+    set("Material/Young modulus=1");
+    set("Boundary conditions/Contact boundary=bottom");
+    set("Contact law/Tangential displacement=",
+        random.integer(0, 1) == 0 ? "fixed" : "free");
+    std::string clamped = "left, right", loaded = "top";
+    if (type == 0 || type == 4)
+      c.kind = is_3d ? "bar in 3D" : "bar";
+    else if (type == 1)
+      {
+        c.kind  = "strip clamped at one end";
+        clamped = "left";
+      }
+    else
+      {
+        c.kind  = type == 2 ? "pad clamped on the far side" : "plate in 3D";
+        clamped = type == 2 ? "top" : "left, right";
+        if (type == 2)
+          loaded = "bottom";
+      }
+    set("Boundary conditions/Clamped boundaries=", clamped);
+    const unsigned int most   = many_patches ? 8 : 3;
+    const std::string  normal = waves(random, length, most);
+    const double       height = length * random.log10(-1.6, -0.6);
+    if (is_3d)
+      {
+        const unsigned int nx =
+          many_patches ? random.integer(8, 14) : random.integer(3, 4);
+        const unsigned int nz = many_patches ? random.integer(3, 6) : 1;
+        set("Mesh/Lengths=",
+            length,
+            ", ",
+            height,
+            ", ",
+            length * random(0.2, 0.6));
+        set("Mesh/Cells=", nx, ", 1, ", nz);
+        set("Loads/Traction ",
+            loaded,
+            "=0; (",
+            normal,
+            ")*(1+",
+            random(-0.8, 0.8),
+            "*z); 0");
+      }
+    else
+      {
+        const unsigned int nx =
+          many_patches ? random.integer(40, 140) : random.integer(4, 14);
+        set("Mesh/Lengths=", length, ", ", height);
+        set("Mesh/Cells=", nx, ", ", random.integer(1, many_patches ? 4 : 2));
+        set("Loads/Traction ", loaded, "=0; ", normal);
+      }
+    return c;
+  }
+
+
+
+  Parameters
+  read(const std::vector<std::string> &entries)
+  {
+    ParameterTable table;
+    declare_parameters(table);
+    table.assign("Output/Machine details=false");
+    for (const std::string &entry : entries)
+      table.assign(entry);
+    return to_parameters("random.prm", table);
+  }
+
+
+
+  /// The least value over all bond states: for each the minimum for s <= 0 of
+  /// a convex quadratic, by principal pivoting.
+  long double
+  enumerated_minimum(const LongMatrix &S,
+                     const LongVector &g,
+                     const LongVector &k,
+                     const long double M)
+  {
+    const unsigned int n = g.size();
+    std::vector<char>  active(n, 0);
+    long double        least = 0.;
+    for (unsigned int count = 0; count < (1u << n); ++count)
+      {
+        const unsigned int state    = count ^ (count >> 1);
+        LongMatrix         A        = S;
+        long double        constant = 0.;
+        for (unsigned int i = 0; i < n; ++i)
+          if ((state >> i) % 2 == 0)
+            A(i, i) += k(i);
+          else
+            constant += 0.5L * k(i) * M * M;
+        LongVector s(n);
+        for (unsigned int step = 0; step < 10000; ++step)
+          {
+            std::vector<int> free;
+            for (unsigned int i = 0; i < n; ++i)
+              if (active[i] == 0)
+                free.push_back(i);
+            s.setZero();
+            if (!free.empty())
+              {
+                const LongMatrix A_ff = A(free, free);
+                const LongVector g_f  = g(free);
+                const LongVector s_f  = A_ff.llt().solve(g_f);
+                s(free)               = s_f;
+              }
+            const LongVector mu = g - A * s;
+            unsigned int     i  = 0;
+            while (i < n && !(active[i] != 0 ? mu(i) < 0. : s(i) > 0.))
+              ++i;
+            if (i == n)
+              break;
+            active[i] = active[i] == 0;
+          }
+        least = std::min(least, s.dot(0.5L * (A * s) - g) + constant);
+      }
+    return least;
+  }
+
+
+
+  struct Counts
+  {
+    unsigned int scenes = 0, missed = 0, failed = 0, unknown = 0;
+    std::map<std::string, unsigned int> words;
+  };
+
+
+
+  template <int dim>
+  void
+  attack(Random &random, Case c, const bool many_patches, Counts &counts)
+  {
+    // A law of which some bonds break.
+    c.entries.push_back("Solver/Method=automatic");
+    double largest, stiffness;
+    {
+      const Parameters   parameters = read(c.entries);
+      const Scene<dim>   scene(parameters, MatrixStorage::serial);
+      const Condensation condensed = condense_to_contact(scene.problem());
+      const unsigned int n         = condensed.load().size();
+      if (n == 0 || (!many_patches && n > most_nodes))
+        return;
+      const Eigen::Map<const Eigen::MatrixXd> S(
+        &condensed.schur_complement()(0, 0), n, n);
+      const Eigen::Map<const Eigen::VectorXd> g(condensed.load().begin(), n);
+      largest   = -S.llt().solve(g).minCoeff();
+      stiffness = S.diagonal().mean() /
+                  lumped_bonds(scene.adhesion(), n, 1.).stiffness.mean() *
+                  parameters.law.bond_stiffness;
+    }
+    if (!(largest > 0.))
+      return;
+    c.entries.push_back(
+      text("Contact law/Bond threshold=", largest * random.log10(-2., -0.1)));
+    c.entries.push_back(
+      text("Contact law/Bond stiffness=", stiffness * random.log10(-2.5, 1.)));
+
+    const Parameters   parameters = read(c.entries);
+    const Scene<dim>   scene(parameters, MatrixStorage::serial);
+    std::ostringstream log;
+    const SolveResult  result =
+      solve(choose_method(parameters), parameters, scene, log, false);
+    ++counts.scenes;
+    if (result.status != SolverStatus::success)
+      {
+        ++counts.failed;
+        std::cout << "  " << c.kind << ": " << result.message << '\n';
+        return;
+      }
+    ++counts.words[to_string(result.minimum.kind)];
+
+    const Condensation     condensed = condense_to_contact(scene.problem());
+    const auto            &nodes     = scene.problem().contact_boundary().nodes;
+    const unsigned int     n         = nodes.size();
+    dealii::Vector<double> s(n);
+    for (unsigned int i = 0; i < n; ++i)
+      s(i) = result.u(nodes[i].dof);
+    const SeparableBonds bonds =
+      lumped_bonds(scene.adhesion(), n, scene.law().bond_threshold());
+    const double found =
+      0.5 * condensed.schur_complement().matrix_norm_square(s) -
+      condensed.load() * s + bonds.value(s);
+    double minimum;
+    if (many_patches)
+      {
+        BranchAndBoundParameters proof_parameters;
+        proof_parameters.tolerance     = 1e-10 * std::abs(found);
+        proof_parameters.maximum_nodes = 3000;
+        const BranchAndBoundResult proof =
+          BranchAndBound(proof_parameters)
+            .minimize(condensed.schur_complement(), condensed.load(), bonds, s);
+        minimum = proof.upper;
+        counts.unknown += proof.upper - proof.lower > allowed * std::abs(found);
+      }
+    else
+      {
+        LongMatrix S(n, n);
+        LongVector g(n);
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            g(i) = condensed.load()(i);
+            for (unsigned int j = 0; j < n; ++j)
+              S(i, j) = condensed.schur_complement()(i, j);
+          }
+        minimum = enumerated_minimum(S,
+                                     g,
+                                     bonds.stiffness.cast<long double>(),
+                                     bonds.threshold);
+      }
+    // The minimum is 0 where all is pressed.
+    const double gap =
+      found > minimum ? (found - minimum) / std::abs(minimum) : 0.;
+    const bool miss = !(gap <= allowed);
+    counts.missed += miss;
+    const bool wrong_word = result.minimum.kind == MinimumKind::global && miss;
+    if (miss)
+      {
+        std::cout << "  " << (wrong_word ? "FALSE GLOBAL, " : "") << c.kind
+                  << ", " << n << " nodes, above the minimum by " << gap
+                  << " of it, " << to_string(result.minimum.kind) << ":\n   ";
+        for (const std::string &entry : c.entries)
+          std::cout << " --set \"" << entry << '"';
+        std::cout << '\n';
+      }
+  }
+
+
+
+  Counts
+  attack(const unsigned int n_scenes, const bool many_patches)
+  {
+    Random random;
+    Counts counts;
+    while (counts.scenes < n_scenes)
+      {
+        const Case c = random_case(random, many_patches);
+        if (c.entries[0] == "Dimension=3")
+          attack<3>(random, c, many_patches, counts);
+        else
+          attack<2>(random, c, many_patches, counts);
+      }
+    return counts;
+  }
+
+
+
+  void
+  report(const std::string &name, const Counts &counts, const bool figures)
+  {
+    std::cout << name << ": all solved: " << (counts.failed == 0 ? "yes" : "NO")
+              << ", the minimum in 99 of 100: "
+              << (100 * counts.missed <= counts.scenes ? "yes" : "NO") << '\n';
+    if (!figures)
+      return;
+    std::cout << "  " << counts.scenes << " scenes, " << counts.missed
+              << " misses, " << counts.unknown
+              << " with a minimum that is not proved;";
+    for (const auto &[word, number] : counts.words)
+      std::cout << ' ' << number << ' ' << word << ',';
+    std::cout << " " << counts.failed << " not solved\n";
+  }
+
+
+
+  /// A law that says nothing of its shape.
+  class Unknown : public WinklerLaw
+  {
+  public:
+    using WinklerLaw::WinklerLaw;
+
+    LawShape
+    shape() const override
+    {
+      return AdhesiveLaw::shape();
+    }
+  };
+
+
+
+  /// Search and proof refuse it; by default there is a note and no word.
+  void
+  test_other_law()
+  {
+    const std::vector<std::string> entries = {
+      "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)"};
+    const Unknown law(69., 0.002);
+    unsigned int  refused = 0, noted = 0;
+    for (const std::string entry :
+         {"Solver/Search=full", "Solver/Prove=true", "Solver/Search=automatic"})
+      {
+        std::vector<std::string> more = entries;
+        more.push_back(entry);
+        const Parameters       parameters = read(more);
+        const Scene<2>         scene(parameters, MatrixStorage::serial);
+        const Condensation     condensed = condense_to_contact(scene.problem());
+        dealii::Vector<double> s(condensed.load().size());
+        try
+          {
+            const WhichMinimum result = find_better_minimum(
+              parameters,
+              scene.problem().contact_boundary(),
+              law,
+              scene.adhesion(),
+              condensed,
+              []() { return true; },
+              s);
+            noted += result.notes.size() == 1 &&
+                     result.kind != MinimumKind::best_known &&
+                     result.kind != MinimumKind::global;
+          }
+        catch (const BadInput &)
+          {
+            ++refused;
+          }
+      }
+    std::cout << "a law of another shape is refused: "
+              << (refused == 2 ? "yes" : "NO")
+              << ", and by default noted: " << (noted == 1 ? "yes" : "NO")
+              << '\n';
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *argv[])
+{
+  const bool figures = argc > 2;
+  if (figures)
+    most_nodes = 16;
+  test_other_law();
+  report("small scenes against enumeration",
+         attack(figures ? std::stoul(argv[1]) : 20, false),
+         figures);
+  report("many patches against branch and bound",
+         attack(figures ? std::stoul(argv[2]) : 5, true),
+         figures);
+}
