@@ -6,6 +6,7 @@
 #include <debond/application/load_path.h>
 #include <debond/application/report.h>
 #include <debond/elasticity/contact_condensation.h>
+#include <debond/elasticity/refinement.h>
 #include <debond/optimization/condensed_problem.h>
 
 #include <cmath>
@@ -119,7 +120,7 @@ namespace Debond
         // branch.
         condensed.scale_load(steps.back().factor);
         result.load_factor  = steps.back().factor;
-        result.u            = condensed.expand(points.back());
+        result.u            = displacement(steps.back().factor, points.back());
         result.functional   = steps.back().state.functional;
         result.minimum.kind = kinds.back();
         return result;
@@ -152,7 +153,7 @@ namespace Debond
         step.step       = static_cast<unsigned int>(steps.size() + 1);
         step.factor     = factor;
         step.iterations = static_cast<unsigned int>(minimum.history.size());
-        const dealii::Vector<double> u            = condensed.expand(s);
+        const dealii::Vector<double> u            = displacement(factor, s);
         const Verification<dim>      verification = verify(factor, u);
         step.state                                = load_path_state(
           scene.problem(), scene.adhesion(), factor, u, verification);
@@ -171,6 +172,24 @@ namespace Debond
         points.push_back(s);
         steps.push_back(step);
         observer(step, u, verification);
+      }
+
+      /// Of all unknowns, refined where rounding has a say in it.
+      dealii::Vector<double>
+      displacement(const double factor, const dealii::Vector<double> &point)
+      {
+        dealii::Vector<double> u = condensed.expand(point);
+        CondensedCorrection    solver(condensed);
+        const std::string      note = refine_where_needed(
+          scene.problem(),
+          scene.adhesion(),
+          factor,
+          solver,
+          [this]() { return !guard.requested(); },
+          u);
+        if (!note.empty() && result.notes.empty())
+          result.notes.push_back(note);
+        return u;
       }
 
       Verification<dim>
@@ -236,7 +255,7 @@ namespace Debond
       add_global(const double factor, const BranchPoint &point)
       {
         condensed.scale_load(factor);
-        const dealii::Vector<double> u            = condensed.expand(point.s);
+        const dealii::Vector<double> u = displacement(factor, point.s);
         const Verification<dim>      verification = verify(factor, u);
         LoadPathState<dim>           state        = load_path_state(
           scene.problem(), scene.adhesion(), factor, u, verification);

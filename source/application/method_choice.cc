@@ -12,12 +12,8 @@ namespace Debond
 {
   namespace
   {
-    /// Above so many unknowns multigrid takes less time than a factorisation.
-    double
-    largest_direct(const unsigned int dimension)
-    {
-      return dimension == 2 ? 3e6 : 1.5e5;
-    }
+    /// Below, the choice hardly matters, and a factorisation is exact.
+    constexpr double seconds_that_matter = 10.;
 
 
 
@@ -135,20 +131,29 @@ namespace Debond
         else if (choice.linear_solver == LinearSolver::automatic)
           {
             choice.linear_solver = LinearSolver::direct;
-            std::string reason;
+            const double direct_seconds =
+              seconds_with_factorisation(parameters);
+            const double multigrid_seconds = seconds_with_multigrid(parameters);
+            std::string  reason;
             if (direct_memory > limit)
               reason = "a factorisation would take about " +
                        in_gib(direct_memory) + ", there are " + in_gib(limit);
-            else if (size.unknowns > largest_direct(dim))
-              reason = "a factorisation takes longer above " +
-                       rounded(largest_direct(dim)) + " unknowns in " +
-                       std::to_string(dim) + "D";
+            else if (direct_seconds > seconds_that_matter &&
+                     direct_seconds > multigrid_seconds)
+              reason = "it takes less time";
             if (!reason.empty())
               {
                 choice.linear_solver = LinearSolver::multigrid;
                 choice.reason += (choice.reason.empty() ? "" : "; ") +
                                  ("by multigrid, since " + reason);
               }
+            if (std::max(direct_seconds, multigrid_seconds) >
+                seconds_that_matter)
+              choice.reason +=
+                (choice.reason.empty() ? "" : "; ") +
+                ("estimated are " + rounded(direct_seconds) +
+                 " s with a factorisation, " + rounded(multigrid_seconds) +
+                 " s with multigrid");
           }
         choice.memory = choice.linear_solver == LinearSolver::direct ?
                           direct_memory :

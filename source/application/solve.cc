@@ -9,6 +9,7 @@
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/elasticity/multigrid.h>
 #include <debond/elasticity/multigrid_problem.h>
+#include <debond/elasticity/refinement.h>
 #include <debond/optimization/coarse_start.h>
 #include <debond/optimization/condensed_problem.h>
 #include <debond/optimization/metric_direction.h>
@@ -30,6 +31,9 @@ namespace Debond
     /// Contact boundaries with more nodes take their start from coarser ones.
     constexpr unsigned int coarsest_contact_nodes = 50;
 
+    /// With fewer unknowns nothing takes more than some seconds.
+    constexpr unsigned int fewest_announced = 50000;
+
     /// On coarser meshes, where the time for a factorisation does not count.
     constexpr double largest_coarse_factorisation = 3e4;
 
@@ -46,7 +50,23 @@ namespace Debond
       Watch(const InterruptGuard &guard, std::ostream &out, const bool terminal)
         : guard(guard)
         , progress(std::make_unique<Progress>(out, terminal))
+        , log(&out)
       {}
+
+      /// Prints no iterations, but what the other one announces.
+      Watch(const InterruptGuard &guard, const Watch &other)
+        : guard(guard)
+        , log(other.log)
+      {}
+
+      /// Says what takes long now, if there are many unknowns.
+      void
+      announce(const std::string &what, const unsigned int n_unknowns) const
+      {
+        if (log != nullptr && n_unknowns > fewest_announced)
+          *log << "  " << what << ", " << n_unknowns << " unknowns"
+               << std::endl;
+      }
 
       ~Watch()
       {
@@ -83,6 +103,7 @@ namespace Debond
       double                    offset = 0.;
       const InterruptGuard     &guard;
       std::unique_ptr<Progress> progress;
+      std::ostream             *log = nullptr;
     };
 
 
@@ -239,6 +260,39 @@ namespace Debond
 
 
 
+    /// Refines a success if rounding has a say in it.
+    template <int dim>
+    void
+    refine_result(const Scene<dim> &scene,
+                  CorrectionSolver &solver,
+                  const Watch      &watch,
+                  SolveResult      &result)
+    {
+      if (result.status != SolverStatus::success)
+        return;
+      const dealii::Timer timer;
+      const Vector        before = normal_displacements(scene, result.u);
+      const std::string   note   = refine_where_needed(
+        scene.problem(),
+        scene.adhesion(),
+        1.,
+        solver,
+        [&watch]() { return watch.may_go_on(); },
+        result.u);
+      if (!note.empty())
+        result.notes.push_back(note);
+      // The search knows other bonds than the result has.
+      const Vector after = normal_displacements(scene, result.u);
+      if (after.size() > 0 && (scene.adhesion().curvature(after) -
+                               scene.adhesion().curvature(before))
+                                  .norm() > 0.)
+        result.minimum.kind =
+          kind_without_search(scene.law(), scene.adhesion(), after);
+      result.parts["refinement"] = timer.wall_time();
+    }
+
+
+
     template <int dim>
     void
     solve_condensed(const std::string &method,
@@ -249,10 +303,11 @@ namespace Debond
                     SolveResult       &result)
     {
       dealii::Timer              timer;
-      const ElasticProblem<dim> &problem   = scene.problem();
-      const Condensation         condensed = condense_to_contact(problem);
-      result.condition_estimate            = condensed.condition_estimate();
-      result.parts["condensation"]         = timer.wall_time();
+      const ElasticProblem<dim> &problem = scene.problem();
+      watch.announce("factorisation", problem.n_free_dofs());
+      const Condensation condensed = condense_to_contact(problem);
+      result.condition_estimate    = condensed.condition_estimate();
+      result.parts["condensation"] = timer.wall_time();
 
       watch.add_energy(condensed.energy_at_zero());
       timer.restart();
@@ -292,6 +347,9 @@ namespace Debond
       timer.restart();
       result.u                  = condensed.expand(s);
       result.parts["expansion"] = timer.wall_time();
+
+      CondensedCorrection solver(condensed);
+      refine_result(scene, solver, watch, result);
     }
 
 
@@ -315,6 +373,7 @@ namespace Debond
     solution_on_coarser_mesh(const Parameters         &parameters,
                              const Scene<dim>         &scene,
                              const InterruptGuard     &guard,
+                             const Watch              &fine_watch,
                              std::vector<std::string> &notes,
                              WhichMinimum             &search)
     {
@@ -331,7 +390,7 @@ namespace Debond
       const Scene<dim> coarse_scene(coarse,
                                     factorised ? MatrixStorage::serial :
                                                  MatrixStorage::trilinos);
-      Watch            watch(guard);
+      Watch            watch(guard, fine_watch);
       SolveResult      result;
       if (factorised)
         solve_condensed(SolverMethod::majorise_minimise,
@@ -367,7 +426,7 @@ namespace Debond
     {
       dealii::Timer timer;
       result.u = solution_on_coarser_mesh(
-        parameters, scene, guard, result.notes, result.minimum);
+        parameters, scene, guard, watch, result.notes, result.minimum);
       result.parts["coarser meshes"] = timer.wall_time();
       if (!watch.may_go_on())
         {
@@ -386,6 +445,7 @@ namespace Debond
         for (const auto &node : scene.problem().contact_boundary().nodes)
           if (result.u(node.dof) == 0.)
             held.push_back(node.dof);
+      watch.announce("multigrid", scene.problem().n_free_dofs());
       const Multigrid multigrid(scene.problem(), held);
       result.parts["multigrid setup"] = timer.wall_time();
 
@@ -399,6 +459,12 @@ namespace Debond
                             .minimize(problem, std::ref(watch)),
                           result);
       result.parts["contact"] = timer.wall_time();
+
+      std::vector<dealii::types::global_dof_index> normals;
+      for (const auto &node : scene.problem().contact_boundary().nodes)
+        normals.push_back(node.dof);
+      MultigridCorrection solver(multigrid, normals);
+      refine_result(scene, solver, watch, result);
     }
   } // namespace
 

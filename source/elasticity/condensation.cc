@@ -229,10 +229,7 @@ namespace Debond
 
     factor = std::make_unique<Factor>(A, unknowns, kept.size());
 
-    y.resize(unknowns.size());
-    for (unsigned int i = 0; i < unknowns.size(); ++i)
-      y[i] = f(unknowns[i]);
-    y = factor->solve(CHOLMOD_L, factor->solve(CHOLMOD_P, y));
+    y = forward(f);
 
     const unsigned int n_eliminated =
       static_cast<unsigned int>(unknowns.size() - kept.size());
@@ -242,13 +239,10 @@ namespace Debond
 
     L_ss = factor->trailing_block();
     S.reinit(kept.size(), kept.size());
-    given_g.reinit(static_cast<unsigned int>(kept.size()));
     if (!kept.empty())
       L_ss.mTmult(S, L_ss);
-    for (unsigned int i = 0; i < kept.size(); ++i)
-      for (unsigned int j = 0; j <= i; ++j)
-        given_g(i) += L_ss(i, j) * y[n_eliminated + j];
-    g = given_g;
+    given_g = condensed_load(y);
+    g       = given_g;
   }
 
 
@@ -329,14 +323,42 @@ namespace Debond
 
 
 
+  std::vector<double>
+  Condensation::forward(const dealii::Vector<double> &f) const
+  {
+    std::vector<double> right_side(unknowns.size());
+    for (unsigned int i = 0; i < unknowns.size(); ++i)
+      right_side[i] = f(unknowns[i]);
+    return factor->solve(CHOLMOD_L, factor->solve(CHOLMOD_P, right_side));
+  }
+
+
+
   dealii::Vector<double>
-  Condensation::expand(const dealii::Vector<double> &s) const
+  Condensation::condensed_load(const std::vector<double> &reduced) const
+  {
+    const unsigned int n_kept = static_cast<unsigned int>(L_ss.m());
+    const unsigned int n_eliminated =
+      static_cast<unsigned int>(unknowns.size()) - n_kept;
+    dealii::Vector<double> result(n_kept);
+    for (unsigned int i = 0; i < n_kept; ++i)
+      for (unsigned int j = 0; j <= i; ++j)
+        result(i) += L_ss(i, j) * reduced[n_eliminated + j];
+    return result;
+  }
+
+
+
+  dealii::Vector<double>
+  Condensation::backward(const double                  scale,
+                         const std::vector<double>    &reduced,
+                         const dealii::Vector<double> &s) const
   {
     const unsigned int n_eliminated =
       static_cast<unsigned int>(unknowns.size()) - s.size();
     std::vector<double> x(unknowns.size());
     for (unsigned int i = 0; i < n_eliminated; ++i)
-      x[i] = load_factor * y[i];
+      x[i] = scale * reduced[i];
     for (unsigned int j = 0; j < s.size(); ++j)
       {
         double sum = 0.;
@@ -354,4 +376,23 @@ namespace Debond
     return u;
   }
 
+
+
+  dealii::Vector<double>
+  Condensation::expand(const dealii::Vector<double> &s) const
+  {
+    return backward(load_factor, y, s);
+  }
+
+
+
+  dealii::Vector<double>
+  Condensation::solve(
+    const dealii::Vector<double> &other_f,
+    const std::function<dealii::Vector<double>(const dealii::Vector<double> &)>
+      &kept_unknowns) const
+  {
+    const std::vector<double> reduced = forward(other_f);
+    return backward(1., reduced, kept_unknowns(condensed_load(reduced)));
+  }
 } // namespace Debond

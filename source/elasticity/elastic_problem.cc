@@ -346,6 +346,17 @@ namespace Debond
 
 
   template <int dim>
+  double
+  ElasticProblem<dim>::diagonal_entry(const unsigned int i) const
+  {
+    return storage == MatrixStorage::serial ?
+             system_matrix.diag_element(i) :
+             distributed_matrix->diag_element(i);
+  }
+
+
+
+  template <int dim>
   const dealii::Vector<double> &
   ElasticProblem<dim>::load() const
   {
@@ -368,6 +379,15 @@ namespace Debond
   ElasticProblem<dim>::contact_boundary() const
   {
     return contact;
+  }
+
+
+
+  template <int dim>
+  const std::vector<typename ElasticProblem<dim>::Frame> &
+  ElasticProblem<dim>::contact_frames() const
+  {
+    return frames;
   }
 
 

@@ -10,6 +10,15 @@
 
 namespace Debond
 {
+  namespace
+  {
+    /// Of a Cholesky factorisation and two products, in units of rounding of
+    /// the terms in a row of S s.
+    constexpr double rounding_factor = 4.;
+  } // namespace
+
+
+
   CondensedProblem::CondensedProblem(const dealii::FullMatrix<double> &matrix,
                                      const dealii::Vector<double>     &load,
                                      const PiecewiseQuadratic &nonsmooth,
@@ -48,6 +57,7 @@ namespace Debond
     state.n_active      = 0;
     double       energy = 0., work = 0.;
     double       largest_force = 0., violation = 0.;
+    double       largest_terms = 0., energy_terms = 0.;
     const double adhesion = phi.value(s);
     for (unsigned int i = 0; i < s.size(); ++i)
       {
@@ -59,16 +69,26 @@ namespace Debond
         largest_force   = std::max(
           {largest_force, std::abs(g(i)), std::abs(S_s(i)), std::abs(xi(i))});
         state.n_active += s(i) == 0.;
+
+        // The terms of a row of S s nearly cancel.
+        double terms = 0.;
+        for (unsigned int j = 0; j < s.size(); ++j)
+          terms += std::abs(S(i, j) * s(j));
+        largest_terms = std::max(largest_terms, terms);
+        energy_terms += std::abs(s(i)) * terms;
         // A maximum would lose it.
         if (std::isnan(mu))
           violation = largest_force = mu;
       }
-    state.functional          = energy - work + adhesion;
-    state.functional_rounding = 16. * std::numeric_limits<double>::epsilon() *
-                                (energy + std::abs(work) + adhesion);
+    state.functional         = energy - work + adhesion;
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    state.functional_rounding =
+      epsilon * (16. * (energy + std::abs(work) + adhesion) + energy_terms);
     state.residual = largest_force == 0. ? 0. : violation / largest_force;
-    // Far below any tolerance that makes sense.
-    state.residual_rounding = 0.;
+    state.residual_rounding =
+      largest_force == 0. ?
+        0. :
+        rounding_factor * epsilon * largest_terms / largest_force;
     return state;
   }
 
@@ -78,13 +98,24 @@ namespace Debond
   CondensedProblem::majorise()
   {
     // Phi <= Phi(s_k) + xi'(s - s_k) + 1/2 (s - s_k)'E (s - s_k).
-    const unsigned int                n = s.size();
-    const Eigen::SparseMatrix<double> E = phi.curvature(s);
-    dealii::Vector<double>            xi(n);
+    const unsigned int     n = s.size();
+    dealii::Vector<double> xi(n);
     phi.subgradient(s, xi);
-    M = eigen_view(S);
+    const Eigen::SparseMatrix<double> previous_E = E;
+    const Eigen::VectorXd             previous_r = r;
+    E                                            = phi.curvature(s);
+    const Eigen::VectorXd E_s                    = E * eigen_view(s);
+    r = eigen_view(g) - eigen_view(xi) + E_s;
+    if (previous_r.size() == r.size() && majorised)
+      {
+        constexpr double noise = 1e-12;
+        if ((r - previous_r).norm() <= noise * (E_s.norm() + r.norm()) &&
+            (E - previous_E).norm() <= noise * E.norm())
+          return false;
+      }
+    majorised = true;
+    M         = eigen_view(S);
     M += E;
-    r = eigen_view(g) - eigen_view(xi) + E * eigen_view(s);
     return true;
   }
 

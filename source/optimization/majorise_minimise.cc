@@ -76,9 +76,11 @@ namespace Debond
           static_cast<unsigned int>(result.history.size()) + 1;
 
         // As long as the majorant changes it needs no exact minimum.
-        double inner_tolerance = 0.5 * tolerance;
-        if (problem.majorise())
+        double     inner_tolerance = 0.5 * tolerance;
+        const bool new_majorant    = problem.majorise();
+        if (new_majorant)
           inner_tolerance = std::max(inner_tolerance, forcing * state.residual);
+        const double previous_residual = state.residual;
         const double upper = state.functional + state.functional_rounding;
         do
           {
@@ -130,6 +132,13 @@ namespace Debond
                  << ". Try a larger stop tolerance or another method.";
             result.status  = SolverStatus::no_descent;
             result.message = text.str();
+            return result;
+          }
+        // The minimum of the same majorant once more, and no better: this is
+        // what rounding leaves.
+        if (!new_majorant && state.residual > 0.5 * previous_residual)
+          {
+            result.status = SolverStatus::success;
             return result;
           }
         interrupted = monitor && !monitor(iteration);

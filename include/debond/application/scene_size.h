@@ -33,6 +33,15 @@ namespace Debond
                      const unsigned int dimension,
                      const unsigned int bundle_size);
 
+  /// Estimates of the time for the linear systems of a scene by a factorisation
+  /// and by multigrid, in seconds on one core as of 2024, from the box alone:
+  /// good for a comparison, within a factor of about 3 on the bodies measured.
+  double
+  seconds_with_factorisation(const Parameters &parameters);
+
+  double
+  seconds_with_multigrid(const Parameters &parameters);
+
   /// What the system can give to this process now, in bytes.
   double
   available_memory();

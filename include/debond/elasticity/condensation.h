@@ -75,8 +75,29 @@ namespace Debond
     dealii::Vector<double>
     expand(const dealii::Vector<double> &s) const;
 
+    /// u at equilibrium under another load, for the s that @p kept_unknowns
+    /// returns for the g of this load.
+    dealii::Vector<double>
+    solve(const dealii::Vector<double>       &other_f,
+          const std::function<dealii::Vector<double>(
+            const dealii::Vector<double> &)> &kept_unknowns) const;
+
   private:
     class Factor;
+
+    /// L^{-1} P f.
+    std::vector<double>
+    forward(const dealii::Vector<double> &f) const;
+
+    /// L_ss y_s.
+    dealii::Vector<double>
+    condensed_load(const std::vector<double> &y) const;
+
+    /// u for @p scale times y in the eliminated unknowns.
+    dealii::Vector<double>
+    backward(const double                  scale,
+             const std::vector<double>    &y,
+             const dealii::Vector<double> &s) const;
 
     unsigned int               n;        ///< size of f
     std::vector<unsigned int>  unknowns; ///< rows of A, the kept ones last

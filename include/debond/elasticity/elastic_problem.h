@@ -69,6 +69,15 @@ namespace Debond
   class ElasticProblem
   {
   public:
+    /// The unknowns of a vertex on the contact boundary: x = to_frame u, where
+    /// u are the Cartesian components, and u = to_cartesian x.
+    struct Frame
+    {
+      std::array<dealii::types::global_dof_index, dim> dofs;
+      dealii::Tensor<2, dim>                           to_frame;
+      dealii::Tensor<2, dim>                           to_cartesian;
+    };
+
     /// Keeps a reference to the triangulation, a connected mesh of simplices.
     /// Throws std::invalid_argument if a boundary is both clamped and contact
     /// or is not in the mesh, if contact_frame() does, or if a rigid motion is
@@ -101,11 +110,19 @@ namespace Debond
     const dealii::TrilinosWrappers::SparseMatrix &
     trilinos_matrix() const;
 
+    /// Of A, in either storage.
+    double
+    diagonal_entry(const unsigned int i) const;
+
     const dealii::Vector<double> &
     load() const;
 
     const ContactBoundary<dim> &
     contact_boundary() const;
+
+    /// Of all vertices on the contact boundary that are not clamped.
+    const std::vector<Frame> &
+    contact_frames() const;
 
     unsigned int
     n_dofs() const;
@@ -199,15 +216,6 @@ namespace Debond
     material() const;
 
   private:
-    /// The unknowns of a vertex on the contact boundary: x = to_frame u, where
-    /// u are the Cartesian components, and u = to_cartesian x.
-    struct Frame
-    {
-      std::array<dealii::types::global_dof_index, dim> dofs;
-      dealii::Tensor<2, dim>                           to_frame;
-      dealii::Tensor<2, dim>                           to_cartesian;
-    };
-
     void
     clamp(const std::set<dealii::types::boundary_id> &boundaries,
           std::vector<Support<dim>>                  &supports);

@@ -44,10 +44,12 @@ namespace Debond
     const PiecewiseQuadratic         &phi;
     dealii::Vector<double>           &s;
 
-    /// The majorant 1/2 s'M s - r's + const.
-    Eigen::MatrixXd M;
-    Eigen::VectorXd r;
-    ActiveSet       active;
+    /// The majorant 1/2 s'M s - r's + const, M = S + E, once there is one.
+    bool                        majorised = false;
+    Eigen::SparseMatrix<double> E;
+    Eigen::MatrixXd             M;
+    Eigen::VectorXd             r;
+    ActiveSet                   active;
   };
 } // namespace Debond
 

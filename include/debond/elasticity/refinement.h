@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_refinement_h
+#define debond_elasticity_refinement_h
+
+#include <deal.II/lac/lapack_full_matrix.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/elasticity/condensation.h>
+#include <debond/elasticity/elastic_problem.h>
+#include <debond/elasticity/multigrid.h>
+#include <debond/optimization/bound_qp.h>
+#include <debond/optimization/piecewise_quadratic.h>
+
+#include <Eigen/SparseCore>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /**
+   * An approximation of (A + E)^{-1} on the unknowns that are neither
+   * constrained nor held, where E is a curvature of bonds. It may be wrong in
+   * a few directions, such as the bending of a slender body.
+   */
+  class CorrectionSolver
+  {
+  public:
+    virtual ~CorrectionSolver() = default;
+
+    /// @p held says which contact nodes keep u_nu = 0.
+    virtual void
+    prepare(const Eigen::SparseMatrix<double> &E, const ActiveSet &held) = 0;
+
+    /// The correction for the forces @p r, zero where held.
+    virtual dealii::Vector<double>
+    solve(const dealii::Vector<double> &r) const = 0;
+  };
+
+
+
+  /// By the factors of A in double precision, and of S + E.
+  class CondensedCorrection : public CorrectionSolver
+  {
+  public:
+    /// Keeps a reference.
+    explicit CondensedCorrection(const Condensation &condensed);
+
+    void
+    prepare(const Eigen::SparseMatrix<double> &E,
+            const ActiveSet                   &held) override;
+
+    dealii::Vector<double>
+    solve(const dealii::Vector<double> &r) const override;
+
+  private:
+    const Condensation              &condensed;
+    std::vector<unsigned int>        free; ///< contact nodes
+    dealii::LAPACKFullMatrix<double> factor;
+  };
+
+
+
+  /// By a multigrid cycle of A; the bonds are left out.
+  class MultigridCorrection : public CorrectionSolver
+  {
+  public:
+    /// Keeps a reference to the cycle. @p normals are the degrees of freedom of
+    /// the contact nodes.
+    MultigridCorrection(
+      const Multigrid                                    &multigrid,
+      const std::vector<dealii::types::global_dof_index> &normals);
+
+    void
+    prepare(const Eigen::SparseMatrix<double> &E,
+            const ActiveSet                   &held) override;
+
+    dealii::Vector<double>
+    solve(const dealii::Vector<double> &r) const override;
+
+  private:
+    const Multigrid                             &multigrid;
+    std::vector<dealii::types::global_dof_index> normals;
+    ActiveSet                                    active;
+  };
+
+
+
+  struct RefinementResult
+  {
+    bool         converged         = false;
+    unsigned int systems           = 0; ///< linear systems
+    unsigned int linear_iterations = 0; ///< for all of them
+
+    /// Of the last point in the energy norm, relative, as the solver of
+    /// corrections sees it.
+    double error = 0.;
+
+    /// How far rounding u to double precision moves stresses, relative to the
+    /// largest of them.
+    double stress_rounding = 0.;
+  };
+
+
+
+  /**
+   * The part of the strain energy of @p u that rounding of the terms in the
+   * rows of A u can change: epsilon <u, D u> / <u, A u>, D the diagonal of A.
+   * It grows with the fourth power of length over thickness. @p phi has the
+   * bonds, whose energy is not the body's.
+   */
+  template <int dim>
+  double
+  energy_rounding(const ElasticProblem<dim>    &problem,
+                  const PiecewiseQuadratic     &phi,
+                  const double                  load_factor,
+                  const dealii::Vector<double> &u);
+
+
+
+  /**
+   * Majorise-minimise from @p u in extended precision (ExtendedOperator), so
+   * that what remains of its errors is the rounding of the result. Active sets
+   * for u_nu <= 0; the linear systems are solved by flexible conjugate
+   * gradients with @p solver as preconditioner (Notay, SIAM J. Sci. Comput. 22,
+   * 2000), to 1e-13 of the energy. The few directions in which factors in
+   * double precision are wrong take a few steps more.
+   *
+   * u becomes the result if it converged, and stays as it is otherwise. The
+   * load is @p load_factor times that of the last assemble().
+   */
+  template <int dim>
+  RefinementResult
+  refine(const ElasticProblem<dim>   &problem,
+         const PiecewiseQuadratic    &phi,
+         const double                 load_factor,
+         CorrectionSolver            &solver,
+         const std::function<bool()> &may_go_on,
+         dealii::Vector<double>      &u);
+
+
+
+  /// Refines the minimiser @p u if rounding in double precision can change more
+  /// than 1e-9 of its energy. Returns what the user should know of it, empty
+  /// if all is as in any other scene.
+  template <int dim>
+  std::string
+  refine_where_needed(const ElasticProblem<dim>   &problem,
+                      const PiecewiseQuadratic    &phi,
+                      const double                 load_factor,
+                      CorrectionSolver            &solver,
+                      const std::function<bool()> &may_go_on,
+                      dealii::Vector<double>      &u);
+} // namespace Debond
+
+#endif

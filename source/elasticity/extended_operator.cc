@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/elasticity/extended_operator.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Debond
+{
+  template <int dim>
+  ExtendedOperator<dim>::ExtendedOperator(
+    const ElasticProblem<dim> &elastic_problem)
+    : problem(elastic_problem)
+    , lambda(problem.material().template lame_lambda<dim>())
+    , mu(problem.material().shear_modulus())
+  {
+    cells.reserve(problem.dof_handler().get_triangulation().n_active_cells());
+    for (const auto &dof_cell : problem.dof_handler().active_cell_iterators())
+      {
+        Cell cell;
+        for (unsigned int v = 0; v <= dim; ++v)
+          for (unsigned int d = 0; d < dim; ++d)
+            cell.dofs[v][d] = dof_cell->vertex_dof_index(v, d);
+
+        // Row v of edges is the edge to vertex v + 1, and the columns of its
+        // inverse are the gradients.
+        std::array<std::array<long double, dim>, dim> edges;
+        for (unsigned int v = 0; v < dim; ++v)
+          for (unsigned int d = 0; d < dim; ++d)
+            edges[v][d] = static_cast<long double>(dof_cell->vertex(v + 1)[d]) -
+                          dof_cell->vertex(0)[d];
+        long double determinant = 0.;
+        for (unsigned int v = 0; v < dim; ++v)
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              long double cofactor;
+              if constexpr (dim == 2)
+                cofactor = (v == d ? 1 : -1) * edges[1 - v][1 - d];
+              else
+                cofactor = edges[(v + 1) % 3][(d + 1) % 3] *
+                             edges[(v + 2) % 3][(d + 2) % 3] -
+                           edges[(v + 1) % 3][(d + 2) % 3] *
+                             edges[(v + 2) % 3][(d + 1) % 3];
+              cell.gradients[v][d] = cofactor;
+              if (v == 0)
+                determinant += edges[0][d] * cofactor;
+            }
+        for (auto &gradient : cell.gradients)
+          for (long double &component : gradient)
+            component /= determinant;
+        cell.volume = determinant / (dim == 2 ? 2 : 6);
+        cells.push_back(cell);
+      }
+  }
+
+
+
+  template <int dim>
+  ExtendedVector
+  ExtendedOperator<dim>::operator*(const ExtendedVector &u) const
+  {
+    const ExtendedVector displacement = cartesian(u);
+    ExtendedVector       forces       = ExtendedVector::Zero(u.size());
+    for (const Cell &cell : cells)
+      {
+        const Stress sigma = stress(cell, displacement);
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int v = 0; v < dim; ++v)
+            {
+              long double force = 0.;
+              for (unsigned int e = 0; e < dim; ++e)
+                force += sigma[d][e] * cell.gradients[v][e];
+              force *= cell.volume;
+              forces(cell.dofs[v + 1][d]) += force;
+              forces(cell.dofs[0][d]) -= force;
+            }
+      }
+
+    ExtendedVector result = forces;
+    for (const auto &frame : problem.contact_frames())
+      for (unsigned int k = 0; k < dim; ++k)
+        {
+          result(frame.dofs[k]) = 0.;
+          for (unsigned int d = 0; d < dim; ++d)
+            result(frame.dofs[k]) +=
+              frame.to_cartesian[d][k] * forces(frame.dofs[d]);
+        }
+    for (unsigned int i = 0; i < result.size(); ++i)
+      if (problem.is_constrained(i))
+        result(i) = 0.;
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  ExtendedOperator<dim>::stress_rounding(const ExtendedVector &u) const
+  {
+    const ExtendedVector displacement = cartesian(u);
+    const ExtendedVector rounded =
+      cartesian(u.template cast<double>().template cast<long double>());
+    long double largest = 0., largest_change = 0.;
+    for (const Cell &cell : cells)
+      {
+        const Stress exact = stress(cell, displacement);
+        const Stress other = stress(cell, rounded);
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int e = 0; e < dim; ++e)
+            {
+              largest = std::max(largest, std::abs(exact[d][e]));
+              largest_change =
+                std::max(largest_change, std::abs(exact[d][e] - other[d][e]));
+            }
+      }
+    return largest > 0. ? static_cast<double>(largest_change / largest) : 0.;
+  }
+
+
+
+  template <int dim>
+  ExtendedVector
+  ExtendedOperator<dim>::cartesian(const ExtendedVector &u) const
+  {
+    ExtendedVector result = u;
+    for (const auto &frame : problem.contact_frames())
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          result(frame.dofs[d]) = 0.;
+          for (unsigned int k = 0; k < dim; ++k)
+            result(frame.dofs[d]) +=
+              frame.to_cartesian[d][k] * u(frame.dofs[k]);
+        }
+    return result;
+  }
+
+
+
+  template <int dim>
+  typename ExtendedOperator<dim>::Stress
+  ExtendedOperator<dim>::stress(const Cell           &cell,
+                                const ExtendedVector &cartesian_u) const
+  {
+    Stress gradient = {};
+    for (unsigned int v = 0; v < dim; ++v)
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const long double difference =
+            cartesian_u(cell.dofs[v + 1][d]) - cartesian_u(cell.dofs[0][d]);
+          for (unsigned int e = 0; e < dim; ++e)
+            gradient[d][e] += difference * cell.gradients[v][e];
+        }
+
+    long double trace = 0.;
+    for (unsigned int d = 0; d < dim; ++d)
+      trace += gradient[d][d];
+    Stress sigma;
+    for (unsigned int d = 0; d < dim; ++d)
+      for (unsigned int e = 0; e < dim; ++e)
+        sigma[d][e] = mu * (gradient[d][e] + gradient[e][d]) +
+                      (d == e ? lambda * trace : 0.L);
+    return sigma;
+  }
+
+
+
+  template class ExtendedOperator<2>;
+  template class ExtendedOperator<3>;
+} // namespace Debond

@@ -1,0 +1,500 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/exceptions.h>
+
+#include <debond/elasticity/extended_operator.h>
+#include <debond/elasticity/refinement.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Of corrections, in the energy norm.
+    constexpr double refinement_tolerance = 1e-13;
+
+    /// Results are refined if rounding can change more of their energy.
+    constexpr double largest_energy_rounding = 1e-9;
+
+    /// Of stresses, from which on it is worth a note.
+    constexpr double notable_stress_rounding = 1e-6;
+
+    constexpr unsigned int maximum_refinement_iterations = 2000;
+    constexpr unsigned int maximum_refinement_systems    = 500;
+  } // namespace
+
+
+
+  CondensedCorrection::CondensedCorrection(
+    const Condensation &condensed_problem)
+    : condensed(condensed_problem)
+  {}
+
+
+
+  void
+  CondensedCorrection::prepare(const Eigen::SparseMatrix<double> &E,
+                               const ActiveSet                   &held)
+  {
+    free.clear();
+    std::vector<unsigned int> place(held.size());
+    for (unsigned int i = 0; i < held.size(); ++i)
+      if (held[i] == 0)
+        {
+          place[i] = static_cast<unsigned int>(free.size());
+          free.push_back(i);
+        }
+    if (free.empty())
+      return;
+
+    const dealii::FullMatrix<double> &S = condensed.schur_complement();
+    const unsigned int n = static_cast<unsigned int>(free.size());
+    // Where rounding has made S + E indefinite a larger diagonal mends it.
+    for (double shift = 0.; shift < 1e-3;
+         shift = std::max(10. * shift, std::numeric_limits<double>::epsilon()))
+      {
+        factor.reinit(n);
+        for (unsigned int k = 0; k < n; ++k)
+          for (unsigned int l = 0; l < n; ++l)
+            factor(k, l) = S(free[k], free[l]);
+        for (int j = 0; j < E.outerSize(); ++j)
+          for (Eigen::SparseMatrix<double>::InnerIterator entry(E, j); entry;
+               ++entry)
+            if (held[j] == 0 && held[entry.row()] == 0)
+              factor(place[entry.row()], place[j]) += entry.value();
+        for (unsigned int k = 0; k < n; ++k)
+          factor(k, k) *= 1. + shift;
+        factor.set_property(dealii::LAPACKSupport::symmetric);
+        try
+          {
+            factor.compute_cholesky_factorization();
+            return;
+          }
+        catch (const dealii::LACExceptions::ExcSingular &)
+          {}
+      }
+    // Any positive definite matrix is a preconditioner.
+    factor.reinit(n);
+    for (unsigned int k = 0; k < n; ++k)
+      factor(k, k) = std::abs(S(free[k], free[k]));
+    factor.set_property(dealii::LAPACKSupport::symmetric);
+    factor.compute_cholesky_factorization();
+  }
+
+
+
+  dealii::Vector<double>
+  CondensedCorrection::solve(const dealii::Vector<double> &r) const
+  {
+    return condensed.solve(r, [this](const dealii::Vector<double> &g) {
+      dealii::Vector<double> s(g.size());
+      if (free.empty())
+        return s;
+      dealii::Vector<double> s_free(static_cast<unsigned int>(free.size()));
+      for (unsigned int k = 0; k < free.size(); ++k)
+        s_free(k) = g(free[k]);
+      factor.solve(s_free);
+      for (unsigned int k = 0; k < free.size(); ++k)
+        s(free[k]) = s_free(k);
+      return s;
+    });
+  }
+
+
+
+  MultigridCorrection::MultigridCorrection(
+    const Multigrid                                    &cycle,
+    const std::vector<dealii::types::global_dof_index> &contact_normals)
+    : multigrid(cycle)
+    , normals(contact_normals)
+  {}
+
+
+
+  void
+  MultigridCorrection::prepare(const Eigen::SparseMatrix<double> &,
+                               const ActiveSet &held)
+  {
+    active = held;
+  }
+
+
+
+  dealii::Vector<double>
+  MultigridCorrection::solve(const dealii::Vector<double> &r) const
+  {
+    dealii::Vector<double> result(r.size());
+    multigrid.vmult(result, r);
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      if (active[i] != 0)
+        result(normals[i]) = 0.;
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  energy_rounding(const ElasticProblem<dim>    &problem,
+                  const PiecewiseQuadratic     &phi,
+                  const double                  load_factor,
+                  const dealii::Vector<double> &u)
+  {
+    // <A u, u> = <f, u> - <xi, s> at a minimum: contact forces do no work.
+    double terms = 0.;
+    for (unsigned int i = 0; i < u.size(); ++i)
+      if (!problem.is_constrained(i))
+        terms += problem.diagonal_entry(i) * u(i) * u(i);
+    if (terms == 0.)
+      return 0.;
+    double energy = load_factor * (problem.load() * u);
+
+    const auto            &nodes = problem.contact_boundary().nodes;
+    dealii::Vector<double> s(static_cast<unsigned int>(nodes.size())), xi(s);
+    for (unsigned int i = 0; i < s.size(); ++i)
+      s(i) = u(nodes[i].dof);
+    phi.subgradient(s, xi);
+    for (unsigned int i = 0; i < s.size(); ++i)
+      energy -= xi(i) * s(i);
+    // Where nothing of the energy is known there is every reason to refine.
+    return energy > 0. ?
+             std::numeric_limits<double>::epsilon() * terms / energy :
+             std::numeric_limits<double>::infinity();
+  }
+
+
+
+  namespace
+  {
+    /// The majorant of J at a point, in extended precision, and its minimum
+    /// over u_nu <= 0.
+    template <int dim>
+    class ExtendedMajorant
+    {
+    public:
+      ExtendedMajorant(const ElasticProblem<dim>    &elastic_problem,
+                       const PiecewiseQuadratic     &nonsmooth,
+                       const double                  load_factor,
+                       CorrectionSolver             &correction_solver,
+                       const std::function<bool()>  &go_on,
+                       const dealii::Vector<double> &start,
+                       RefinementResult             &counts)
+        : A(elastic_problem)
+        , problem(elastic_problem)
+        , phi(nonsmooth)
+        , solver(correction_solver)
+        , may_go_on(go_on)
+        , result(counts)
+        , u(to_extended(start))
+        , f(load_factor * to_extended(problem.load()))
+      {
+        for (const auto &node : problem.contact_boundary().nodes)
+          {
+            normals.push_back(node.dof);
+            active.push_back(start(node.dof) == 0.);
+          }
+      }
+
+      /// Returns false if the majorant is the one of before.
+      bool
+      majorise()
+      {
+        dealii::Vector<double> s(static_cast<unsigned int>(normals.size())),
+          xi(s);
+        for (unsigned int i = 0; i < s.size(); ++i)
+          s(i) = static_cast<double>(u(normals[i]));
+        phi.subgradient(s, xi);
+        const Eigen::SparseMatrix<double> previous_E   = E;
+        const Eigen::VectorXd             previous_b_c = b_c;
+        E                                              = phi.curvature(s);
+        const Eigen::VectorXd E_s =
+          E * Eigen::Map<const Eigen::VectorXd>(s.begin(), s.size());
+        b_c = E_s - Eigen::Map<const Eigen::VectorXd>(xi.begin(), xi.size());
+        if (previous_b_c.size() != b_c.size())
+          return true;
+        constexpr double noise = 1e-12;
+        return (b_c - previous_b_c).norm() >
+                 noise * (E_s.norm() + b_c.norm()) ||
+               (E - previous_E).norm() > noise * E.norm();
+      }
+
+      bool
+      minimise()
+      {
+        ActiveSetRule rule;
+        while (result.systems < maximum_refinement_systems)
+          {
+            ++result.systems;
+            for (unsigned int i = 0; i < normals.size(); ++i)
+              if (active[i] != 0)
+                u(normals[i]) = 0.;
+            solver.prepare(E, active);
+            if (!solve())
+              return false;
+
+            Eigen::VectorXd      excess(normals.size()), mu(normals.size());
+            const ExtendedVector r        = force(u);
+            long double          residual = 0., largest = 0.;
+            std::vector<char>    held(static_cast<std::size_t>(u.size()), 0);
+            for (unsigned int i = 0; i < normals.size(); ++i)
+              {
+                excess(i) = static_cast<double>(u(normals[i]));
+                mu(i)     = static_cast<double>(r(normals[i]));
+                largest   = std::max(largest, std::abs(u(normals[i])));
+                if (active[i] != 0)
+                  held[normals[i]] = 1;
+                else
+                  mu(i) = 0.;
+              }
+            for (unsigned int i = 0; i < r.size(); ++i)
+              if (held[i] == 0)
+                residual = std::max(residual, std::abs(r(i)));
+            if (rule.update(excess,
+                            mu,
+                            0.01 * std::numeric_limits<double>::epsilon() *
+                              static_cast<double>(largest),
+                            static_cast<double>(residual),
+                            active) == 0)
+              return true;
+          }
+        return false;
+      }
+
+      dealii::Vector<double>
+      rounded() const
+      {
+        dealii::Vector<double> point(static_cast<unsigned int>(u.size()));
+        for (unsigned int i = 0; i < point.size(); ++i)
+          point(i) = static_cast<double>(u(i));
+        for (const auto normal : normals)
+          point(normal) = std::min(point(normal), 0.);
+        return point;
+      }
+
+      double
+      stress_rounding() const
+      {
+        return A.stress_rounding(u);
+      }
+
+    private:
+      static ExtendedVector
+      to_extended(const dealii::Vector<double> &v)
+      {
+        return Eigen::Map<const Eigen::VectorXd>(v.begin(), v.size())
+          .template cast<long double>();
+      }
+
+      /// (A + E) v.
+      ExtendedVector
+      product(const ExtendedVector &v) const
+      {
+        ExtendedVector A_v = A * v;
+        for (int j = 0; j < E.outerSize(); ++j)
+          for (Eigen::SparseMatrix<double>::InnerIterator entry(E, j); entry;
+               ++entry)
+            A_v(normals[entry.row()]) += entry.value() * v(normals[j]);
+        return A_v;
+      }
+
+      /// Minus the majorant's gradient.
+      ExtendedVector
+      force(const ExtendedVector &v) const
+      {
+        ExtendedVector r = f - product(v);
+        for (unsigned int i = 0; i < normals.size(); ++i)
+          r(normals[i]) += b_c(i);
+        return r;
+      }
+
+      void
+      release_held(ExtendedVector &v) const
+      {
+        for (unsigned int i = 0; i < normals.size(); ++i)
+          if (active[i] != 0)
+            v(normals[i]) = 0.;
+      }
+
+      ExtendedVector
+      precondition(const ExtendedVector &r) const
+      {
+        // The range of double is smaller.
+        const long double      scale = r.template lpNorm<Eigen::Infinity>();
+        dealii::Vector<double> rounded_r(static_cast<unsigned int>(r.size()));
+        if (scale == 0.)
+          return ExtendedVector::Zero(r.size());
+        for (unsigned int i = 0; i < rounded_r.size(); ++i)
+          rounded_r(i) = static_cast<double>(r(i) / scale);
+        return scale * to_extended(solver.solve(rounded_r));
+      }
+
+      /// Equilibrium with the nodes of the active set held.
+      bool
+      solve()
+      {
+        long double error = std::numeric_limits<long double>::infinity();
+        while (true)
+          {
+            ExtendedVector r = force(u);
+            release_held(r);
+            ExtendedVector    z      = precondition(r);
+            long double       rho    = r.dot(z);
+            const long double energy = std::max(u.dot(product(u)), rho);
+            const long double target =
+              energy * (refinement_tolerance * refinement_tolerance);
+            result.error =
+              energy == 0. ? 0. : static_cast<double>(std::sqrt(rho / energy));
+            if (rho <= target)
+              return true;
+            // Residuals that are computed again do not fall for ever.
+            if (!(rho < 0.01 * error))
+              return result.error <= 1e3 * refinement_tolerance;
+            error = rho;
+
+            ExtendedVector correction = ExtendedVector::Zero(u.size());
+            ExtendedVector p          = z;
+            for (unsigned int step = 0;
+                 rho > 0.1 * target && step < maximum_refinement_iterations;
+                 ++step)
+              {
+                if (!may_go_on())
+                  return false;
+                ++result.linear_iterations;
+                ExtendedVector q = product(p);
+                release_held(q);
+                const long double curvature = p.dot(q);
+                if (!(curvature > 0.))
+                  break;
+                const long double alpha = rho / curvature;
+                correction += alpha * p;
+                r -= alpha * q;
+                z = precondition(r);
+                // Flexible: a preconditioner in double precision is not quite
+                // symmetric.
+                const long double beta = -alpha * q.dot(z) / rho;
+                rho                    = r.dot(z);
+                p                      = z + beta * p;
+              }
+            u += correction;
+          }
+      }
+
+      const ExtendedOperator<dim>  A;
+      const ElasticProblem<dim>   &problem;
+      const PiecewiseQuadratic    &phi;
+      CorrectionSolver            &solver;
+      const std::function<bool()> &may_go_on;
+      RefinementResult            &result;
+
+      std::vector<dealii::types::global_dof_index> normals;
+
+      ExtendedVector u;
+      ExtendedVector f;
+
+      Eigen::SparseMatrix<double> E;
+      Eigen::VectorXd             b_c;
+      ActiveSet                   active;
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  RefinementResult
+  refine(const ElasticProblem<dim>   &problem,
+         const PiecewiseQuadratic    &phi,
+         const double                 load_factor,
+         CorrectionSolver            &solver,
+         const std::function<bool()> &may_go_on,
+         dealii::Vector<double>      &u)
+  {
+    RefinementResult      result;
+    ExtendedMajorant<dim> majorant(
+      problem, phi, load_factor, solver, may_go_on, u, result);
+    while (majorant.majorise())
+      if (!majorant.minimise())
+        return result;
+    u                      = majorant.rounded();
+    result.stress_rounding = majorant.stress_rounding();
+    result.converged       = true;
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::string
+  refine_where_needed(const ElasticProblem<dim>   &problem,
+                      const PiecewiseQuadratic    &phi,
+                      const double                 load_factor,
+                      CorrectionSolver            &solver,
+                      const std::function<bool()> &may_go_on,
+                      dealii::Vector<double>      &u)
+  {
+    const double rounding = energy_rounding(problem, phi, load_factor, u);
+    if (rounding <= largest_energy_rounding)
+      return "";
+
+    const RefinementResult refined =
+      refine(problem, phi, load_factor, solver, may_go_on, u);
+    std::ostringstream note;
+    note.precision(1);
+    note << std::scientific;
+    if (!refined.converged)
+      note << "in double precision rounding can change " << rounding
+           << " of the strain energy, for the body is slender or the material "
+              "nearly incompressible, and the refinement in extended precision "
+              "ended at a relative error of "
+           << refined.error << " after " << refined.linear_iterations
+           << " iterations: do not trust more digits than that.";
+    else if (refined.stress_rounding > notable_stress_rounding)
+      note << "displacements are written in double precision, which alone "
+              "changes stresses by up to "
+           << refined.stress_rounding << " of the largest one.";
+    return note.str();
+  }
+
+
+
+  template double
+  energy_rounding(const ElasticProblem<2> &,
+                  const PiecewiseQuadratic &,
+                  const double,
+                  const dealii::Vector<double> &);
+  template double
+  energy_rounding(const ElasticProblem<3> &,
+                  const PiecewiseQuadratic &,
+                  const double,
+                  const dealii::Vector<double> &);
+  template std::string
+  refine_where_needed(const ElasticProblem<2> &,
+                      const PiecewiseQuadratic &,
+                      const double,
+                      CorrectionSolver &,
+                      const std::function<bool()> &,
+                      dealii::Vector<double> &);
+  template std::string
+  refine_where_needed(const ElasticProblem<3> &,
+                      const PiecewiseQuadratic &,
+                      const double,
+                      CorrectionSolver &,
+                      const std::function<bool()> &,
+                      dealii::Vector<double> &);
+  template RefinementResult
+  refine(const ElasticProblem<2> &,
+         const PiecewiseQuadratic &,
+         const double,
+         CorrectionSolver &,
+         const std::function<bool()> &,
+         dealii::Vector<double> &);
+  template RefinementResult
+  refine(const ElasticProblem<3> &,
+         const PiecewiseQuadratic &,
+         const double,
+         CorrectionSolver &,
+         const std::function<bool()> &,
+         dealii::Vector<double> &);
+} // namespace Debond

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Slender bodies: the results of all methods beside the same discrete problem
+// solved in extended precision (64 bits) by code of its own: assembly, Eigen's
+// sparse Cholesky and refinement with residuals from strains. Taken over are
+// the mesh, f, the directions of the unknowns and the state of contact and
+// bonds. Both results are rounded to double and verified by the program.
+//
+// Any argument prints the figures of more scenes.
+
+#include <deal.II/base/mpi.h>
+
+#include <debond/application/parameters.h>
+#include <debond/application/scene.h>
+#include <debond/application/solve.h>
+#include <debond/output/verification.h>
+
+#include <Eigen/LU>
+#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
+
+#include <cmath>
+#include <iostream>
+#include <sstream>
+
+#include "../check.h"
+
+using namespace Debond;
+
+namespace
+{
+  using Real    = long double;
+  using VectorX = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+
+
+
+  template <int dim>
+  struct Element
+  {
+    Real         volume;
+    unsigned int dofs[dim * (dim + 1)];
+    Real         gradient[dim + 1][dim];
+    Real         direction[dim * (dim + 1)][dim]; ///< of the unknowns
+  };
+
+
+
+  template <int dim>
+  std::vector<Element<dim>>
+  make_elements(const ElasticProblem<dim> &problem)
+  {
+    std::map<unsigned int, std::array<Real, dim>> direction;
+    for (const auto &frame : problem.contact_frames())
+      for (unsigned int k = 0; k < dim; ++k)
+        for (unsigned int d = 0; d < dim; ++d)
+          direction[frame.dofs[k]][d] = frame.to_cartesian[d][k];
+
+    std::vector<Element<dim>> elements;
+    for (const auto &cell : problem.dof_handler().active_cell_iterators())
+      {
+        Element<dim>                  element;
+        Eigen::Matrix<Real, dim, dim> edges;
+        for (unsigned int v = 0; v < dim; ++v)
+          for (unsigned int d = 0; d < dim; ++d)
+            edges(v, d) = Real(cell->vertex(v + 1)[d]) - cell->vertex(0)[d];
+        element.volume = edges.determinant() / (dim == 2 ? 2 : 6);
+        const Eigen::Matrix<Real, dim, dim> inverse = edges.inverse();
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            element.gradient[0][d] = 0;
+            for (unsigned int v = 1; v <= dim; ++v)
+              {
+                element.gradient[v][d] = inverse(d, v - 1);
+                element.gradient[0][d] -= inverse(d, v - 1);
+              }
+          }
+        for (unsigned int v = 0; v <= dim; ++v)
+          for (unsigned int k = 0; k < dim; ++k)
+            {
+              const unsigned int dof    = cell->vertex_dof_index(v, k);
+              element.dofs[v * dim + k] = dof;
+              const auto it             = direction.find(dof);
+              for (unsigned int d = 0; d < dim; ++d)
+                element.direction[v * dim + k][d] =
+                  it == direction.end() ? Real(k == d) : it->second[d];
+            }
+        elements.push_back(element);
+      }
+    return elements;
+  }
+
+
+
+  /// The minimiser with the contact nodes and broken bonds of u, for nodal
+  /// quadrature.
+  template <int dim>
+  dealii::Vector<double>
+  extended_minimiser(const Parameters             &parameters,
+                     const Scene<dim>             &scene,
+                     const dealii::Vector<double> &u)
+  {
+    const ElasticProblem<dim>      &problem  = scene.problem();
+    const std::vector<Element<dim>> elements = make_elements(problem);
+    const Real                      E  = parameters.material.young_modulus;
+    const Real                      nu = parameters.material.poisson_ratio;
+    const Real                      mu = E / (2 * (1 + nu));
+    const bool plane_stress = dim == 2 && parameters.material.hypothesis ==
+                                            Material::Hypothesis::plane_stress;
+    const Real lambda = plane_stress ? E * nu / (1 - nu * nu) :
+                                       E * nu / ((1 + nu) * (1 - 2 * nu));
+
+    const unsigned int n = problem.n_dofs();
+    std::vector<char>  fixed(n, 0);
+    std::vector<Real>  spring(n, 0);
+    for (unsigned int i = 0; i < n; ++i)
+      fixed[i] = problem.is_constrained(i);
+    for (const auto &node : problem.contact_boundary().nodes)
+      if (u(node.dof) == 0.)
+        fixed[node.dof] = 1;
+      else if (parameters.law.name != "none" &&
+               u(node.dof) >= -parameters.law.bond_threshold)
+        spring[node.dof] = parameters.law.bond_stiffness * node.measure;
+    std::vector<int> place(n, -1);
+    int              n_unknowns = 0;
+    for (unsigned int i = 0; i < n; ++i)
+      if (fixed[i] == 0)
+        place[i] = n_unknowns++;
+
+    std::vector<Eigen::Triplet<Real>> entries;
+    for (const auto &e : elements)
+      for (unsigned int i = 0; i < dim * (dim + 1); ++i)
+        for (unsigned int j = 0; j < dim * (dim + 1); ++j)
+          {
+            if (place[e.dofs[i]] < 0 || place[e.dofs[j]] < 0)
+              continue;
+            const Real *g = e.gradient[i / dim], *h = e.gradient[j / dim],
+                       *a = e.direction[i], *b = e.direction[j];
+            Real ag = 0, bh = 0, ah = 0, bg = 0, ab = 0, gh = 0;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                ag += a[d] * g[d];
+                bh += b[d] * h[d];
+                ah += a[d] * h[d];
+                bg += b[d] * g[d];
+                ab += a[d] * b[d];
+                gh += g[d] * h[d];
+              }
+            entries.emplace_back(place[e.dofs[i]],
+                                 place[e.dofs[j]],
+                                 e.volume * (lambda * ag * bh +
+                                             mu * (ah * bg + ab * gh)));
+          }
+    for (unsigned int i = 0; i < n; ++i)
+      if (place[i] >= 0)
+        entries.emplace_back(place[i], place[i], spring[i]);
+    Eigen::SparseMatrix<Real> A(n_unknowns, n_unknowns);
+    A.setFromTriplets(entries.begin(), entries.end());
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<Real>> factor(A);
+
+    // Refinement: products from strains, of differences of displacements.
+    VectorX x = VectorX::Zero(n_unknowns);
+    for (unsigned int step = 0; step < 10; ++step)
+      {
+        VectorX r(n_unknowns);
+        for (unsigned int i = 0; i < n; ++i)
+          if (place[i] >= 0)
+            r(place[i]) = problem.load()(i) - spring[i] * x(place[i]);
+        for (const auto &e : elements)
+          {
+            Real w[dim + 1][dim] = {}, strain[dim][dim] = {}, trace = 0;
+            for (unsigned int i = 0; i < dim * (dim + 1); ++i)
+              if (place[e.dofs[i]] >= 0)
+                for (unsigned int d = 0; d < dim; ++d)
+                  w[i / dim][d] += e.direction[i][d] * x(place[e.dofs[i]]);
+            for (unsigned int v = 1; v <= dim; ++v)
+              for (unsigned int c = 0; c < dim; ++c)
+                for (unsigned int d = 0; d < dim; ++d)
+                  strain[c][d] += (w[v][c] - w[0][c]) * e.gradient[v][d];
+            for (unsigned int d = 0; d < dim; ++d)
+              trace += strain[d][d];
+            for (unsigned int i = 0; i < dim * (dim + 1); ++i)
+              if (place[e.dofs[i]] >= 0)
+                for (unsigned int c = 0; c < dim; ++c)
+                  for (unsigned int d = 0; d < dim; ++d)
+                    r(place[e.dofs[i]]) -= e.volume * e.direction[i][c] *
+                                           e.gradient[i / dim][d] *
+                                           (mu * (strain[c][d] + strain[d][c]) +
+                                            (c == d ? lambda * trace : 0));
+          }
+        x += factor.solve(r);
+      }
+
+    dealii::Vector<double> rounded(n);
+    for (unsigned int i = 0; i < n; ++i)
+      if (place[i] >= 0)
+        rounded(i) = static_cast<double>(x(place[i]));
+    return rounded;
+  }
+
+
+
+  template <int dim>
+  void
+  test(const std::string &name, const std::vector<std::string> &assignments)
+  {
+    ParameterTable table;
+    declare_parameters(table);
+    table.assign("Output/Machine details=false");
+    table.assign("Material/Young modulus=2e5");
+    for (const std::string &assignment : assignments)
+      table.assign(assignment);
+    const Parameters   parameters = to_parameters("strip.prm", table);
+    const MethodChoice choice     = choose_method(parameters);
+    const Scene<dim>   scene(parameters, matrix_storage(choice));
+    std::ostringstream log;
+    const SolveResult  result = solve(choice, parameters, scene, log, false);
+
+    const dealii::Vector<double> reference =
+      extended_minimiser(parameters, scene, result.u);
+    const auto verified = [&](const dealii::Vector<double> &u) {
+      return verify(scene.problem(), scene.adhesion(), scene.law(), u);
+    };
+    const Verification<dim> ours      = verified(result.u),
+                            best      = verified(reference);
+    dealii::Vector<double> difference = result.u;
+    difference -= reference;
+    constexpr double epsilon = 2.2e-16;
+    const double     error =
+      difference.linfty_norm() / std::max(reference.linfty_norm(), 1e-300);
+    std::cout << name << ": " << to_string(result.status) << ", law "
+              << verdict(ours.law_violation,
+                         100. * std::max(best.law_violation, epsilon))
+              << ", residual "
+              << verdict(ours.equilibrium_residual,
+                         100. * std::max(best.equilibrium_residual, epsilon))
+              << ", displacement " << verdict(error, 1e-9) << std::endl;
+    if (print_figures)
+      {
+        std::cout << "  law " << ours.law_violation << " reference "
+                  << best.law_violation << ", residual "
+                  << ours.equilibrium_residual << " reference "
+                  << best.equilibrium_residual << ", imbalance "
+                  << ours.force_imbalance << " reference "
+                  << best.force_imbalance << ", J " << result.functional
+                  << ", broken " << ours.count(BondState::broken)
+                  << ", contact " << ours.count(BondState::contact) << " of "
+                  << ours.nodes.size() << '\n';
+        for (const std::string &note : result.notes)
+          std::cout << "  " << note << '\n';
+      }
+  }
+
+
+
+  /// A strip of height 1 that is lifted off at its end, or in the middle if
+  /// both ends are clamped. The deflection of the end would be 0.04 without
+  /// bonds, which break at 0.01.
+  template <int dim>
+  void
+  strip(const double       aspect,
+        const std::string &cells,
+        const std::string &clamped,
+        const std::string &law,
+        const std::string &tangential,
+        const std::string &method)
+  {
+    const double force = 8e3 / std::pow(aspect, 3);
+    const auto   text  = [](const double value) {
+      std::ostringstream out;
+      out.precision(17);
+      out << value;
+      return out.str();
+    };
+    const std::string        side        = dim == 2 ? "" : "; 0";
+    std::vector<std::string> assignments = {
+      "Dimension=" + std::to_string(dim),
+      "Mesh/Lengths=" + text(aspect) + (dim == 2 ? ", 1" : ", 1, 1"),
+      "Mesh/Cells=" + cells,
+      "Boundary conditions/Clamped boundaries=" + clamped,
+      "Contact law/Tangential displacement=" + tangential,
+      "Contact law/Law=" + law,
+      clamped == "left" ?
+        "Loads/Traction right=0; " + text(force) + side :
+        "Loads/Traction top=0; if(x > " + text(0.375 * aspect) + " && x < " +
+          text(0.625 * aspect) + ", " + text(64. * force / aspect) + ", " +
+          text(-force / aspect) + ")" + side,
+      "Contact law/Bond threshold=0.01",
+      "Contact law/Bond stiffness=" + text(8e5 / std::pow(aspect, 4))};
+    if (method == "multigrid")
+      {
+        assignments.push_back("Solver/Method=majorise minimise");
+        assignments.push_back("Solver/Linear solver=multigrid");
+      }
+    else
+      assignments.push_back("Solver/Method=" + method);
+    std::ostringstream name;
+    name << dim << "D, " << aspect << ", cells " << cells << ", clamped "
+         << clamped << ", " << law << ", " << tangential << ", " << method;
+    test<dim>(name.str(), assignments);
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *argv[])
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  print_figures = argc > 1;
+
+  if (print_figures)
+    {
+      for (const double aspect : {10., 100., 1e3, 1e4})
+        for (const std::string clamped : {"left", "left, right"})
+          for (const std::string law : {"none", "winkler"})
+            for (const std::string tangential : {"free", "fixed"})
+              for (const std::string method :
+                   {"automatic", "energy bundle", "multigrid"})
+                {
+                  for (const std::string cells : {"100, 1", "300, 1", "100, 4"})
+                    strip<2>(aspect, cells, clamped, law, tangential, method);
+                  for (const std::string cells : {"40, 1, 1", "60, 2, 2"})
+                    strip<3>(aspect, cells, clamped, law, tangential, method);
+                }
+      return 0;
+    }
+
+  strip<2>(100., "100, 1", "left", "none", "free", "automatic");
+  strip<2>(1e3, "150, 1", "left", "winkler", "free", "automatic");
+  strip<2>(1e4, "150, 1", "left", "winkler", "fixed", "automatic");
+  strip<2>(1e4, "150, 1", "left", "winkler", "free", "energy bundle");
+  strip<2>(1e4, "60, 3", "left, right", "winkler", "free", "automatic");
+  strip<2>(1e3, "100, 2", "left", "winkler", "free", "multigrid");
+  strip<3>(1e4, "40, 1, 1", "left", "winkler", "free", "automatic");
+  strip<3>(1e4, "20, 2, 2", "left", "none", "fixed", "automatic");
+}
