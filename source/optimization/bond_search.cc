@@ -221,14 +221,19 @@ namespace Debond
       bool
       attempt(const Trial &trial, dealii::Vector<double> &point)
       {
-        dealii::Vector<double> next = point;
+        // Beside a clamped side quadrature points move less than the node, so
+        // that bonds hold there beyond -M. Only their branches matter.
+        const bool from_all_broken =
+          trial.move == BondMove::start && !trial.broken.empty();
+        const double           depth = from_all_broken ? 1e3 : 2.;
+        dealii::Vector<double> next  = point;
         for (const unsigned int i : trial.broken)
-          if (next(i) >= -threshold)
-            next(i) = -2. * threshold;
+          next(i) = std::min(next(i), -depth * threshold);
         for (const unsigned int i : trial.bonded)
           if (next(i) < -threshold)
             next(i) = -0.5 * threshold;
-        if (!tried.insert(broken_nodes(next)).second)
+        const bool is_known = !tried.insert(broken_nodes(next)).second;
+        if (is_known && !from_all_broken)
           return false;
 
         ++result.trials[static_cast<unsigned int>(trial.move)];

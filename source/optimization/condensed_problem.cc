@@ -109,7 +109,11 @@ namespace Debond
     if (previous_r.size() == r.size() && majorised)
       {
         constexpr double noise = 1e-12;
-        if ((r - previous_r).norm() <= noise * (E_s.norm() + r.norm()) &&
+        // Squares of what rounding leaves of a vanishing load would underflow.
+        const auto size = [](const Eigen::VectorXd &v) {
+          return v.lpNorm<Eigen::Infinity>();
+        };
+        if (size(r - previous_r) <= noise * (size(E_s) + size(r)) &&
             (E - previous_E).norm() <= noise * E.norm())
           return false;
       }

@@ -385,18 +385,20 @@ namespace
         if (body.is_fixed(i))
           fixed = std::max(fixed, std::abs(u(i)));
       }
-    const Real    size  = u.template lpNorm<Eigen::Infinity>();
-    const VectorX s     = body.normal_displacements(u);
-    const VectorX force = -body.normal_displacements(residual);
-    const Real    gap =
-      s.size() > 0 ? std::max(Real(0), Real(-s.minCoeff())) : Real(0);
-    const Real shift =
-      std::max(1e-3 * (own.a > 0. ? std::min(Real(own.M), gap) : gap),
-               1e-14 * size);
-    const Real strength = Real(own.a) * own.M * body.largest_measure();
+    const Real    size     = u.template lpNorm<Eigen::Infinity>();
+    const VectorX s        = body.normal_displacements(u);
+    const VectorX force    = -body.normal_displacements(residual);
+    const Real    strength = Real(own.a) * own.M * body.largest_measure();
     // Weak bonds are lost in the rounding of larger forces.
     const Real scale =
       strength > 1e-6 * largest ? std::min(strength, largest) : largest;
+    // The graph of the law is vertical at contact: both its axes count.
+    const Real shift =
+      std::max(1e-3 * (strength > 0. ?
+                         std::min(own.M * std::min(Real(1), scale / strength),
+                                  size) :
+                         size),
+               1e-14 * size);
     Real violation = 0;
     for (unsigned int i = 0; i < s.size(); ++i)
       {
@@ -647,8 +649,15 @@ main(int argc, char *argv[])
   const unsigned int first    = argc > 2 ? std::stoul(argv[2]) : 0;
   print_figures               = argc > 3;
 
+  std::vector<unsigned int> numbers(n_scenes);
+  std::iota(numbers.begin(), numbers.end(), first);
+  // Some for which the search once was not enough.
+  if (argc <= 1)
+    for (const unsigned int number : {116, 119, 208, 247, 279, 339})
+      numbers.push_back(number);
+
   std::map<std::string, unsigned int> kinds, reasons;
-  for (unsigned int number = first; number < first + n_scenes; ++number)
+  for (const unsigned int number : numbers)
     {
       Generator random(number);
       if (random.chance(0.65))
