@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/application/command_line.h>
-#include <debond/study/benchmarks.h>
+#include <debond/benchmark/benchmarks.h>
+#include <debond/program/command_line.h>
 #include <debond/study/command_line.h>
 
 #include <csignal>

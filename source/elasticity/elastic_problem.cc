@@ -3,10 +3,10 @@
 #include <deal.II/fe/fe_simplex_p.h>
 
 #include <debond/elasticity/contact_frame.h>
-#include <debond/elasticity/crossed_mesh.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/linear_simplex.h>
 #include <debond/elasticity/rigid_motions.h>
+#include <debond/mesh/crossed_mesh.h>
 
 #include <algorithm>
 #include <map>

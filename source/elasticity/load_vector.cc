@@ -3,8 +3,8 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/tensor.h>
 
-#include <debond/elasticity/crossed_mesh.h>
 #include <debond/elasticity/load_vector.h>
+#include <debond/mesh/crossed_mesh.h>
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #include <deal.II/lac/solver_control.h>
 
 #include <debond/elasticity/multigrid_problem.h>
-#include <debond/optimization/eigen_view.h>
+#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/output/atomic_file.h>
-#include <debond/output/child_process.h>
+#include <debond/base/atomic_file.h>
+#include <debond/base/child_process.h>
 #include <debond/output/gnuplot.h>
 
 #include <algorithm>

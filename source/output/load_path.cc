@@ -1,71 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/output/atomic_file.h>
+#include <debond/base/atomic_file.h>
+#include <debond/base/number_text.h>
 #include <debond/output/load_path.h>
-#include <debond/output/number_text.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace Debond
 {
-  template <int dim>
-  LoadPathState<dim>
-  load_path_state(const ElasticProblem<dim>    &problem,
-                  const AdhesionIntegral<dim>  &adhesion,
-                  const double                  factor,
-                  const dealii::Vector<double> &u,
-                  const Verification<dim>      &verification)
-  {
-    const auto            &nodes = problem.contact_boundary().nodes;
-    dealii::Vector<double> s(static_cast<unsigned int>(nodes.size()));
-    LoadPathState<dim>     state   = {};
-    double                 measure = 0.;
-    for (unsigned int i = 0; i < nodes.size(); ++i)
-      {
-        const ContactNodeState &node = verification.nodes[i];
-        s(i)                         = node.u_nu;
-        measure += nodes[i].measure;
-        switch (node.state)
-          {
-            case BondState::contact:
-              state.contact_part += nodes[i].measure;
-              break;
-            case BondState::bonded:
-            case BondState::kink:
-              state.bonded_part += nodes[i].measure;
-              break;
-            case BondState::broken:
-            case BondState::free:
-              state.broken_part += nodes[i].measure;
-              break;
-          }
-        state.mean_gap -= nodes[i].measure * node.u_nu;
-        state.largest_gap = std::max(state.largest_gap, -node.u_nu);
-        state.normal_force += node.normal_force;
-      }
-    if (measure > 0.)
-      for (double *part : {&state.contact_part,
-                           &state.bonded_part,
-                           &state.broken_part,
-                           &state.mean_gap})
-        *part /= measure;
-
-    state.elastic_energy  = problem.elastic_functional(u, 0.);
-    state.adhesion_energy = adhesion.value(s);
-    state.unit_load_work  = problem.load() * u;
-    state.functional =
-      problem.elastic_functional(u, factor) + state.adhesion_energy;
-
-    state.contact_reaction     = verification.contact_reaction;
-    state.clamped_reaction     = verification.clamped_reaction;
-    state.law_violation        = verification.law_violation;
-    state.equilibrium_residual = verification.equilibrium_residual;
-    state.force_imbalance      = verification.force_imbalance;
-    return state;
-  }
-
-
-
   namespace
   {
     /// The titles of write_state() with @p prefix.
@@ -166,74 +105,6 @@ namespace Debond
   }
 
 
-
-  template <int dim>
-  LoadPathTotals
-  load_path_totals(const std::vector<LoadPathStep<dim>> &steps,
-                   const unsigned int                    n_factors)
-  {
-    // Differences that are rounding.
-    constexpr double tolerance = 1e-9;
-
-    LoadPathTotals totals;
-    totals.factors     = n_factors;
-    totals.steps       = static_cast<unsigned int>(steps.size());
-    totals.last_factor = steps.back().factor;
-
-    double broken = 0.;
-    for (const LoadPathStep<dim> &step : steps)
-      {
-        const BondChange change = {step.step,
-                                   step.factor,
-                                   step.change_factor,
-                                   broken,
-                                   step.state.broken_part};
-        const double     growth = change.broken_after - change.broken_before;
-        const auto       size   = [](const std::optional<BondChange> &other) {
-          return other ? std::abs(other->broken_after - other->broken_before) :
-                                 tolerance;
-        };
-        if (growth > size(totals.largest_break))
-          totals.largest_break = change;
-        if (-growth > size(totals.largest_closing))
-          totals.largest_closing = change;
-        broken = change.broken_after;
-
-        if (step.global)
-          {
-            const double excess =
-              step.state.functional - step.global->functional;
-            const double scale = std::abs(step.global->functional);
-            ++totals.compared;
-            if (excess > tolerance * scale)
-              {
-                ++totals.above_global;
-                totals.largest_excess =
-                  std::max(totals.largest_excess, excess / scale);
-              }
-          }
-      }
-    return totals;
-  }
-
-
-
-  template LoadPathState<2>
-  load_path_state(const ElasticProblem<2> &,
-                  const AdhesionIntegral<2> &,
-                  const double,
-                  const dealii::Vector<double> &,
-                  const Verification<2> &);
-  template LoadPathState<3>
-  load_path_state(const ElasticProblem<3> &,
-                  const AdhesionIntegral<3> &,
-                  const double,
-                  const dealii::Vector<double> &,
-                  const Verification<3> &);
-  template LoadPathTotals
-  load_path_totals(const std::vector<LoadPathStep<2>> &, const unsigned int);
-  template LoadPathTotals
-  load_path_totals(const std::vector<LoadPathStep<3>> &, const unsigned int);
   template void
   write_load_path(const std::vector<LoadPathStep<2>> &, const std::string &);
   template void

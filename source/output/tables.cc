@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/output/atomic_file.h>
+#include <debond/base/atomic_file.h>
 #include <debond/output/tables.h>
 
 #include <iomanip>

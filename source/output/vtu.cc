@@ -2,7 +2,7 @@
 #include <deal.II/base/utilities.h>
 #include <deal.II/numerics/data_out.h>
 
-#include <debond/output/atomic_file.h>
+#include <debond/base/atomic_file.h>
 #include <debond/output/vtu.h>
 
 #include <zlib.h>

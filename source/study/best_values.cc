@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/application/patterns.h>
+#include <debond/base/patterns.h>
 #include <debond/study/best_values.h>
 
 #include <map>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/application/interrupt.h>
-#include <debond/output/child_process.h>
+#include <debond/base/child_process.h>
+#include <debond/base/interrupt.h>
 #include <debond/study/case_runner.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/application/parameters.h>
-#include <debond/application/text.h>
+#include <debond/base/text.h>
+#include <debond/input/parameters.h>
 #include <debond/study/cases.h>
 #include <debond/study/columns.h>
 #include <debond/study/plots.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/application/parameters.h>
+#include <debond/input/parameters.h>
 #include <debond/study/cases.h>
 #include <debond/study/command_line.h>
 #include <debond/study/reference.h>

@@ -2,8 +2,8 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/table_handler.h>
 
-#include <debond/output/atomic_file.h>
-#include <debond/output/number_text.h>
+#include <debond/base/atomic_file.h>
+#include <debond/base/number_text.h>
 #include <debond/study/data_table.h>
 
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
-#include <debond/application/patterns.h>
-#include <debond/application/text.h>
+#include <debond/base/patterns.h>
+#include <debond/base/text.h>
 #include <debond/study/plots.h>
 
 #include <algorithm>

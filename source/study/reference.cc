@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
-#include <debond/application/parameters.h>
+#include <debond/input/parameters.h>
 #include <debond/study/reference.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/output/directory_lock.h>
+#include <debond/base/directory_lock.h>
 #include <debond/study/case_runner.h>
 #include <debond/study/run_study.h>
 #include <debond/study/study_report.h>

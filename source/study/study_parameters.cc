@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
-#include <debond/application/parameters.h>
-#include <debond/application/text.h>
+#include <debond/base/text.h>
+#include <debond/input/parameters.h>
 #include <debond/study/columns.h>
 #include <debond/study/plots.h>
 #include <debond/study/study_parameters.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/data_out_base.h>
 
-#include <debond/application/version.h>
-#include <debond/output/atomic_file.h>
+#include <debond/base/atomic_file.h>
+#include <debond/base/version.h>
 #include <debond/study/study_report.h>
 
 #include <filesystem>

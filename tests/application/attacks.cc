@@ -6,10 +6,10 @@
 // its own. Arguments: the number of scenes, the first one, and with a third one
 // every scene is listed.
 
-#include <debond/application/parameters.h>
-#include <debond/application/run.h>
-#include <debond/application/scene.h>
-#include <debond/output/displacement.h>
+#include <debond/input/parameters.h>
+#include <debond/program/run.h>
+#include <debond/solve/displacement.h>
+#include <debond/solve/scene.h>
 
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>

@@ -5,10 +5,10 @@
 // of the intact state, a local minimum); the two methods here differ in all but
 // the condensation, and both are checked against the contact law.
 
-#include <debond/application/parameters.h>
-#include <debond/application/scene.h>
-#include <debond/application/solve.h>
-#include <debond/output/verification.h>
+#include <debond/check/verification.h>
+#include <debond/input/parameters.h>
+#include <debond/solve/scene.h>
+#include <debond/solve/solve.h>
 
 #include <cmath>
 #include <fstream>

@@ -5,10 +5,10 @@
 // bonds, which decide what the discrete minimum is; f is compared with its
 // exact value, a change of f by df changes the minimum by -<df, u>.
 
-#include <debond/application/parameters.h>
-#include <debond/application/scene.h>
-#include <debond/application/solve.h>
-#include <debond/output/verification.h>
+#include <debond/check/verification.h>
+#include <debond/input/parameters.h>
+#include <debond/solve/scene.h>
+#include <debond/solve/solve.h>
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>

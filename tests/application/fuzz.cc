@@ -5,10 +5,10 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <debond/application/method_choice.h>
-#include <debond/application/parameters.h>
-#include <debond/application/run.h>
-#include <debond/application/scene_size.h>
+#include <debond/input/parameters.h>
+#include <debond/program/run.h>
+#include <debond/solve/method_choice.h>
+#include <debond/solve/scene_size.h>
 
 #include <filesystem>
 #include <iostream>

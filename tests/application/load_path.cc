@@ -6,9 +6,9 @@
 // to the factor and J is quadratic in it; dJ/d(factor) = -<f, u>; the least J
 // is concave in the squared factor), and values of J from an independent code.
 
-#include <debond/application/load_path.h>
-#include <debond/application/parameters.h>
-#include <debond/application/solve.h>
+#include <debond/input/parameters.h>
+#include <debond/solve/load_path.h>
+#include <debond/solve/solve.h>
 
 #include <cmath>
 #include <iostream>

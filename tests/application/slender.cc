@@ -9,10 +9,10 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <debond/application/parameters.h>
-#include <debond/application/scene.h>
-#include <debond/application/solve.h>
-#include <debond/output/verification.h>
+#include <debond/check/verification.h>
+#include <debond/input/parameters.h>
+#include <debond/solve/scene.h>
+#include <debond/solve/solve.h>
 
 #include <Eigen/LU>
 #include <Eigen/Sparse>

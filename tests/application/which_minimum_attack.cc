@@ -4,12 +4,12 @@
 // scenes with many patches against branch and bound. Takes the numbers of small
 // scenes and of scenes with many patches, and prints each miss with its gap.
 
-#include <debond/application/parameters.h>
-#include <debond/application/scene.h>
-#include <debond/application/solve.h>
 #include <debond/contact/laws/winkler.h>
 #include <debond/elasticity/contact_condensation.h>
-#include <debond/optimization/guided_search.h>
+#include <debond/input/parameters.h>
+#include <debond/optimization/global/guided_search.h>
+#include <debond/solve/scene.h>
+#include <debond/solve/solve.h>
 
 #include <Eigen/Dense>
 

@@ -4,9 +4,9 @@
 #include <deal.II/base/function_parser.h>
 #include <deal.II/lac/full_matrix.h>
 
-#include <debond/elasticity/condensation.h>
-#include <debond/elasticity/crossed_mesh.h>
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/linear_algebra/condensation.h>
+#include <debond/mesh/crossed_mesh.h>
 
 #include <cmath>
 #include <iostream>

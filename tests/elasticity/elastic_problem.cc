@@ -11,8 +11,8 @@
 #include <deal.II/lac/sparse_direct.h>
 
 #include <debond/elasticity/contact_frame.h>
-#include <debond/elasticity/crossed_mesh.h>
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/mesh/crossed_mesh.h>
 
 #include <cmath>
 #include <functional>

@@ -8,14 +8,14 @@
 #include <deal.II/lac/solver_cg.h>
 
 #include <debond/contact/adhesion_integral.h>
-#include <debond/elasticity/condensation.h>
-#include <debond/elasticity/crossed_mesh.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/elasticity/multigrid.h>
 #include <debond/elasticity/multigrid_problem.h>
-#include <debond/optimization/condensed_problem.h>
-#include <debond/optimization/majorise_minimise.h>
+#include <debond/linear_algebra/condensation.h>
+#include <debond/mesh/crossed_mesh.h>
+#include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/optimization/majorise/majorise_minimise.h>
 
 #include <cmath>
 #include <iostream>

@@ -3,7 +3,7 @@
 // active cuts and bounds and their multipliers, and put the data together so
 // that they satisfy the optimality conditions.
 
-#include <debond/optimization/bundle_qp.h>
+#include <debond/optimization/bundle/bundle_qp.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 // precision. An argument gives the number of problems, and prints the figures
 // behind the verdicts.
 
-#include <debond/optimization/bundle_qp.h>
+#include <debond/optimization/bundle/bundle_qp.h>
 
 #include <algorithm>
 #include <cmath>

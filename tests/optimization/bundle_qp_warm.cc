@@ -4,8 +4,8 @@
 // QP that knows nothing of the ones before, and a QP that takes over a saved
 // state has to go on with the same bits.
 
-#include <debond/optimization/archive.h>
-#include <debond/optimization/bundle_qp.h>
+#include <debond/base/archive.h>
+#include <debond/optimization/bundle/bundle_qp.h>
 
 #include <iostream>
 #include <sstream>

@@ -5,13 +5,13 @@
 
 #include <deal.II/lac/full_matrix.h>
 
-#include <debond/optimization/bound_qp.h>
-#include <debond/optimization/coarse_start.h>
-#include <debond/optimization/condensed_problem.h>
-#include <debond/optimization/eigen_view.h>
-#include <debond/optimization/majorise_minimise.h>
-#include <debond/optimization/metric_direction.h>
-#include <debond/optimization/proximal_bundle.h>
+#include <debond/linear_algebra/eigen_view.h>
+#include <debond/optimization/bundle/metric_direction.h>
+#include <debond/optimization/bundle/proximal_bundle.h>
+#include <debond/optimization/majorise/bound_qp.h>
+#include <debond/optimization/majorise/coarse_start.h>
+#include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/optimization/majorise/majorise_minimise.h>
 
 #include <Eigen/Dense>
 

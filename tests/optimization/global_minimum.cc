@@ -5,13 +5,13 @@
 
 #include <deal.II/lac/full_matrix.h>
 
-#include <debond/optimization/bond_search.h>
-#include <debond/optimization/bound_qp.h>
-#include <debond/optimization/branch_and_bound.h>
-#include <debond/optimization/condensed_problem.h>
-#include <debond/optimization/convex_envelope.h>
-#include <debond/optimization/convexity_shift.h>
-#include <debond/optimization/node_bound.h>
+#include <debond/optimization/global/bond_search.h>
+#include <debond/optimization/global/branch_and_bound.h>
+#include <debond/optimization/global/convex_envelope.h>
+#include <debond/optimization/global/convexity_shift.h>
+#include <debond/optimization/global/node_bound.h>
+#include <debond/optimization/majorise/bound_qp.h>
+#include <debond/optimization/majorise/condensed_problem.h>
 
 #include <Eigen/Dense>
 

@@ -8,7 +8,7 @@
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/vector.h>
 
-#include <debond/optimization/proximal_bundle.h>
+#include <debond/optimization/bundle/proximal_bundle.h>
 
 #include <algorithm>
 #include <cmath>

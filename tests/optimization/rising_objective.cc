@@ -2,7 +2,7 @@
 // Majorise-minimise with a solver that, against its word, makes J larger: that
 // is told, unless rounding explains it.
 
-#include <debond/optimization/majorise_minimise.h>
+#include <debond/optimization/majorise/majorise_minimise.h>
 
 #include <iostream>
 

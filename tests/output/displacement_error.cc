@@ -6,10 +6,10 @@
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/numerics/vector_tools.h>
 
-#include <debond/elasticity/condensation.h>
-#include <debond/elasticity/crossed_mesh.h>
+#include <debond/check/displacement_error.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/output/displacement_error.h>
+#include <debond/linear_algebra/condensation.h>
+#include <debond/mesh/crossed_mesh.h>
 
 #include <cmath>
 #include <iostream>

@@ -5,14 +5,14 @@
 
 #include <deal.II/lac/full_matrix.h>
 
-#include <debond/elasticity/crossed_mesh.h>
-#include <debond/output/atomic_file.h>
-#include <debond/output/directory_lock.h>
-#include <debond/output/largest_values.h>
-#include <debond/output/progress.h>
+#include <debond/base/atomic_file.h>
+#include <debond/base/directory_lock.h>
+#include <debond/check/largest_values.h>
+#include <debond/mesh/crossed_mesh.h>
 #include <debond/output/summary.h>
 #include <debond/output/tables.h>
 #include <debond/output/vtu.h>
+#include <debond/solve/progress.h>
 
 #include <nlohmann/json.hpp>
 

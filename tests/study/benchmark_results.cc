@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Tables of results, and growth exponents of made-up ones.
 
-#include <debond/study/benchmark_table.h>
-#include <debond/study/contact_against_linear.h>
+#include <debond/benchmark/benchmark_table.h>
+#include <debond/benchmark/contact_against_linear.h>
 
 #include <cmath>
 #include <fstream>

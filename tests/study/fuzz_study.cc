@@ -3,7 +3,7 @@
 // entry or the line named, or read, with all its cases and scenes. An argument
 // gives the number of cases.
 
-#include <debond/study/benchmark_suite.h>
+#include <debond/benchmark/benchmark_suite.h>
 #include <debond/study/cases.h>
 #include <debond/study/study_parameters.h>
 

@@ -4,8 +4,8 @@
 #include <deal.II/base/function.h>
 #include <deal.II/base/mpi.h>
 
-#include <debond/elasticity/crossed_mesh.h>
-#include <debond/study/linear_baselines.h>
+#include <debond/benchmark/linear_baselines.h>
+#include <debond/mesh/crossed_mesh.h>
 
 #include <iostream>
 #include <memory>

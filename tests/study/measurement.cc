@@ -2,7 +2,7 @@
 // The measurement of memory against blocks of known size, and what happens to
 // jobs that fail.
 
-#include <debond/study/measurement.h>
+#include <debond/benchmark/measurement.h>
 
 #include <sys/mman.h>
 

@@ -4,7 +4,7 @@
 // of exact power laws, tables with all that their formats treat specially, and
 // reference results.
 
-#include <debond/application/parameters.h>
+#include <debond/input/parameters.h>
 #include <debond/study/best_values.h>
 #include <debond/study/convergence.h>
 #include <debond/study/data_table.h>

@@ -2,8 +2,8 @@
 #ifndef debond_elasticity_contact_condensation_h
 #define debond_elasticity_contact_condensation_h
 
-#include <debond/elasticity/condensation.h>
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/linear_algebra/condensation.h>
 
 namespace Debond
 {

@@ -4,8 +4,8 @@
 
 #include <deal.II/lac/vector.h>
 
-#include <debond/elasticity/crossed_mesh.h>
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/mesh/crossed_mesh.h>
 
 namespace Debond
 {

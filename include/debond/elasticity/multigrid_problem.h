@@ -7,8 +7,8 @@
 
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/multigrid.h>
-#include <debond/optimization/bound_qp.h>
-#include <debond/optimization/majorant_problem.h>
+#include <debond/optimization/majorise/bound_qp.h>
+#include <debond/optimization/majorise/majorant_problem.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
 #include <Eigen/SparseCore>

@@ -5,10 +5,10 @@
 #include <deal.II/lac/lapack_full_matrix.h>
 #include <deal.II/lac/vector.h>
 
-#include <debond/elasticity/condensation.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/multigrid.h>
-#include <debond/optimization/bound_qp.h>
+#include <debond/linear_algebra/condensation.h>
+#include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
 #include <Eigen/SparseCore>

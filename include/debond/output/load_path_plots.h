@@ -3,7 +3,7 @@
 #define debond_output_load_path_plots_h
 
 #include <debond/output/gnuplot.h>
-#include <debond/output/load_path.h>
+#include <debond/solve/load_path_steps.h>
 
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 #ifndef debond_output_proof_plots_h
 #define debond_output_proof_plots_h
 
-#include <debond/optimization/branch_and_bound.h>
+#include <debond/optimization/global/branch_and_bound.h>
 #include <debond/output/gnuplot.h>
 
 #include <vector>

@@ -2,9 +2,9 @@
 #ifndef debond_output_summary_h
 #define debond_output_summary_h
 
-#include <debond/output/displacement_error.h>
-#include <debond/output/largest_values.h>
-#include <debond/output/load_path.h>
+#include <debond/check/displacement_error.h>
+#include <debond/check/largest_values.h>
+#include <debond/solve/load_path_steps.h>
 
 #include <map>
 #include <optional>

@@ -2,10 +2,10 @@
 #ifndef debond_output_tables_h
 #define debond_output_tables_h
 
-#include <debond/optimization/branch_and_bound.h>
-#include <debond/optimization/majorise_minimise.h>
-#include <debond/optimization/proximal_bundle.h>
-#include <debond/output/verification.h>
+#include <debond/check/verification.h>
+#include <debond/optimization/bundle/proximal_bundle.h>
+#include <debond/optimization/global/branch_and_bound.h>
+#include <debond/optimization/majorise/majorise_minimise.h>
 
 #include <optional>
 #include <string>

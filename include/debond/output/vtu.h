@@ -2,7 +2,7 @@
 #ifndef debond_output_vtu_h
 #define debond_output_vtu_h
 
-#include <debond/output/verification.h>
+#include <debond/check/verification.h>
 
 #include <string>
 

@@ -2,7 +2,7 @@
 #ifndef debond_study_command_line_h
 #define debond_study_command_line_h
 
-#include <debond/application/exit_code.h>
+#include <debond/program/exit_code.h>
 
 namespace Debond
 {

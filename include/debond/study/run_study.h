@@ -2,7 +2,7 @@
 #ifndef debond_study_run_study_h
 #define debond_study_run_study_h
 
-#include <debond/application/exit_code.h>
+#include <debond/program/exit_code.h>
 #include <debond/study/study_parameters.h>
 
 #include <ostream>

@@ -2,7 +2,7 @@
 #ifndef debond_study_study_parameters_h
 #define debond_study_study_parameters_h
 
-#include <debond/application/parameter_table.h>
+#include <debond/base/parameter_table.h>
 
 #include <map>
 #include <string>

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_base_directory_lock_h
+#define debond_base_directory_lock_h
+
+#include <string>
+
+namespace Debond
+{
+  /**
+   * Keeps other processes from writing into a directory, by a lock on its file
+   * `.lock`, which says who holds it. The file is removed at the end; if the
+   * process is killed it stays, but the system has taken the lock off it, so
+   * that the next process takes it over.
+   */
+  class DirectoryLock
+  {
+  public:
+    /// Creates the directory. Throws std::runtime_error, naming it and the
+    /// process, if another one holds the lock, or with the reason if the
+    /// directory or the file cannot be written.
+    explicit DirectoryLock(const std::string &directory);
+
+    ~DirectoryLock();
+
+    DirectoryLock(const DirectoryLock &) = delete;
+
+  private:
+    const std::string file_name;
+    int               descriptor = -1;
+  };
+} // namespace Debond
+
+#endif

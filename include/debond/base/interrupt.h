@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_base_interrupt_h
+#define debond_base_interrupt_h
+
+#include <csignal>
+
+namespace Debond
+{
+  /**
+   * While an object of this class exists, the first SIGINT or SIGTERM is only
+   * recorded, so that a solver can stop after its current iteration; a second
+   * one ends the program at once.
+   */
+  class InterruptGuard
+  {
+  public:
+    InterruptGuard();
+
+    ~InterruptGuard();
+
+    InterruptGuard(const InterruptGuard &) = delete;
+
+    /// Whether a signal has arrived.
+    bool
+    requested() const;
+
+  private:
+    struct sigaction previous_int;
+    struct sigaction previous_term;
+  };
+} // namespace Debond
+
+#endif

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_check_largest_values_h
+#define debond_check_largest_values_h
+
+#include <deal.II/lac/vector.h>
+
+#include <debond/elasticity/elastic_problem.h>
+
+namespace Debond
+{
+  /// What tells whether a result can be that of linear elasticity.
+  struct LargestValues
+  {
+    double displacement = 0.; ///< |u| at a vertex, length
+    double gradient     = 0.; ///< |grad u| of a cell (Frobenius' norm)
+    double von_mises    = 0.; ///< of a cell, force per area
+  };
+
+  /// Of the displacement @p u. The largest stress of a body with clamped
+  /// corners grows with refinement.
+  template <int dim>
+  LargestValues
+  largest_values(const ElasticProblem<dim>    &problem,
+                 const dealii::Vector<double> &u);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_check_load_path_state_h
+#define debond_check_load_path_state_h
+
+#include <debond/check/verification.h>
+
+#include <string>
+
+namespace Debond
+{
+  /// A state under a multiple of the loads, in numbers.
+  template <int dim>
+  struct LoadPathState
+  {
+    /// What is known of it among the minima; empty if it is no solution.
+    std::string minimum;
+
+    double functional;      ///< J
+    double elastic_energy;  ///< 1/2 <A u, u>
+    double adhesion_energy; ///< int j_1(u_nu)
+
+    /// <f, u>, f being the loads with factor 1: the displacement that belongs
+    /// to the factor, since dJ/d(factor) = -<f, u> along a branch.
+    double unit_load_work;
+
+    /// Parts of the contact boundary by its nodes' measures. Open boundary
+    /// counts as broken, if there is no adhesion.
+    double contact_part;
+    double bonded_part;
+    double broken_part;
+
+    double mean_gap;
+    double largest_gap;
+
+    /// Sum of the nodes' normal forces, positive where the foundation pushes.
+    double normal_force;
+
+    dealii::Tensor<1, dim> contact_reaction;
+    dealii::Tensor<1, dim> clamped_reaction;
+
+    double law_violation;
+    double equilibrium_residual;
+    double force_imbalance;
+  };
+
+  /// @p verification is that of @p u under @p factor times the loads.
+  template <int dim>
+  LoadPathState<dim>
+  load_path_state(const ElasticProblem<dim>    &problem,
+                  const AdhesionIntegral<dim>  &adhesion,
+                  const double                  factor,
+                  const dealii::Vector<double> &u,
+                  const Verification<dim>      &verification);
+} // namespace Debond
+
+#endif

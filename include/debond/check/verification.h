@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_check_verification_h
+#define debond_check_verification_h
+
+#include <deal.II/base/tensor.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/contact/adhesion_integral.h>
+#include <debond/elasticity/elastic_problem.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// What the bonds and the foundation do at a contact node.
+  enum class BondState
+  {
+    contact, ///< u_nu = 0
+    bonded,  ///< -M < u_nu < 0
+    kink,    ///< u_nu = -M
+    broken,  ///< u_nu < -M
+    free     ///< u_nu < 0, if the law has no adhesion
+  };
+
+  /// All of them, in the order of their numbers in files.
+  constexpr std::array<BondState, 5> bond_states = {{BondState::contact,
+                                                     BondState::bonded,
+                                                     BondState::kink,
+                                                     BondState::broken,
+                                                     BondState::free}};
+
+  std::string
+  to_string(const BondState state);
+
+
+
+  /// The contact law checked at one contact node.
+  struct ContactNodeState
+  {
+    double u_nu; ///< normal displacement, length
+
+    /// Total force of the foundation on the node along -nu, from A u - f:
+    /// positive where the foundation pushes, negative where bonds pull.
+    double normal_force;
+
+    /// What the law allows for u_nu of all nodes: the Clarke interval of the
+    /// adhesion, and unbounded above (infinity) where u_nu = 0.
+    Interval allowed_force;
+
+    /// Distance to the law's graph, see Verification::law_violation.
+    double violation;
+
+    BondState state;
+  };
+
+
+
+  /// A solution checked against the problem from A u - f alone.
+  template <int dim>
+  struct Verification
+  {
+    /// In the order of ContactBoundary::nodes.
+    std::vector<ContactNodeState> nodes;
+
+    /**
+     * Largest distance to the contact law over all contact nodes: the least
+     * delta for which the node's force is within delta F_i of what the law
+     * allows at displacements within delta L_i of u_nu.
+     *
+     * F_i is what a bond of the node can bear, a M times the node's measure,
+     * but not more than the largest contact force on a node, so that a law
+     * with M far above all displacements is checked as well; forces below a
+     * thousandth of the largest reaction do not count as the largest one. L_i
+     * is the displacement at which bonds pull with F_i, F_i / (a measure) <= M,
+     * but not more than the largest displacement of the body. Without adhesion
+     * F_i is the largest contact force and L_i the largest displacement.
+     *
+     * What bonds bear can be less than the rounding of A u - f, for which no
+     * displacement in double precision is to blame. So F_i is at least 1e4
+     * times ElasticProblem::residual_rounding(): bonds weaker than that are
+     * not resolved, and rounding alone is a violation of 1e-4.
+     */
+    double law_violation;
+
+    /// Largest u_nu > 0 (zero if there is none), in length.
+    double penetration;
+
+    /// Largest |A u - f| over the free degrees of freedom that are not normal
+    /// contact displacements, relative to the largest |A u - f| of all.
+    double equilibrium_residual;
+
+    dealii::Tensor<1, dim> applied_force;
+    dealii::Tensor<1, dim> clamped_reaction;
+
+    /// Of the foundation on the body, with the tangential part.
+    dealii::Tensor<1, dim> contact_reaction;
+
+    /// The tangential part of contact_reaction, zero if tangential
+    /// displacements are free.
+    dealii::Tensor<1, dim> tangential_reaction;
+
+    /// The tangential force of the foundation on the body at the vertex of
+    /// each contact node, in Cartesian components.
+    std::vector<dealii::Tensor<1, dim>> tangential_forces;
+
+    /// | applied + clamped + contact | over the sum of all nodal forces' sizes.
+    double force_imbalance;
+
+    /// The largest of equilibrium_residual, force_imbalance and
+    /// law_violation: how far the result is from a solution.
+    double
+    error() const;
+
+    unsigned int
+    count(const BondState state) const;
+  };
+
+  /// What is wrong with a result whose Verification::error() is above the
+  /// tolerance.
+  std::string
+  verification_failure(const double error, const double tolerance);
+
+
+
+  /// @p load_factor: the multiple of the problem's loads that @p u belongs to.
+  ///
+  /// @p tolerance: displacements within tolerance * M (and tolerance times the
+  /// largest |u_nu|) of 0 and -M count as
+  /// contact and kink for ContactNodeState::state (and for nothing else). So
+  /// does a gap under pressure within the node's violation and 1e-3 L_i.
+  template <int dim>
+  Verification<dim>
+  verify(const ElasticProblem<dim>    &problem,
+         const AdhesionIntegral<dim>  &adhesion,
+         const AdhesiveLaw            &law,
+         const dealii::Vector<double> &u,
+         const double                  load_factor = 1.,
+         const double                  tolerance   = 1e-6);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_linear_algebra_cholesky_h
+#define debond_linear_algebra_cholesky_h
+
+#include <debond/base/checkpoints.h>
+
+#include <Eigen/Core>
+
+namespace Debond
+{
+  /**
+   * The Cholesky factor K = L L' of a small dense matrix that grows and
+   * shrinks by a row at a time and changes by rank one, each in O(n^2)
+   * (Golub and Van Loan, Matrix Computations, 4th ed., Section 6.5).
+   */
+  class UpdatableCholesky
+  {
+  public:
+    /// Makes room for matrices up to the given size and empties the factor.
+    void
+    reserve(const unsigned int capacity);
+
+    void
+    clear();
+
+    unsigned int
+    size() const;
+
+    /// Appends a row and column to K: @p column holds the new entries of K
+    /// next to the existing rows, @p diagonal the new diagonal entry. Returns
+    /// the part of the diagonal that is independent of the existing rows,
+    /// relative to @p diagonal; if it is not above @p tolerance the factor is
+    /// left as it was.
+    double
+    append(const Eigen::Ref<const Eigen::VectorXd> &column,
+           const double                             diagonal,
+           const double                             tolerance);
+
+    /// Deletes row and column @p k.
+    void
+    remove(const unsigned int k);
+
+    /// K <- K + w w'.
+    void
+    update(Eigen::VectorXd w);
+
+    /// K <- K - w w'. Returns 1 - w' K^{-1} w; if it is not above
+    /// @p tolerance the factor is left as it was.
+    double
+    downdate(const Eigen::Ref<const Eigen::VectorXd> &w,
+             const double                             tolerance);
+
+    /// b <- K^{-1} b.
+    void
+    solve_in_place(Eigen::Ref<Eigen::VectorXd> b) const;
+
+    void
+    save(OutArchive &archive) const;
+
+    /// A factor for which there is room.
+    void
+    load(InArchive &archive);
+
+  private:
+    /// Rank-one update of the trailing block that starts at row @p first; w
+    /// has its size.
+    void
+    update_trailing(const unsigned int first, Eigen::Ref<Eigen::VectorXd> w);
+
+    unsigned int    n = 0;
+    Eigen::MatrixXd factor; ///< lower triangle, leading n x n block in use
+  };
+} // namespace Debond
+
+#endif

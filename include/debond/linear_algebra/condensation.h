@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_linear_algebra_condensation_h
+#define debond_linear_algebra_condensation_h
+
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/sparse_matrix.h>
+#include <deal.II/lac/vector.h>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace Debond
+{
+  /**
+   * The elastic problem condensed onto some of its unknowns s, here the normal
+   * displacements of the contact nodes: with all others at equilibrium,
+   *
+   *     1/2 <A u, u> - <f, u> = c_0 + 1/2 s'S s - g's,
+   *
+   * S being the Schur complement (discrete Steklov-Poincare operator) of A.
+   *
+   * One supernodal Cholesky factorisation P A P' = L L' with the kept unknowns
+   * last gives everything: the trailing block L_ss of the factor has S = L_ss
+   * L_ss', L y = P f gives g = L_ss y_s and c_0 = -1/2 |y_i|^2, and L'x = (y_i,
+   * L_ss's) all unknowns for given s.
+   */
+  class Condensation
+  {
+  public:
+    /// @p kept: the unknowns s in their order. @p is_excluded says which rows
+    /// of A are left out (u = 0 there); on the others A has to be symmetric and
+    /// positive definite.
+    ///
+    /// Throws std::runtime_error if A is not positive definite, std::bad_alloc
+    /// if the factor does not fit into memory.
+    Condensation(const dealii::SparseMatrix<double>      &A,
+                 const dealii::Vector<double>            &f,
+                 const std::vector<unsigned int>         &kept,
+                 const std::function<bool(unsigned int)> &is_excluded);
+
+    Condensation(const Condensation &) = delete;
+
+    ~Condensation();
+
+    /// From now on f is @p factor times the load that the constructor got: g is
+    /// proportional to the factor and c_0 to its square, S and the
+    /// factorisation stay.
+    void
+    scale_load(const double factor);
+
+    /// S, symmetric, a row for each kept unknown.
+    const dealii::FullMatrix<double> &
+    schur_complement() const;
+
+    /// g.
+    const dealii::Vector<double> &
+    load() const;
+
+    /// c_0, the energy of s = 0.
+    double
+    energy_at_zero() const;
+
+    /// 1/2 <A u, u> >= 0 of the solution of A u = f, without any contact: a
+    /// scale for energies. The functional's minimum over all s is minus this.
+    double
+    energy_without_contact() const;
+
+    /// An estimate of |S| |S^{-1}| in the 1-norm, by LAPACK from the factor; 1
+    /// if no unknown is kept.
+    double
+    condition_estimate() const;
+
+    /// u at equilibrium for given s, with the size of f.
+    dealii::Vector<double>
+    expand(const dealii::Vector<double> &s) const;
+
+    /// u at equilibrium under another load, for the s that @p kept_unknowns
+    /// returns for the g of this load.
+    dealii::Vector<double>
+    solve(const dealii::Vector<double>       &other_f,
+          const std::function<dealii::Vector<double>(
+            const dealii::Vector<double> &)> &kept_unknowns) const;
+
+  private:
+    class Factor;
+
+    /// L^{-1} P f.
+    std::vector<double>
+    forward(const dealii::Vector<double> &f) const;
+
+    /// L_ss y_s.
+    dealii::Vector<double>
+    condensed_load(const std::vector<double> &y) const;
+
+    /// u for @p scale times y in the eliminated unknowns.
+    dealii::Vector<double>
+    backward(const double                  scale,
+             const std::vector<double>    &y,
+             const dealii::Vector<double> &s) const;
+
+    unsigned int               n;        ///< size of f
+    std::vector<unsigned int>  unknowns; ///< rows of A, the kept ones last
+    std::unique_ptr<Factor>    factor;
+    std::vector<double>        y; ///< L^{-1} P f of the given load
+    double                     load_factor = 1.;
+    dealii::FullMatrix<double> L_ss;
+    dealii::FullMatrix<double> S;
+    dealii::Vector<double>     given_g; ///< of the given load
+    dealii::Vector<double>     g;
+    double                     given_c_0; ///< of the given load
+  };
+} // namespace Debond
+
+#endif

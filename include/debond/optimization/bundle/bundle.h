@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_bundle_bundle_h
+#define debond_optimization_bundle_bundle_h
+
+#include <debond/base/archive.h>
+#include <debond/optimization/bundle/direction_problem.h>
+#include <debond/optimization/bundle/line_search.h>
+
+namespace Debond
+{
+  /// The subgradients, which the direction problem holds, with their
+  /// linearisation errors and distances at x_k.
+  template <typename VectorType>
+  class Bundle
+  {
+  public:
+    using Solution = typename DirectionProblem<VectorType>::Solution;
+
+    Bundle(DirectionProblem<VectorType> &direction_problem,
+           const unsigned int            capacity)
+      : problem(direction_problem)
+      , alpha(capacity)
+      , distance(capacity)
+    {
+      problem.clear();
+    }
+
+    unsigned int
+    size() const
+    {
+      return problem.size();
+    }
+
+    bool
+    full() const
+    {
+      return size() == alpha.size();
+    }
+
+    void
+    clear()
+    {
+      problem.clear();
+    }
+
+    void
+    add(const VectorType &eta,
+        const double      new_alpha,
+        const double      new_distance)
+    {
+      alpha(size())    = new_alpha;
+      distance(size()) = new_distance;
+      problem.add(eta);
+    }
+
+    const Solution &
+    solve(const VectorType &x, const double gamma)
+    {
+      const unsigned int m = size();
+      return problem.solve(x,
+                           alpha.head(m).cwiseAbs().cwiseMax(
+                             gamma * distance.head(m).cwiseAbs2()));
+    }
+
+    /// Accounts for x_{k+1} = x_k + t_L d.
+    void
+    move(const Solution         &solution,
+         const LineSearchResult &step,
+         const double            d_length)
+    {
+      const unsigned int m = size();
+      alpha.head(m) +=
+        (step.change - step.t_L * solution.slopes.array()).matrix();
+      distance.head(m).array() += step.t_L * d_length;
+    }
+
+    void
+    save(OutArchive &archive) const
+    {
+      problem.save(archive);
+      save_matrix(archive, alpha.head(size()));
+      save_matrix(archive, distance.head(size()));
+    }
+
+    void
+    load(InArchive &archive)
+    {
+      problem.load(archive);
+      const Eigen::MatrixXd errors  = load_matrix(archive);
+      const Eigen::MatrixXd lengths = load_matrix(archive);
+      require_fit(size() <= alpha.size() && errors.rows() == size() &&
+                  lengths.rows() == size());
+      alpha.head(size())    = errors;
+      distance.head(size()) = lengths;
+    }
+
+  private:
+    DirectionProblem<VectorType> &problem;
+    Eigen::VectorXd               alpha;    ///< linearisation errors
+    Eigen::VectorXd               distance; ///< s_j^k
+  };
+} // namespace Debond
+
+#endif

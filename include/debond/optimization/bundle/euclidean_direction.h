@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_bundle_euclidean_direction_h
+#define debond_optimization_bundle_euclidean_direction_h
+
+#include <debond/optimization/bundle/bundle_qp.h>
+#include <debond/optimization/bundle/direction_problem.h>
+#include <debond/optimization/objective.h>
+
+#include <vector>
+
+namespace Debond
+{
+  /// The paper's direction problem, M = u I, on any deal.II vector. Keeps a
+  /// reference to the bounds.
+  template <typename VectorType>
+  class EuclideanDirection : public DirectionProblem<VectorType>
+  {
+  public:
+    using typename DirectionProblem<VectorType>::Solution;
+
+    /// @p model: a vector with the layout of x. @p bundle_size: the most
+    /// subgradients that will be added.
+    EuclideanDirection(const double       u,
+                       const UpperBounds &bounds,
+                       const unsigned int bundle_size,
+                       const VectorType  &model);
+
+    bool
+    is_feasible(const VectorType &x) const override;
+
+    unsigned int
+    size() const override;
+
+    void
+    clear() override;
+
+    void
+    add(const VectorType &eta) override;
+
+    const Solution &
+    solve(const VectorType &x, const Eigen::VectorXd &beta) override;
+
+    void
+    direction(VectorType &d) const override;
+
+    double
+    length(const VectorType &d) const override;
+
+    void
+    project(VectorType &x) const override;
+
+    void
+    save(OutArchive &archive) const override;
+
+    void
+    load(InArchive &archive) override;
+
+  private:
+    const double       u;
+    const UpperBounds &bounds;
+    BundleQP           qp;
+
+    /// With zeros in the bounded components, which the QP holds: so the part of
+    /// the Gram matrix that remains when bounds are active is not a difference.
+    std::vector<VectorType> subgradients;
+
+    Eigen::VectorXd lambda; ///< of the last solve()
+    Eigen::VectorXd d_bounded;
+    Solution        solution;
+  };
+} // namespace Debond
+
+#endif

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_bundle_line_search_h
+#define debond_optimization_bundle_line_search_h
+
+#include <debond/optimization/objective.h>
+
+#include <string>
+
+namespace Debond
+{
+  enum class StepKind
+  {
+    long_step,
+    short_step,
+    null_step
+  };
+
+  std::string
+  to_string(const StepKind kind);
+
+
+
+  /// Which of the steps with (14) is taken; the paper leaves it open.
+  enum class DescentRule
+  {
+    largest, ///< the largest in [0, 1], by bisection: the paper's words
+    halving, ///< the first of 1, 1/2, 1/4, ...
+    minimum  ///< on along that sequence while J falls, then a parabola
+  };
+
+  /// Throws std::invalid_argument if the name is none of "largest",
+  /// "halving", "minimum".
+  DescentRule
+  parse_descent_rule(const std::string &name);
+
+
+
+  /// The constants of the line search, with the paper's symbols.
+  struct LineSearchParameters
+  {
+    DescentRule rule;
+    double      m_L;   ///< eq. (14)
+    double      m_R;   ///< eq. (15)
+    double      t_bar; ///< smallest long step
+    double      gamma; ///< weight of the distance in beta, eq. (15)
+  };
+
+
+
+  struct LineSearchResult
+  {
+    /// False if no t_R with eq. (15) was found.
+    bool success = false;
+
+    StepKind kind = StepKind::null_step;
+
+    double t_L    = 0.; ///< x_{k+1} = x_k + t_L d_k
+    double t_R    = 0.; ///< y_{k+1} = x_k + t_R d_k
+    double change = 0.; ///< J(x_{k+1}) - J(x_k)
+    double slope  = 0.; ///< eta_{k+1}'d_k
+    double alpha  = 0.; ///< linearisation error of y_{k+1} at x_{k+1}
+    double beta   = 0.; ///< its locality measure
+  };
+
+
+
+  /**
+   * The two-parameter line search of the paper's Section 4 on the line
+   * through x_k with direction d_k.
+   *
+   * The paper asks for the largest t_L with (14) and the largest t_R > t_L
+   * with (15), by bisection, and leaves the rest open. The largest t_L has
+   * J(x_k + t_L d_k) close to J(x_k), and the iteration stalls.
+   * DescentRule::minimum goes through 1, 1/2, 1/4, ... to the first t with
+   * (14), on as long as J falls, and ends with the minimum of the parabola
+   * through 0, t and 2t if that is lower still. t_R is found by bisection
+   * between t_L and 2 t_L (0 and 1 for a null step). doc/line-search.md
+   * compares the rules.
+   *
+   * A short step for which no t_R has (15) takes y_{k+1} = x_{k+1}.
+   *
+   * @p v is v_k < 0, @p d_norm the length of d_k. On success @p eta is the
+   * subgradient at y_{k+1}.
+   */
+  template <typename VectorType>
+  LineSearchResult
+  line_search(const LineRestriction<VectorType> &line,
+              const VectorType                  &d,
+              const double                       d_norm,
+              const double                       v,
+              const LineSearchParameters        &parameters,
+              VectorType                        &eta);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_bundle_metric_direction_h
+#define debond_optimization_bundle_metric_direction_h
+
+#include <deal.II/lac/vector.h>
+
+#include <debond/optimization/bundle/direction_problem.h>
+#include <debond/optimization/majorise/bound_qp.h>
+#include <debond/optimization/piecewise_quadratic.h>
+
+namespace Debond
+{
+  /**
+   * The direction problem for s <= 0 in the metric M = S + E(x), where S is a
+   * dense symmetric positive definite matrix (the energy of the elastic body)
+   * and E(x) the curvature of the branches of Phi at x. Active sets for the
+   * bounds; on each of them the multipliers of the cuts solve a BundleQP
+   * without bounds.
+   *
+   * Keeps references to S and Phi.
+   */
+  class MetricDirection : public DirectionProblem<dealii::Vector<double>>
+  {
+  public:
+    MetricDirection(const dealii::FullMatrix<double> &S,
+                    const PiecewiseQuadratic         &phi,
+                    const unsigned int                bundle_size);
+
+    bool
+    is_feasible(const dealii::Vector<double> &x) const override;
+
+    unsigned int
+    size() const override;
+
+    void
+    clear() override;
+
+    void
+    add(const dealii::Vector<double> &eta) override;
+
+    const Solution &
+    solve(const dealii::Vector<double> &x,
+          const Eigen::VectorXd        &beta) override;
+
+    void
+    direction(dealii::Vector<double> &d) const override;
+
+    /// (d'S d)^(1/2), the paper's ||d||_V.
+    double
+    length(const dealii::Vector<double> &d) const override;
+
+    void
+    project(dealii::Vector<double> &x) const override;
+
+    void
+    save(OutArchive &archive) const override;
+
+    void
+    load(InArchive &archive) override;
+
+  private:
+    const dealii::FullMatrix<double> &S;
+    const PiecewiseQuadratic         &phi;
+    unsigned int                      m = 0; ///< number of subgradients
+    Eigen::MatrixXd                   eta;   ///< a column for each
+    ActiveSet                         active;
+    Eigen::VectorXd                   d;
+    Solution                          solution;
+  };
+} // namespace Debond
+
+#endif

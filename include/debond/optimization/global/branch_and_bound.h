@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_global_branch_and_bound_h
+#define debond_optimization_global_branch_and_bound_h
+
+#include <deal.II/lac/full_matrix.h>
+
+#include <debond/optimization/global/separable_bonds.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  struct BranchAndBoundParameters
+  {
+    /// A part of the search space is left out if its least value is at most
+    /// this below the best known one, an energy.
+    double tolerance = 0.;
+
+    /// With 0 there is only the certificate of the start.
+    unsigned int maximum_nodes   = 1000000;
+    double       maximum_seconds = std::numeric_limits<double>::infinity();
+
+    /// For the open nodes.
+    double maximum_bytes = std::numeric_limits<double>::infinity();
+
+    unsigned int n_threads = 1;
+  };
+
+
+
+  /// Where the proof stands.
+  struct ProofProgress
+  {
+    unsigned int nodes;
+    unsigned int open; ///< nodes that wait
+    double       lower, upper;
+    double       seconds;
+  };
+
+
+
+  enum class ProofStatus
+  {
+    proved,       ///< upper - lower is at most the tolerance
+    node_limit,   ///< the nodes were used up
+    time_limit,   ///< the time was used up
+    memory_limit, ///< the open nodes take too much
+    interrupted,  ///< by the monitor
+    rounding,     ///< all bonds are decided, rounding leaves a larger gap
+    no_bound      ///< S is not safely positive definite: there is no bound
+  };
+
+  std::string
+  to_string(const ProofStatus status);
+
+
+
+  struct BranchAndBoundResult
+  {
+    ProofStatus            status = ProofStatus::no_bound;
+    dealii::Vector<double> s;     ///< the best point found
+    double                 upper; ///< its value
+    double                 lower; ///< the minimum is not below this
+    unsigned int           nodes = 0;
+    double                 seconds;
+
+    std::vector<ProofProgress> history; ///< at each tenth part more of nodes
+  };
+
+
+
+  /**
+   * The global minimum of 1/2 s'S s - g's + Phi(s), s <= 0, by branch and bound
+   * on which bonds are broken.
+   *
+   * A node decides some bonds, and NodeBound bounds it. The open nodes with the
+   * lowest bounds are next, some at a time, in as many threads as there are.
+   * The order of the nodes does not depend on the number of threads, so that
+   * only a limit of time makes a result depend on the machine.
+   */
+  class BranchAndBound
+  {
+  public:
+    /// Returns false to end.
+    using Monitor = std::function<bool(const ProofProgress &)>;
+
+    explicit BranchAndBound(const BranchAndBoundParameters &parameters);
+
+    /// @p start is a good point, with s <= 0.
+    BranchAndBoundResult
+    minimize(const dealii::FullMatrix<double> &S,
+             const dealii::Vector<double>     &g,
+             const SeparableBonds             &bonds,
+             const dealii::Vector<double>     &start,
+             const Monitor                    &monitor = {}) const;
+
+  private:
+    BranchAndBoundParameters parameters;
+  };
+} // namespace Debond
+
+#endif

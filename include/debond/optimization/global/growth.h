@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_global_growth_h
+#define debond_optimization_global_growth_h
+
+#include <debond/optimization/interval.h>
+
+namespace Debond
+{
+  /// The least interval with both.
+  Interval
+  hull(const Interval &a, const Interval &b);
+
+
+
+  /**
+   * How a lower bound of a functional grows with one of its unknowns:
+   * constant + slope (s - x) + curvature/2 (s - x)^2, curvature > 0.
+   */
+  struct Growth
+  {
+    double x;
+    double constant, slope, curvature;
+
+    double
+    value(const double s) const;
+
+    /// The least value on the interval, infinite if that is empty.
+    double
+    least(const Interval &interval) const;
+
+    /// The part of the interval where the value is at most the level, rounded
+    /// outwards.
+    Interval
+    where_at_most(const double level, const Interval &interval) const;
+  };
+} // namespace Debond
+
+#endif

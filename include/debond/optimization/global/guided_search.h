@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_global_guided_search_h
+#define debond_optimization_global_guided_search_h
+
+#include <debond/optimization/global/bond_search.h>
+#include <debond/optimization/global/branch_and_bound.h>
+#include <debond/optimization/global/separable_bonds.h>
+
+#include <optional>
+
+namespace Debond
+{
+  /// Phi with its bonds lumped at the unknowns: their stiffnesses are the row
+  /// sums of the second derivative at 0, of @p n unknowns. This is Phi itself
+  /// if each unknown has a bond of its own that breaks at -threshold.
+  SeparableBonds
+  lumped_bonds(const PiecewiseQuadratic &phi,
+               const unsigned int        n,
+               const double              threshold);
+
+  struct GuidedSearchParameters
+  {
+    double tolerance = 0.; ///< of the gap, an energy
+
+    double       maximum_bytes = 0.; ///< of the proof's open nodes
+    unsigned int n_threads     = 1;
+  };
+
+
+
+  struct GuidedSearchResult
+  {
+    BondSearchResult search;
+
+    /// A bound for the functional, if Phi is separable.
+    std::optional<BranchAndBoundResult> proof;
+
+    /// Whether the minimum with the lumped bonds is known, and lies in a state
+    /// that was tried.
+    bool is_closed = false;
+  };
+
+
+
+  /// Adds the counts.
+  void
+  add(const BondSearchResult &more, BondSearchResult &search);
+
+
+
+  /**
+   * Improves a minimum of 1/2 s'S s - g's + Phi(s), s <= 0, with as much effort
+   * as it takes to prove it, up to a limit: nothing if its certificate does
+   * (NodeBound::certificate), else a search that starts from rest and from all
+   * bonds broken and moves edges by one node; if the certificate of what that
+   * finds is not enough, the first node of branch and bound; then the full
+   * search, and branch and bound with a number of nodes that depends on n only,
+   * 500 up to n = 92 and as n^-3 from there on. @p may_end is asked after the
+   * first search, with whether that found anything, and may change s; if it
+   * returns true the search ends.
+   *
+   * If Phi is not separable, the proof is for its lumped bonds and says where
+   * to look: the minimum that it finds is a start for the true Phi.
+   *
+   * Arguments as for search_bonds().
+   */
+  GuidedSearchResult
+  guided_search(
+    const dealii::FullMatrix<double>                          &S,
+    const dealii::Vector<double>                              &g,
+    const PiecewiseQuadratic                                  &phi,
+    const SeparableBonds                                      &lumped,
+    const bool                                                 is_separable,
+    const NeighbourGraph                                      &neighbours,
+    const MajoriseMinimise                                    &method,
+    const GuidedSearchParameters                              &parameters,
+    dealii::Vector<double>                                    &s,
+    const std::function<bool()>                               &monitor,
+    const std::function<bool(bool, dealii::Vector<double> &)> &may_end = {});
+} // namespace Debond
+
+#endif

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_global_node_bound_h
+#define debond_optimization_global_node_bound_h
+
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/optimization/global/envelope_relaxation.h>
+#include <debond/optimization/global/separable_bonds.h>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace Debond
+{
+  /// A part of the search space of branch and bound: a box.
+  struct ProofNode
+  {
+    double          bound;
+    unsigned int    number;
+    Eigen::VectorXd lower, upper;
+    Eigen::VectorXd x;     ///< where its relaxation starts
+    Eigen::VectorXd shift; ///< convexity moved to the bonds
+
+    bool
+    operator<(const ProofNode &other) const
+    {
+      return bound != other.bound ? bound < other.bound : number < other.number;
+    }
+  };
+
+
+
+  /// What NodeBound finds out of a node.
+  struct NodeResult
+  {
+    /// The bond to decide next, and bounds of the halves with it bonded and
+    /// broken.
+    std::optional<unsigned int> bond;
+    std::array<double, 2>       half_bounds;
+
+    /// If there is none, the node is done: it has no value below this.
+    double least;
+  };
+
+
+
+  /**
+   * Bounds nodes of the branch and bound for 1/2 s'S s - g's + Phi(s), s <= 0.
+   *
+   * What is undecided is replaced by its convex envelope on the node's box,
+   * after an amount of convexity was moved from S to the undecided bonds, which
+   * makes the envelope tighter (the D.C. splitting of alpha-BB: Androulakis,
+   * Maranas, Floudas, J. Global Optim. 7, 1995): first the same multiple of
+   * all stiffnesses, which leaves enough in S to shrink the box, then what
+   * raises the bound (raise_bound, with which the bound nears that of a
+   * semidefinite program). Each bound shrinks the box to where a point can be
+   * below the best known value, which decides bonds.
+   */
+  class NodeBound
+  {
+  public:
+    NodeBound(const dealii::FullMatrix<double> &S,
+              const dealii::Vector<double>     &g,
+              const SeparableBonds             &bonds);
+
+    /// The box in which points are not above @p best_value; nothing if S is not
+    /// safely positive definite.
+    std::optional<ProofNode>
+    root(const double best_value) const;
+
+    /// A lower bound of the functional that is close to its value at @p s if
+    /// the convexity that the broken and bonded states of s need for this,
+    ///     k_i M^2 / (s_i^2 - M^2) and k_i s_i^2 / (M^2 - s_i^2),
+    /// leaves S positive definite; minus infinity if it does not. Takes one
+    /// factorisation.
+    double
+    certificate(const Eigen::VectorXd &s) const;
+
+    /// Raises the node's bound and shrinks its box.
+    NodeResult
+    bound(ProofNode   &node,
+          const double best_value,
+          const double tolerance) const;
+
+  private:
+    const SeparableBonds &bonds;
+    const unsigned int    n;
+    Eigen::MatrixXd       S;
+    Eigen::VectorXd       g;
+  };
+} // namespace Debond
+
+#endif

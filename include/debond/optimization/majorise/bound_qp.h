@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_majorise_bound_qp_h
+#define debond_optimization_majorise_bound_qp_h
+
+#include <Eigen/Core>
+
+#include <limits>
+#include <vector>
+
+namespace Debond
+{
+  /// Rounding in x and mu, relative to their largest terms.
+  constexpr double active_set_noise =
+    16. * std::numeric_limits<double>::epsilon();
+
+  /// Factorisations after which a solver gives up.
+  constexpr unsigned int maximum_active_set_steps = 10000;
+
+  /// Which bounds are active, by index.
+  using ActiveSet = std::vector<char>;
+
+
+
+  /**
+   * The rule by which active-set methods for x <= b go on: bounds that are
+   * exceeded enter, those with a negative multiplier leave, all at once as in
+   * the primal-dual active set method (Hintermueller, Ito, Kunisch, SIAM J.
+   * Optim. 13, 2002). If that goes on for too long, only the first of them
+   * changes, which ends after finitely many steps for positive definite
+   * matrices (Murty, Math. Programming 7, 1974).
+   */
+  class ActiveSetRule
+  {
+  public:
+    /// @p excess is x - b outside the active set, @p mu the multipliers in
+    /// it; a sign counts only beyond @p excess_noise and @p mu_noise.
+    /// Returns the number of indices that changed.
+    unsigned int
+    update(const Eigen::VectorXd &excess,
+           const Eigen::VectorXd &mu,
+           const double           excess_noise,
+           const double           mu_noise,
+           ActiveSet             &active);
+
+  private:
+    unsigned int n_updates = 0;
+  };
+
+
+
+  struct BoundQPResult
+  {
+    bool            converged = false;
+    unsigned int    steps     = 0; ///< factorisations
+    Eigen::VectorXd x;
+    Eigen::VectorXd mu; ///< multipliers, zero where inactive
+  };
+
+
+
+  /**
+   * min 1/2 x'M x - r'x subject to x <= b for a dense symmetric positive
+   * definite M, started at @p active, which is updated. Each step solves on
+   * the free components with a Cholesky factorisation. Where rounding makes the
+   * rule go in circles it ends; the caller sees what that leaves.
+   */
+  BoundQPResult
+  solve_bound_qp(const Eigen::Ref<const Eigen::MatrixXd> &M,
+                 const Eigen::VectorXd                   &r,
+                 const Eigen::VectorXd                   &b,
+                 ActiveSet                               &active);
+} // namespace Debond
+
+#endif

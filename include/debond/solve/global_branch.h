@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_global_branch_h
+#define debond_solve_global_branch_h
+
+#include <debond/input/parameters.h>
+#include <debond/linear_algebra/condensation.h>
+#include <debond/solve/scene.h>
+#include <debond/solve/which_minimum.h>
+
+#include <functional>
+#include <map>
+#include <vector>
+
+namespace Debond
+{
+  /// A minimum of the condensed problem under a multiple of the loads.
+  struct BranchPoint
+  {
+    dealii::Vector<double> s;
+    double                 functional; ///< without the energy at s = 0
+    WhichMinimum           which;
+  };
+
+  /// By the factor of the loads.
+  using Branch = std::map<double, BranchPoint>;
+
+  /// Called with the factor and the point, each time that one is done.
+  using BranchMonitor = std::function<void(const double, const BranchPoint &)>;
+
+  /**
+   * The lowest minima that are known at the factors of @p start, which holds a
+   * minimum for each: the search of the scene, with starts from the neighbours
+   * with more and with less load, and the proof if the scene wants one. No
+   * point is above the one in @p start. Factors that were not reached when
+   * @p may_go_on returned false are left out.
+   */
+  template <int dim>
+  Branch
+  global_branch(const Parameters            &parameters,
+                const Scene<dim>            &scene,
+                const Branch                &start,
+                const std::function<bool()> &may_go_on,
+                const BranchMonitor         &monitor,
+                Condensation                &condensed);
+
+  /// 1/2 s'S s - g's + Phi(s).
+  double
+  condensed_functional(const Condensation           &condensed,
+                       const PiecewiseQuadratic     &adhesion,
+                       const dealii::Vector<double> &s);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_load_path_h
+#define debond_solve_load_path_h
+
+#include <debond/input/parameters.h>
+#include <debond/solve/load_path_steps.h>
+#include <debond/solve/scene.h>
+#include <debond/solve/solve.h>
+
+#include <functional>
+#include <ostream>
+#include <vector>
+
+namespace Debond
+{
+  /// Called after each factor, with the displacement and its verification.
+  template <int dim>
+  using LoadPathObserver = std::function<void(const LoadPathStep<dim> &,
+                                              const dealii::Vector<double> &,
+                                              const Verification<dim> &)>;
+
+  /**
+   * Applies the factors of the scene's load path to its loads one after the
+   * other. Each time majorise-minimise starts from the state before, the first
+   * time from rest, and ends in the part of {J <= J(start)} that is connected
+   * with its start: the segment to the minimum of a majorant lies below it.
+   *
+   * The path ends early with a factor that is not solved or whose result is not
+   * verified, and after the current factor if a signal arrives. Then comes the
+   * global branch. The result is that of the last factor; its status is success
+   * if all factors were solved, whether or not all of them are verified.
+   */
+  template <int dim>
+  SolveResult
+  follow_load_path(const Parameters               &parameters,
+                   const Scene<dim>               &scene,
+                   const LoadPathObserver<dim>    &observer,
+                   std::ostream                   &out,
+                   std::vector<LoadPathStep<dim>> &steps);
+} // namespace Debond
+
+#endif

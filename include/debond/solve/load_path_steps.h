@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_load_path_steps_h
+#define debond_solve_load_path_steps_h
+
+#include <debond/check/load_path_state.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  template <int dim>
+  struct LoadPathStep
+  {
+    unsigned int step;   ///< from 1
+    double       factor; ///< of the loads
+    std::string  status; ///< a SolverStatus, or "not verified"
+
+    LoadPathState<dim> state;
+    unsigned int       iterations; ///< of majorise-minimise
+
+    /// Where on the way from the last factor the first bond broke or closed,
+    /// if one did: displacements are proportional to the factor as long as none
+    /// does. Known with nodal quadrature, unless the step begins at zero.
+    std::optional<double> change_factor;
+
+    /// The global branch at this factor, if it was computed.
+    std::optional<LoadPathState<dim>> global;
+    std::optional<double>             relative_gap; ///< of its proof
+
+    /// Of the first thing that went wrong, empty if nothing did.
+    std::string message;
+  };
+
+
+
+  /// A step at which the broken part changed.
+  struct BondChange
+  {
+    unsigned int          step;
+    double                factor;
+    std::optional<double> change_factor; ///< see LoadPathStep
+    double                broken_before;
+    double                broken_after;
+  };
+
+
+
+  struct LoadPathTotals
+  {
+    unsigned int factors; ///< that the scene has
+    unsigned int steps;   ///< that were done
+    double       last_factor;
+
+    /// The steps at which the broken part grew and shrank most, if it did.
+    std::optional<BondChange> largest_break;
+    std::optional<BondChange> largest_closing;
+
+    /// Steps with a global branch, and those where J is above it.
+    unsigned int compared     = 0;
+    unsigned int above_global = 0;
+
+    /// The largest difference, relative to |J| of the global branch.
+    double largest_excess = 0.;
+  };
+
+  /// @p n_factors: of the scene. There has to be one step at least.
+  template <int dim>
+  LoadPathTotals
+  load_path_totals(const std::vector<LoadPathStep<dim>> &steps,
+                   const unsigned int                    n_factors);
+} // namespace Debond
+
+#endif

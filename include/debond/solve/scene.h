@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_scene_h
+#define debond_solve_scene_h
+
+#include <deal.II/lac/vector.h>
+
+#include <debond/contact/functional.h>
+#include <debond/elasticity/elastic_problem.h>
+#include <debond/input/parameters.h>
+
+#include <memory>
+
+namespace Debond
+{
+  /**
+   * The discrete problem of a scene, ready to be solved.
+   *
+   * The constructor throws BadInput where the scene, though
+   * readable, makes no problem: a free rigid motion, a load that is not finite
+   * somewhere, a quadrature that does not exist in dim dimensions.
+   */
+  template <int dim>
+  class Scene
+  {
+  public:
+    explicit Scene(const Parameters   &parameters,
+                   const MatrixStorage storage = MatrixStorage::serial);
+
+    Scene(const Scene &) = delete;
+
+    const ElasticProblem<dim> &
+    problem() const;
+
+    const AdhesiveLaw &
+    law() const;
+
+    const AdhesionIntegral<dim> &
+    adhesion() const;
+
+    /// J, on vectors of problem().n_dofs() entries.
+    const Objective<dealii::Vector<double>> &
+    functional() const;
+
+    /// The first iterate for methods on all degrees of freedom.
+    const dealii::Vector<double> &
+    start() const;
+
+    /// Triangles or tetrahedra.
+    unsigned int
+    n_cells() const;
+
+    /// Wall seconds that the constructor took for the mesh.
+    double
+    mesh_seconds() const;
+
+    /// Wall seconds that the constructor took for the rest.
+    double
+    assembly_seconds() const;
+
+  private:
+    void
+    add_contact(const Parameters &parameters, const MatrixStorage storage);
+
+    dealii::Triangulation<dim>                         triangulation;
+    std::unique_ptr<ElasticProblem<dim>>               elastic_problem;
+    std::unique_ptr<AdhesiveLaw>                       adhesive_law;
+    std::unique_ptr<ContactQuadrature<dim>>            quadrature;
+    std::unique_ptr<AdhesionIntegral<dim>>             adhesion_integral;
+    std::unique_ptr<Objective<dealii::Vector<double>>> energy;
+    dealii::Vector<double>                             first_iterate;
+    double                                             seconds_for_mesh;
+    double                                             seconds_for_assembly;
+  };
+} // namespace Debond
+
+#endif

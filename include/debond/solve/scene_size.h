@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_scene_size_h
+#define debond_solve_scene_size_h
+
+#include <debond/input/parameters.h>
+
+namespace Debond
+{
+  /// How large a scene is, from its box alone. Numbers may exceed what an
+  /// integer holds.
+  struct SceneSize
+  {
+    double cells;         ///< triangles or tetrahedra
+    double unknowns;      ///< dim for each vertex
+    double contact_nodes; ///< vertices of the contact sides
+  };
+
+  SceneSize
+  scene_size(const Parameters &parameters);
+
+  /// Estimates of the program's peak memory, in bytes, from measured runs of
+  /// the benchmark and of bars in 3D: mesh, A, solver and output.
+  double
+  memory_with_factorisation(const SceneSize   &size,
+                            const unsigned int dimension);
+
+  double
+  memory_with_multigrid(const SceneSize &size, const unsigned int dimension);
+
+  /// Without any linear solver: mesh, A and a bundle of vectors.
+  double
+  memory_with_bundle(const SceneSize   &size,
+                     const unsigned int dimension,
+                     const unsigned int bundle_size);
+
+  /// Estimates of the time for the linear systems of a scene by a factorisation
+  /// and by multigrid, in seconds on one core as of 2024, from the box alone:
+  /// good for a comparison, within a factor of about 3 on the bodies measured.
+  double
+  seconds_with_factorisation(const Parameters &parameters);
+
+  double
+  seconds_with_multigrid(const Parameters &parameters);
+
+  /// What the system can give to this process now, in bytes.
+  double
+  available_memory();
+} // namespace Debond
+
+#endif

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_which_minimum_h
+#define debond_solve_which_minimum_h
+
+#include <debond/contact/adhesion_integral.h>
+#include <debond/input/parameters.h>
+#include <debond/linear_algebra/condensation.h>
+#include <debond/optimization/global/branch_and_bound.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// What is known of a result among the stationary points of J.
+  enum class MinimumKind
+  {
+    stationary,    ///< it satisfies the contact law
+    local_minimum, ///< and no bond is on the kink, so that J rises around it
+    best_known,    ///< and no state that the search tried has a lower J
+    global         ///< and no point is lower, but for the gap
+  };
+
+  std::string
+  to_string(const MinimumKind kind);
+
+
+
+  struct WhichMinimum
+  {
+    MinimumKind kind = MinimumKind::stationary;
+
+    unsigned int search_trials       = 0;
+    unsigned int search_improvements = 0;
+    unsigned int search_failures     = 0; ///< trials without a result
+    unsigned int search_nodes = 0; ///< contact nodes of the mesh of the search
+
+    /// Contact nodes of the coarser mesh, with lumped bonds, on which the
+    /// minimum is proved and leads to the result; 0 if there is none.
+    unsigned int closed_nodes = 0;
+
+    bool interrupted = false; ///< search or proof, by a signal
+
+    bool         proof_attempted = false;
+    ProofStatus  proof_status    = ProofStatus::no_bound;
+    double       lower_bound     = 0.; ///< of J
+    double       relative_gap = 0.; ///< J - lower bound, by what bonds change
+    unsigned int proof_nodes  = 0;
+
+    /// With J in place of the condensed functional; of Solver/Prove only.
+    std::vector<ProofProgress> proof_history;
+
+    /// Why there was no search or no proof.
+    std::vector<std::string> notes;
+  };
+
+
+
+  /// stationary, local minimum, or global if there is no adhesion and J is
+  /// convex.
+  template <int dim>
+  MinimumKind
+  kind_without_search(const AdhesiveLaw            &law,
+                      const AdhesionIntegral<dim>  &adhesion,
+                      const dealii::Vector<double> &s);
+
+  /// The search and the proof that the scene asks for, from the stationary
+  /// point @p s, which moves if they find a better one. Throws BadInput if the
+  /// scene asks for what cannot be done with the law.
+  template <int dim>
+  WhichMinimum
+  find_better_minimum(const Parameters            &parameters,
+                      const ContactBoundary<dim>  &boundary,
+                      const AdhesiveLaw           &law,
+                      const AdhesionIntegral<dim> &adhesion,
+                      const Condensation          &condensed,
+                      const std::function<bool()> &may_go_on,
+                      dealii::Vector<double>      &s);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/directory_lock.h>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
+
+namespace Debond
+{
+  namespace
+  {
+    std::string
+    host_name()
+    {
+      char name[256] = "";
+      return gethostname(name, sizeof(name) - 1) == 0 ? name :
+                                                        "an unknown host";
+    }
+
+
+
+    /// Whether the name still belongs to the open file.
+    bool
+    is_named(const int descriptor, const std::string &file_name)
+    {
+      struct stat opened = {}, named = {};
+      return fstat(descriptor, &opened) == 0 &&
+             stat(file_name.c_str(), &named) == 0 &&
+             opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+    }
+  } // namespace
+
+
+
+  DirectoryLock::DirectoryLock(const std::string &directory)
+    : file_name((std::filesystem::path(directory) / ".lock").string())
+  {
+    std::error_code error;
+    std::filesystem::create_directories(directory, error);
+    if (error)
+      throw std::runtime_error("cannot create the output directory " +
+                               directory + ": " + error.message());
+
+    // Who had it may remove the file between its opening and locking.
+    while (descriptor < 0)
+      {
+        descriptor =
+          open(file_name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        if (descriptor < 0)
+          throw std::runtime_error("Cannot write " + file_name + ": " +
+                                   std::strerror(errno));
+        const bool locked = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+        if (!locked && errno == EWOULDBLOCK)
+          {
+            close(descriptor);
+            std::ifstream file(file_name);
+            std::string   holder;
+            std::getline(file, holder);
+            throw std::runtime_error(
+              directory + " is being written by " +
+              (holder.empty() ? "another process" : holder) +
+              "; wait for its end, or give another Output/Directory");
+          }
+        // A file system without locks is no reason not to run.
+        if (locked && !is_named(descriptor, file_name))
+          {
+            close(descriptor);
+            descriptor = -1;
+          }
+      }
+
+    const std::string holder =
+      "process " + std::to_string(getpid()) + " on " + host_name() + "\n";
+    // What the file says is only for the message of another process.
+    std::ofstream(file_name) << holder;
+  }
+
+
+
+  DirectoryLock::~DirectoryLock()
+  {
+    unlink(file_name.c_str());
+    close(descriptor);
+  }
+} // namespace Debond

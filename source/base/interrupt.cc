@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/interrupt.h>
+
+namespace Debond
+{
+  namespace
+  {
+    volatile std::sig_atomic_t signal_arrived = 0;
+
+    extern "C" void
+    debond_record_signal(int /*number*/)
+    {
+      signal_arrived = 1;
+    }
+  } // namespace
+
+
+
+  InterruptGuard::InterruptGuard()
+  {
+    signal_arrived = 0;
+
+    struct sigaction action = {};
+    action.sa_handler       = debond_record_signal;
+    action.sa_flags         = SA_RESETHAND | SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, &previous_int);
+    sigaction(SIGTERM, &action, &previous_term);
+  }
+
+
+
+  InterruptGuard::~InterruptGuard()
+  {
+    sigaction(SIGINT, &previous_int, nullptr);
+    sigaction(SIGTERM, &previous_term, nullptr);
+  }
+
+
+
+  bool
+  InterruptGuard::requested() const
+  {
+    return signal_arrived != 0;
+  }
+} // namespace Debond

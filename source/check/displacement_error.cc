@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+
+#include <debond/check/displacement_error.h>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace Debond
+{
+  namespace
+  {
+    template <int dim>
+    dealii::Tensor<1, dim>
+    value_at(const dealii::Point<dim>    &point,
+             const dealii::Function<dim> &exact)
+    {
+      dealii::Vector<double> values(dim);
+      dealii::Tensor<1, dim> result;
+      try
+        {
+          exact.vector_value(point, values);
+          for (unsigned int d = 0; d < dim; ++d)
+            result[d] = values[d];
+        }
+      catch (const std::exception &)
+        {
+          result[0] = std::numeric_limits<double>::quiet_NaN();
+        }
+      if (!std::isfinite(result.norm()))
+        {
+          std::ostringstream message;
+          message << "The exact displacement is not finite at (" << point
+                  << ").";
+          throw std::invalid_argument(message.str());
+        }
+      return result;
+    }
+
+
+
+    /// Its error is of the order step^4.
+    template <int dim>
+    dealii::Tensor<2, dim>
+    gradient_at(const dealii::Point<dim>    &point,
+                const double                 step,
+                const dealii::Function<dim> &exact)
+    {
+      dealii::Tensor<2, dim> gradient;
+      for (unsigned int e = 0; e < dim; ++e)
+        {
+          const auto at = [&](const int steps) {
+            dealii::Point<dim> neighbour = point;
+            neighbour[e] += steps * step;
+            return value_at(neighbour, exact);
+          };
+          const dealii::Tensor<1, dim> derivative =
+            (8. * (at(1) - at(-1)) - (at(2) - at(-2))) / (12. * step);
+          for (unsigned int d = 0; d < dim; ++d)
+            gradient[d][e] = derivative[d];
+        }
+      return gradient;
+    }
+
+
+
+    /// The integrals of squares that the norms are roots of.
+    struct Squares
+    {
+      double value    = 0.;
+      double gradient = 0.;
+      double energy   = 0.;
+    };
+
+
+
+    double
+    relative_norm(const double error, const double exact)
+    {
+      return std::sqrt(exact > 0. ? error / exact : error);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  DisplacementError
+  displacement_error(const ElasticProblem<dim>    &problem,
+                     const dealii::Vector<double> &u,
+                     const dealii::Function<dim>  &exact)
+  {
+    const dealii::SymmetricTensor<4, dim> stiffness =
+      problem.material().template elasticity_tensor<dim>();
+    const dealii::Vector<double> displacement =
+      problem.cartesian_displacement(u);
+    const dealii::QGaussSimplex<dim> rule(3);
+    const double reference_volume = dim == 2 ? 0.5 : 1. / 6.;
+
+    Squares    errors, norms;
+    const auto add = [&](const double                  weight,
+                         const dealii::Tensor<1, dim> &value,
+                         const dealii::Tensor<2, dim> &gradient,
+                         Squares                      &squares) {
+      const dealii::SymmetricTensor<2, dim> strain =
+        dealii::symmetrize(gradient);
+      squares.value += weight * value.norm_square();
+      squares.gradient += weight * gradient.norm_square();
+      squares.energy += weight * (strain * (stiffness * strain));
+    };
+
+    for (const auto &cell : problem.dof_handler().active_cell_iterators())
+      {
+        const dealii::Tensor<2, dim> gradient =
+          problem.displacement_gradient(cell, displacement);
+        // The points of the rule are further than twice that from the faces.
+        const double step = 1e-3 * cell->minimum_vertex_distance();
+        for (unsigned int q = 0; q < rule.size(); ++q)
+          {
+            dealii::Point<dim>     point;
+            dealii::Tensor<1, dim> value;
+            for (unsigned int v = 0; v <= dim; ++v)
+              {
+                double shape = v == 0 ? 1. : rule.point(q)[v - 1];
+                if (v == 0)
+                  for (unsigned int d = 0; d < dim; ++d)
+                    shape -= rule.point(q)[d];
+                point += shape * cell->vertex(v);
+                for (unsigned int d = 0; d < dim; ++d)
+                  value[d] +=
+                    shape * displacement[cell->vertex_dof_index(v, d)];
+              }
+            const double weight =
+              rule.weight(q) / reference_volume * cell->measure();
+            const dealii::Tensor<1, dim> exact_value = value_at(point, exact);
+            const dealii::Tensor<2, dim> exact_gradient =
+              gradient_at(point, step, exact);
+            add(weight, exact_value, exact_gradient, norms);
+            add(weight, value - exact_value, gradient - exact_gradient, errors);
+          }
+      }
+
+    return {relative_norm(errors.value, norms.value),
+            relative_norm(errors.gradient, norms.gradient),
+            relative_norm(errors.energy, norms.energy),
+            0.5 * norms.energy};
+  }
+
+
+
+  template DisplacementError
+  displacement_error(const ElasticProblem<2> &,
+                     const dealii::Vector<double> &,
+                     const dealii::Function<2> &);
+  template DisplacementError
+  displacement_error(const ElasticProblem<3> &,
+                     const dealii::Vector<double> &,
+                     const dealii::Function<3> &);
+} // namespace Debond

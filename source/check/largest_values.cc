@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/check/largest_values.h>
+
+#include <algorithm>
+
+namespace Debond
+{
+  template <int dim>
+  LargestValues
+  largest_values(const ElasticProblem<dim>    &problem,
+                 const dealii::Vector<double> &u)
+  {
+    const dealii::Vector<double> displacement =
+      problem.cartesian_displacement(u);
+
+    LargestValues largest;
+    for (const auto &cell : problem.dof_handler().active_cell_iterators())
+      {
+        for (const unsigned int v : cell->vertex_indices())
+          {
+            dealii::Tensor<1, dim> at_vertex;
+            for (unsigned int d = 0; d < dim; ++d)
+              at_vertex[d] = displacement(cell->vertex_dof_index(v, d));
+            largest.displacement =
+              std::max(largest.displacement, at_vertex.norm());
+          }
+        largest.gradient =
+          std::max(largest.gradient,
+                   problem.displacement_gradient(cell, displacement).norm());
+        largest.von_mises = std::max(largest.von_mises,
+                                     problem.material().template von_mises<dim>(
+                                       problem.stress(cell, displacement)));
+      }
+    return largest;
+  }
+
+
+
+  template LargestValues
+  largest_values(const ElasticProblem<2> &, const dealii::Vector<double> &);
+  template LargestValues
+  largest_values(const ElasticProblem<3> &, const dealii::Vector<double> &);
+} // namespace Debond

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/check/load_path_state.h>
+
+#include <algorithm>
+
+namespace Debond
+{
+  template <int dim>
+  LoadPathState<dim>
+  load_path_state(const ElasticProblem<dim>    &problem,
+                  const AdhesionIntegral<dim>  &adhesion,
+                  const double                  factor,
+                  const dealii::Vector<double> &u,
+                  const Verification<dim>      &verification)
+  {
+    const auto            &nodes = problem.contact_boundary().nodes;
+    dealii::Vector<double> s(static_cast<unsigned int>(nodes.size()));
+    LoadPathState<dim>     state   = {};
+    double                 measure = 0.;
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      {
+        const ContactNodeState &node = verification.nodes[i];
+        s(i)                         = node.u_nu;
+        measure += nodes[i].measure;
+        switch (node.state)
+          {
+            case BondState::contact:
+              state.contact_part += nodes[i].measure;
+              break;
+            case BondState::bonded:
+            case BondState::kink:
+              state.bonded_part += nodes[i].measure;
+              break;
+            case BondState::broken:
+            case BondState::free:
+              state.broken_part += nodes[i].measure;
+              break;
+          }
+        state.mean_gap -= nodes[i].measure * node.u_nu;
+        state.largest_gap = std::max(state.largest_gap, -node.u_nu);
+        state.normal_force += node.normal_force;
+      }
+    if (measure > 0.)
+      for (double *part : {&state.contact_part,
+                           &state.bonded_part,
+                           &state.broken_part,
+                           &state.mean_gap})
+        *part /= measure;
+
+    state.elastic_energy  = problem.elastic_functional(u, 0.);
+    state.adhesion_energy = adhesion.value(s);
+    state.unit_load_work  = problem.load() * u;
+    state.functional =
+      problem.elastic_functional(u, factor) + state.adhesion_energy;
+
+    state.contact_reaction     = verification.contact_reaction;
+    state.clamped_reaction     = verification.clamped_reaction;
+    state.law_violation        = verification.law_violation;
+    state.equilibrium_residual = verification.equilibrium_residual;
+    state.force_imbalance      = verification.force_imbalance;
+    return state;
+  }
+
+
+  template LoadPathState<2>
+  load_path_state(const ElasticProblem<2> &,
+                  const AdhesionIntegral<2> &,
+                  const double,
+                  const dealii::Vector<double> &,
+                  const Verification<2> &);
+  template LoadPathState<3>
+  load_path_state(const ElasticProblem<3> &,
+                  const AdhesionIntegral<3> &,
+                  const double,
+                  const dealii::Vector<double> &,
+                  const Verification<3> &);
+} // namespace Debond

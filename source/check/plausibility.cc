@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/check/plausibility.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Beyond it the strains of linear elasticity are wrong by some percent.
+    constexpr double largest_small_gradient = 0.05;
+
+    /// A body this slender bends.
+    constexpr double slender_ratio = 5.;
+
+    /// Cells larger than this part of the thickness, along or through it, make
+    /// a strip too stiff in bending: as measured, J is 1 / (1 + 0.6 (size /
+    /// thickness)^2) of the beam's, 96 % for a quarter.
+    constexpr double largest_cell = 0.3;
+    constexpr double locking      = 0.6;
+
+    constexpr double largest_stretch = 5.;
+  } // namespace
+
+
+
+  std::vector<std::string>
+  plausibility_notes(const BoxParameters &box,
+                     const unsigned int   dim,
+                     const bool           has_load,
+                     const LargestValues &largest)
+  {
+    std::vector<std::string> notes;
+    std::ostringstream       text;
+    text.precision(2);
+    const auto add_note = [&]() {
+      notes.push_back(text.str());
+      text.str("");
+    };
+
+    if (!has_load)
+      {
+        text << "the scene has no load";
+        add_note();
+      }
+    if (largest.gradient > largest_small_gradient)
+      {
+        text << "displacement gradients up to " << largest.gradient
+             << " are beyond linear elasticity, which is for small strains and "
+                "rotations, below about "
+             << largest_small_gradient;
+        add_note();
+      }
+
+    const double thickness =
+      *std::min_element(box.lengths.begin(), box.lengths.begin() + dim);
+    double shortest = std::numeric_limits<double>::max();
+    double longest  = 0.;
+    double bending  = 0.; // of cells that bend
+    bool   slender  = false;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double edge  = box.lengths[d] / box.cells[d];
+        const bool   thin  = box.lengths[d] <= thickness;
+        const bool   along = box.lengths[d] >= slender_ratio * thickness;
+        shortest           = std::min(shortest, edge);
+        longest            = std::max(longest, edge);
+        slender |= along;
+        if (thin || along)
+          bending = std::max(bending, edge);
+      }
+    if (slender && bending > largest_cell * thickness)
+      {
+        const double size = bending / thickness;
+        text << "cells of " << size << " times the body's thickness: bent, a "
+             << "strip has about "
+             << std::round(100. / (1. + locking * size * size))
+             << " % of its J, with a quarter 96 %";
+        add_note();
+      }
+    else if (longest > largest_stretch * shortest)
+      {
+        text << "cells are stretched by a factor of " << longest / shortest
+             << ", which makes them stiff where they bend";
+        add_note();
+      }
+    return notes;
+  }
+} // namespace Debond

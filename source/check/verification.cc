@@ -1,0 +1,436 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/check/verification.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace Debond
+{
+  std::string
+  to_string(const BondState state)
+  {
+    switch (state)
+      {
+        case BondState::contact:
+          return "contact";
+        case BondState::bonded:
+          return "bonded";
+        case BondState::kink:
+          return "kink";
+        case BondState::broken:
+          return "broken";
+        case BondState::free:
+          return "free";
+      }
+    throw std::invalid_argument("This is not a bond state");
+  }
+
+
+
+  template <int dim>
+  double
+  Verification<dim>::error() const
+  {
+    // The comparisons of std::max would lose a NaN.
+    return std::isfinite(equilibrium_residual + force_imbalance +
+                         law_violation) ?
+             std::max({equilibrium_residual, force_imbalance, law_violation}) :
+             std::numeric_limits<double>::infinity();
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  Verification<dim>::count(const BondState state) const
+  {
+    return static_cast<unsigned int>(std::count_if(
+      nodes.begin(), nodes.end(), [&](const ContactNodeState &node) {
+        return node.state == state;
+      }));
+  }
+
+
+
+  namespace
+  {
+    /// What the displacement and the force of a node are compared with, see
+    /// Verification::law_violation.
+    struct LawScale
+    {
+      double length;
+      double force;
+    };
+
+
+
+    /// Of each node. @p rounding: of the nodes' forces.
+    template <int dim>
+    std::vector<LawScale>
+    law_scales(const AdhesiveLaw                   &law,
+               const ContactBoundary<dim>          &boundary,
+               const std::vector<ContactNodeState> &nodes,
+               const std::vector<double>           &rounding,
+               const double                         largest_reaction,
+               const double                         largest_displacement)
+    {
+      constexpr double smallest_contact_force = 1e-3;
+      constexpr double digits_above_rounding  = 1e4;
+
+      double largest_force = smallest_contact_force * largest_reaction;
+      for (const ContactNodeState &node : nodes)
+        largest_force = std::max(largest_force, std::abs(node.normal_force));
+
+      const bool has_bonds =
+        law.bond_threshold() > 0. && law.bond_strength() > 0.;
+      std::vector<LawScale> scales;
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        {
+          const double strength =
+            law.bond_strength() * boundary.nodes[i].measure;
+          LawScale scale = {largest_displacement, largest_force};
+          if (has_bonds)
+            scale.force = std::min(scale.force, strength);
+          scale.force =
+            std::max(scale.force, digits_above_rounding * rounding[i]);
+          if (has_bonds)
+            scale.length = std::min(scale.length,
+                                    law.bond_threshold() *
+                                      std::min(1., scale.force / strength));
+          scales.push_back(scale);
+        }
+      return scales;
+    }
+
+
+
+    BondState
+    bond_state(const ContactNodeState &node,
+               const AdhesiveLaw      &law,
+               const LawScale         &scale,
+               const double            largest_displacement,
+               const double            tolerance)
+    {
+      const bool   has_bonds = law.bond_strength() > 0.;
+      const double M         = law.bond_threshold();
+      if (node.u_nu >= -tolerance * (has_bonds ?
+                                       std::min(M, largest_displacement) :
+                                       largest_displacement))
+        return BondState::contact;
+
+      // A small gap under pressure is contact that an iterative method has not
+      // closed yet.
+      constexpr double largest_gap = 1e-3;
+      const double     gap =
+        std::max(tolerance, std::min(largest_gap, 1.01 * node.violation));
+      if (node.normal_force > 0. && node.u_nu >= -gap * scale.length)
+        return BondState::contact;
+      if (!has_bonds)
+        return BondState::free;
+      if (std::abs(node.u_nu + M) <= tolerance * M)
+        return BondState::kink;
+      return node.u_nu < -M ? BondState::broken : BondState::bonded;
+    }
+
+
+
+    /// The distance of a force to the allowed ones.
+    double
+    distance(const double force, const Interval &allowed)
+    {
+      return std::max({0., allowed.lower - force, force - allowed.upper});
+    }
+
+
+
+    Interval
+    unbounded_above_if(const bool contact, const Interval &interval)
+    {
+      return {interval.lower,
+              contact ? std::numeric_limits<double>::infinity() :
+                        interval.upper};
+    }
+
+
+
+    /**
+     * The distances of Verification::law_violation, one for each node. A
+     * larger delta allows more, so that bisection finds the least one. It
+     * bisects the exponent, because a node next to a jump of the law is close
+     * to the graph, however far its force is from what is allowed at its
+     * very displacement.
+     */
+    template <int dim>
+    void
+    compute_violations(const AdhesionIntegral<dim>   &adhesion,
+                       const dealii::Vector<double>  &s,
+                       const std::vector<LawScale>   &scales,
+                       std::vector<ContactNodeState> &nodes)
+    {
+      const unsigned int n = static_cast<unsigned int>(nodes.size());
+
+      // What is needed at fixed displacements is enough. It is exactly zero
+      // for a node on the graph.
+      std::vector<double> lower(n, 0.);
+      std::vector<double> upper(n, 0.);
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          const double force_distance =
+            distance(nodes[i].normal_force, nodes[i].allowed_force);
+          if (force_distance > 0.)
+            upper[i] = force_distance / scales[i].force;
+          if (s(i) > 0.)
+            upper[i] = std::max(upper[i], s(i) / scales[i].length);
+          if (upper[i] > 0.)
+            lower[i] = std::numeric_limits<double>::min();
+        }
+
+      // The exponents of double are 2^11, its mantissa has 2^53 values.
+      std::vector<double> delta(n);
+      std::vector<double> radius(n);
+      for (unsigned int step = 0; step < 11 + 53; ++step)
+        {
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              delta[i]  = std::sqrt(lower[i]) * std::sqrt(upper[i]);
+              radius[i] = delta[i] * scales[i].length;
+            }
+          const std::vector<Interval> intervals =
+            adhesion.force_intervals(s, radius);
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              const Interval allowed =
+                unbounded_above_if(s(i) >= -radius[i], intervals[i]);
+              const bool enough =
+                s(i) <= radius[i] && distance(nodes[i].normal_force, allowed) <=
+                                       delta[i] * scales[i].force;
+              (enough ? upper : lower)[i] = delta[i];
+            }
+        }
+
+      for (unsigned int i = 0; i < n; ++i)
+        nodes[i].violation = upper[i];
+    }
+
+
+
+    /// Largest |A u - f| where the body is free and where it is supported or
+    /// touches the foundation.
+    struct LargestResiduals
+    {
+      double free      = 0.;
+      double supported = 0.;
+    };
+
+
+
+    template <int dim>
+    LargestResiduals
+    largest_residuals(const ElasticProblem<dim>    &problem,
+                      const dealii::Vector<double> &residual)
+    {
+      std::vector<bool> supported(problem.n_dofs(), false);
+      for (const auto &node : problem.contact_boundary().nodes)
+        supported[node.dof] = true;
+
+      LargestResiduals result;
+      for (unsigned int i = 0; i < problem.n_dofs(); ++i)
+        {
+          double &largest = supported[i] || problem.is_constrained(i) ?
+                              result.supported :
+                              result.free;
+          largest         = std::max(largest, std::abs(residual(i)));
+        }
+      return result;
+    }
+
+
+
+    template <int dim>
+    void
+    compute_force_balance(const ElasticProblem<dim>    &problem,
+                          const dealii::Vector<double> &residual,
+                          const double                  load_factor,
+                          Verification<dim>            &result)
+    {
+      const auto               &nodes = problem.contact_boundary().nodes;
+      std::vector<bool>         is_normal(problem.n_dofs(), false);
+      std::vector<unsigned int> node_of_dof(
+        problem.n_dofs(), dealii::numbers::invalid_unsigned_int);
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        {
+          is_normal[nodes[i].dof]   = true;
+          node_of_dof[nodes[i].dof] = i;
+        }
+
+      // What the supports and the foundation exert is the residual at their
+      // degrees of freedom; all of it at a vertex with a contact node comes
+      // from the foundation.
+      dealii::Vector<double>    clamped(problem.n_dofs());
+      dealii::Vector<double>    contact(problem.n_dofs());
+      std::vector<unsigned int> component(problem.n_dofs());
+      std::vector<std::array<dealii::types::global_dof_index, dim>>
+        vertex_dofs_of_node(nodes.size());
+      for (const auto &cell : problem.dof_handler().active_cell_iterators())
+        for (const unsigned int v : cell->vertex_indices())
+          {
+            bool has_contact_node = false;
+            for (unsigned int d = 0; d < dim; ++d)
+              has_contact_node |= is_normal[cell->vertex_dof_index(v, d)];
+
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const auto dof = cell->vertex_dof_index(v, d);
+                component[dof] = d;
+                if (is_normal[dof] || problem.is_constrained(dof))
+                  (has_contact_node ? contact : clamped)(dof) = residual(dof);
+                if (is_normal[dof])
+                  for (unsigned int e = 0; e < dim; ++e)
+                    vertex_dofs_of_node[node_of_dof[dof]][e] =
+                      cell->vertex_dof_index(v, e);
+              }
+          }
+
+      const auto resultant = [&](const dealii::Vector<double> &forces) {
+        const dealii::Vector<double> cartesian =
+          problem.cartesian_forces(forces);
+        dealii::Tensor<1, dim> sum;
+        for (unsigned int i = 0; i < cartesian.size(); ++i)
+          sum[component[i]] += cartesian(i);
+        return sum;
+      };
+
+      result.applied_force    = load_factor * problem.total_load();
+      result.clamped_reaction = resultant(clamped);
+      result.contact_reaction = resultant(contact);
+
+      dealii::Vector<double> tangential = contact;
+      for (const auto &node : nodes)
+        tangential(node.dof) = 0.;
+      result.tangential_reaction = resultant(tangential);
+      tangential                 = problem.cartesian_forces(tangential);
+      for (const auto &dofs : vertex_dofs_of_node)
+        {
+          dealii::Tensor<1, dim> force;
+          for (unsigned int d = 0; d < dim; ++d)
+            force[d] = tangential(dofs[d]);
+          result.tangential_forces.push_back(force);
+        }
+
+      // Resultants can vanish where forces do not.
+      dealii::Vector<double> supports = clamped;
+      supports += contact;
+      const double scale =
+        supports.l1_norm() +
+        std::abs(load_factor) * problem.applied_nodal_forces().l1_norm();
+      const double imbalance = (result.applied_force + result.clamped_reaction +
+                                result.contact_reaction)
+                                 .norm();
+      result.force_imbalance = imbalance > 0. ? imbalance / scale : 0.;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Verification<dim>
+  verify(const ElasticProblem<dim>    &problem,
+         const AdhesionIntegral<dim>  &adhesion,
+         const AdhesiveLaw            &law,
+         const dealii::Vector<double> &u,
+         const double                  load_factor,
+         const double                  tolerance)
+  {
+    if (!std::all_of(u.begin(), u.end(), [](const double x) {
+          return std::isfinite(x);
+        }))
+      throw std::invalid_argument(
+        "The displacement is not finite and cannot be verified: the data of the "
+        "scene are too large or too small for double precision.");
+
+    const ContactBoundary<dim>  &boundary = problem.contact_boundary();
+    const dealii::Vector<double> residual = problem.residual(u, load_factor);
+
+    dealii::Vector<double> s(static_cast<unsigned int>(boundary.nodes.size()));
+    for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
+      s(i) = u(boundary.nodes[i].dof);
+    const std::vector<Interval> forces = adhesion.force_intervals(s, 0.);
+
+    Verification<dim> result;
+    result.penetration = 0.;
+    for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
+      {
+        ContactNodeState node;
+        node.u_nu          = s(i);
+        node.normal_force  = -residual(boundary.nodes[i].dof);
+        node.allowed_force = unbounded_above_if(s(i) >= 0., forces[i]);
+        result.nodes.push_back(node);
+        result.penetration = std::max(result.penetration, s(i));
+      }
+
+    const LargestResiduals       largest = largest_residuals(problem, residual);
+    const dealii::Vector<double> rounding =
+      problem.residual_rounding(u, load_factor);
+    std::vector<double> rounding_at_nodes;
+    for (const auto &node : boundary.nodes)
+      rounding_at_nodes.push_back(rounding(node.dof));
+    const std::vector<LawScale> scales = law_scales(law,
+                                                    boundary,
+                                                    result.nodes,
+                                                    rounding_at_nodes,
+                                                    largest.supported,
+                                                    u.linfty_norm());
+    compute_violations(adhesion, s, scales, result.nodes);
+
+    result.law_violation = 0.;
+    for (unsigned int i = 0; i < result.nodes.size(); ++i)
+      {
+        ContactNodeState &node = result.nodes[i];
+        node.state =
+          bond_state(node, law, scales[i], s.linfty_norm(), tolerance);
+        result.law_violation = std::max(result.law_violation, node.violation);
+      }
+
+    result.equilibrium_residual =
+      largest.free > 0. ?
+        largest.free / std::max(largest.free, largest.supported) :
+        0.;
+    compute_force_balance(problem, residual, load_factor, result);
+    return result;
+  }
+
+
+
+  std::string
+  verification_failure(const double error, const double tolerance)
+  {
+    std::ostringstream text;
+    text.precision(3);
+    text << "verification: the largest of residual, force imbalance and "
+            "contact law violation is "
+         << error << ", required is at most " << tolerance
+         << ". Try a smaller stop tolerance.";
+    return text.str();
+  }
+
+
+
+  template struct Verification<2>;
+  template struct Verification<3>;
+  template Verification<2>
+  verify(const ElasticProblem<2> &,
+         const AdhesionIntegral<2> &,
+         const AdhesiveLaw &,
+         const dealii::Vector<double> &,
+         const double,
+         const double);
+  template Verification<3>
+  verify(const ElasticProblem<3> &,
+         const AdhesionIntegral<3> &,
+         const AdhesiveLaw &,
+         const dealii::Vector<double> &,
+         const double,
+         const double);
+} // namespace Debond

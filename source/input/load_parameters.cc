@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <debond/input/expression.h>
+#include <debond/input/load_parameters.h>
+
+#include <algorithm>
+#include <cctype>
+#include <stdexcept>
+
+namespace Debond
+{
+  namespace
+  {
+    bool
+    is_constant_name(const std::string &name)
+    {
+      return !name.empty() && name != "x" && name != "y" && name != "z" &&
+             std::isdigit(static_cast<unsigned char>(name[0])) == 0 &&
+             std::all_of(name.begin(), name.end(), [](const unsigned char c) {
+               return std::isalnum(c) != 0 || c == '_';
+             });
+    }
+
+
+
+    template <int dim>
+    void
+    add_material_constants(const Material                &material,
+                           std::map<std::string, double> &constants)
+    {
+      constants.emplace("E", material.young_modulus);
+      constants.emplace("nu", material.poisson_ratio);
+      constants.emplace("lambda", material.lame_lambda<dim>());
+      constants.emplace("mu", material.shear_modulus());
+    }
+
+
+
+    /// Reads "a = 1, b = 2". Returns false if the text is not such a list.
+    bool
+    read_constants(const std::string             &text,
+                   std::map<std::string, double> &constants)
+    {
+      for (const std::string &item :
+           dealii::Utilities::split_string_list(text, ','))
+        {
+          const std::size_t equals = item.find('=');
+          if (equals == std::string::npos)
+            return false;
+          const std::string name =
+            dealii::Utilities::trim(item.substr(0, equals));
+          double value;
+          if (!is_constant_name(name) ||
+              !read_number(dealii::Utilities::trim(item.substr(equals + 1)),
+                           value) ||
+              !constants.emplace(name, value).second)
+            return false;
+        }
+      return true;
+    }
+  } // namespace
+
+
+
+  Pattern
+  vector_expression()
+  {
+    return Pattern(
+      "nothing, or an expression for each component, separated by ';'",
+      [](const std::string & /*value*/) { return true; });
+  }
+
+
+
+  void
+  declare_loads(ParameterTable &table)
+  {
+    const Pattern expression = vector_expression();
+    table.declare(
+      "Loads/Body force",
+      "",
+      expression,
+      "The body force f_0 in global coordinates: expressions in x, y (and z in 3D) as muParser reads them; none if empty",
+      "force per volume");
+    for (const std::string &side : box_sides)
+      table.declare("Loads/Traction " + side,
+                    "",
+                    expression,
+                    "The traction f_2 on the side " + side +
+                      ", as the body force",
+                    "force per area");
+    table.declare(
+      "Loads/Constants",
+      "",
+      Pattern(
+        "a list NAME=NUMBER, NAME=NUMBER, ... of names other than x, y and z",
+        [](const std::string &value) {
+          std::map<std::string, double> constants;
+          return read_constants(value, constants);
+        }),
+      "Names that the expressions may use, such as 'q=0.69, L=0.4'. pi is known, and unless they are given here, so are the material's E, nu, lambda and mu (in plane stress the lambda of the plane problem)",
+      "those that the expressions need");
+  }
+
+
+
+  std::string
+  read_expression(ParameterTable                      &table,
+                  const std::string                   &path,
+                  const unsigned int                   dimension,
+                  const std::map<std::string, double> &constants)
+  {
+    const std::string expression = table.get(path);
+    try
+      {
+        if (expression.empty())
+          return "";
+        if (dimension == 2)
+          make_function<2>(expression, constants);
+        else
+          make_function<3>(expression, constants);
+      }
+    catch (const std::invalid_argument &error)
+      {
+        table.reject(path, error.what(), {"Dimension", "Loads/Constants"});
+      }
+    return expression;
+  }
+
+
+
+  LoadParameters
+  read_loads(const unsigned int dimension,
+             const Material    &material,
+             ParameterTable    &table)
+  {
+    LoadParameters loads;
+    read_constants(table.get("Loads/Constants"), loads.constants);
+    if (dimension == 2)
+      add_material_constants<2>(material, loads.constants);
+    else
+      add_material_constants<3>(material, loads.constants);
+
+    const auto read = [&](const std::string &path) {
+      return read_expression(table, path, dimension, loads.constants);
+    };
+    loads.body_force = read("Loads/Body force");
+    for (const std::string &side : box_sides)
+      {
+        const std::string path     = "Loads/Traction " + side;
+        const std::string traction = read(path);
+        if (traction.empty())
+          continue;
+        loads.tractions[side] = traction;
+        if (dimension == 2 && (side == "front" || side == "back"))
+          table.reject(path,
+                       "there is no side " + side + " in 2D",
+                       {"Dimension"});
+      }
+    return loads;
+  }
+} // namespace Debond

@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/number_text.h>
+#include <debond/base/text.h>
+#include <debond/input/parameters.h>
+#include <debond/input/solver_parameters.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace Debond
+{
+  namespace
+  {
+    template <typename Container>
+    std::string
+    to_text(const Container &numbers, const unsigned int count)
+    {
+      std::vector<std::string> words;
+      for (unsigned int i = 0; i < count; ++i)
+        words.push_back(shortest_text(static_cast<double>(numbers[i])));
+      return join(words, ", ");
+    }
+
+
+
+  } // namespace
+
+
+
+  BadInput::BadInput(const std::vector<std::string> &errors)
+    : std::invalid_argument(join(errors, "\n"))
+    , lines(errors)
+  {}
+
+
+
+  void
+  declare_parameters(ParameterTable &table)
+  {
+    const Parameters defaults;
+
+    table.declare("Dimension",
+                  std::to_string(defaults.dimension),
+                  whole_number(2, 3),
+                  "Space dimension",
+                  "none");
+
+    table.declare(
+      "Mesh/Lengths",
+      to_text(defaults.box.lengths, defaults.dimension),
+      one_for_each_dimension(quantity()),
+      "Edge lengths of the box (0, L_1) x (0, L_2) [x (0, L_3)], one for each dimension",
+      "length");
+    table.declare(
+      "Mesh/Cells",
+      to_text(defaults.box.cells, defaults.dimension),
+      one_for_each_dimension(whole_number(1, 1000000)),
+      "Cells along each edge, before each is cut into 4 triangles (24 tetrahedra)",
+      "none");
+    table.declare(
+      "Mesh/Rotation",
+      shortest_text(defaults.box.rotation),
+      number("in [-360, 360]", [](double x) { return std::abs(x) <= 360.; }),
+      "Turns the box about the origin in the x-y plane. The sides keep their names; loads are not turned",
+      "degrees");
+
+    table.declare("Material/Young modulus",
+                  shortest_text(defaults.material.young_modulus),
+                  quantity(),
+                  "E",
+                  "force per area");
+    table.declare(
+      "Material/Poisson ratio",
+      shortest_text(defaults.material.poisson_ratio),
+      any_number(),
+      "nu, in (-1, 1) in plane stress and in (-1, 0.5) in plane strain and 3D",
+      "none");
+    table.declare("Material/Hypothesis",
+                  "plane stress",
+                  one_of({"plane stress", "plane strain"}),
+                  "How the plane body represents a solid one; not used in 3D",
+                  "none");
+
+    const Pattern side_list = list_of(box_sides);
+    table.declare(
+      "Boundary conditions/Clamped boundaries",
+      "left, right",
+      side_list,
+      "Sides that form Gamma_D, where the displacement is zero. Sides: left and right have the smallest and largest x, bottom and top y, back and front z (3D only)",
+      "none");
+    table.declare(
+      "Boundary conditions/Contact boundary",
+      "bottom",
+      side_list,
+      "Sides that form Gamma_C, where the body rests on the foundation",
+      "none");
+
+    declare_loads(table);
+    declare_load_path(table);
+
+    table.declare(
+      "Contact law/Law",
+      defaults.law.name,
+      one_of(law_names()),
+      "The adhesive law: winkler is the paper's, with bonds that pull in proportion to the displacement and break at the threshold; none has no adhesion",
+      "none");
+    table.declare("Contact law/Bond stiffness",
+                  shortest_text(defaults.law.bond_stiffness),
+                  quantity(true),
+                  "a",
+                  "force per volume");
+    table.declare("Contact law/Bond threshold",
+                  shortest_text(defaults.law.bond_threshold),
+                  quantity(),
+                  "M, the displacement at which bonds break",
+                  "length");
+    table.declare(
+      "Contact law/Quadrature",
+      "nodal",
+      Pattern("nodal, midpoint, gauss N with N from 1 to 99, or exact",
+              [](const std::string &value) {
+                try
+                  {
+                    ContactQuadratureParameters::parse(value);
+                    return true;
+                  }
+                catch (const std::invalid_argument &)
+                  {
+                    return false;
+                  }
+              }),
+      "The quadrature of the adhesion energy on each face: at the vertices, at the midpoint, Gauss' rule with N points, at most 99 (in 3D for each direction, at most 7), or exact for the piecewise linear displacement, split at the kinks of the law",
+      "none");
+    table.declare(
+      "Contact law/Tangential displacement",
+      "fixed",
+      one_of({"fixed", "free"}),
+      "On the contact boundary: fixed is the paper's simplification u_tau = 0, free is sigma_tau = 0",
+      "none");
+
+    declare_solver(table);
+
+    table.declare(
+      "Verification/Tolerance",
+      shortest_text(defaults.verification_tolerance),
+      positive_number(),
+      "The program returns 3 if the equilibrium residual, the force imbalance (both relative to the forces) or the violation of the contact law of the result is larger, whatever the solver says",
+      "none");
+
+    table.declare(
+      "Verification/Exact displacement",
+      "",
+      vector_expression(),
+      "If the displacement is known, expressions for it with the names of the loads: the log and summary.json then have the relative errors of u in the norms of L2, H1 and the energy",
+      "length");
+
+    table.declare(
+      "Output/Directory",
+      "output/{scene}",
+      Pattern("a path",
+              [](const std::string &value) { return !value.empty(); }),
+      "Where files are written, relative to the working directory; created if missing. {scene} stands for the name of the scene file without its ending",
+      "none");
+    const auto declare_switch = [&](const std::string &name,
+                                    const std::string &documentation,
+                                    const std::string &value = "true") {
+      table.declare("Output/" + name,
+                    value,
+                    one_of({"true", "false"}),
+                    documentation,
+                    "none");
+    };
+    declare_switch("Body VTU", "Write body.vtu, for ParaView");
+    declare_switch("Contact VTU", "Write contact.vtu, for ParaView");
+    declare_switch("Contact profile",
+                   "Write contact_profile.csv, a row for each contact node");
+    declare_switch("History", "Write history.csv, a row for each iteration");
+    declare_switch(
+      "Displacement",
+      "Write displacement.txt, all degrees of freedom, from which another run can start",
+      "false");
+    declare_switch("Load path plots",
+                   "Draw load_path*.png and .svg with gnuplot; their data and "
+                   "scripts are written without it as well");
+    declare_switch(
+      "Load path contact VTU",
+      "Write load_path_contact.pvd, the contact boundary at each factor, for ParaView");
+    declare_switch(
+      "Load path body VTU",
+      "Write load_path_body.pvd, the body at each factor, for ParaView",
+      "false");
+    declare_switch(
+      "Machine details",
+      "Whether the log has what differs between machines: revision, times, paths, progress, numbers of iterations and figures that only rounding and the stop tolerance decide. Without them logs can be compared");
+  }
+
+
+
+  void
+  read_scene(const std::string &scene, ParameterTable &table)
+  {
+    std::error_code error;
+    if (!std::filesystem::exists(scene, error))
+      throw BadInput({scene + ": there is no such file"});
+    std::ifstream input(scene);
+    if (!input || std::filesystem::is_directory(scene))
+      throw BadInput({scene + ": cannot be read as a scene file"});
+    table.read(input, scene);
+  }
+
+
+
+  namespace
+  {
+    /// Checks that a list has one value for each dimension.
+    void
+    check_length(ParameterTable    &table,
+                 const std::string &path,
+                 const unsigned int dimension)
+    {
+      if (table.get_list(path).size() != dimension)
+        table.reject(path,
+                     "expected " + std::to_string(dimension) +
+                       " values for Dimension = " + std::to_string(dimension),
+                     {"Dimension"});
+    }
+
+
+
+    std::set<std::string>
+    read_sides(ParameterTable    &table,
+               const std::string &path,
+               const unsigned int dimension)
+    {
+      const std::vector<std::string> names = table.get_list(path);
+      for (const std::string &name : names)
+        if (dimension == 2 && (name == "front" || name == "back"))
+          table.reject(path,
+                       "there is no side " + name + " in 2D",
+                       {"Dimension"});
+      return {names.begin(), names.end()};
+    }
+
+
+
+    void
+    check_consistency(ParameterTable &table, const Parameters &parameters)
+    {
+      const unsigned int dimension = parameters.dimension;
+      check_length(table, "Mesh/Lengths", dimension);
+      check_length(table, "Mesh/Cells", dimension);
+
+      try
+        {
+          if (dimension == 2)
+            parameters.material.validate<2>();
+          else
+            parameters.material.validate<3>();
+        }
+      catch (const std::invalid_argument &error)
+        {
+          table.add_error("Material/Poisson ratio",
+                          error.what(),
+                          {"Dimension",
+                           "Material/Young modulus",
+                           "Material/Hypothesis"});
+        }
+
+      for (const std::string &side : parameters.contact_boundaries)
+        if (parameters.clamped_boundaries.count(side) > 0)
+          table.reject("Boundary conditions/Contact boundary",
+                       "the side " + side +
+                         " is clamped already, by Clamped boundaries",
+                       {"Boundary conditions/Clamped boundaries"});
+
+      if (!parameters.exact_displacement.empty() &&
+          !parameters.load_path.factors.empty())
+        table.reject("Verification/Exact displacement",
+                     "belongs to the given loads, not to those of a load path",
+                     {"Load path/Factors"});
+    }
+
+
+
+    std::string
+    output_directory(const ParameterTable &table, const std::string &scene)
+    {
+      std::string       directory   = table.get("Output/Directory");
+      const std::string placeholder = "{scene}";
+      const std::string name = std::filesystem::path(scene).stem().string();
+      for (std::size_t at = directory.find(placeholder);
+           at != std::string::npos;
+           at = directory.find(placeholder, at + name.size()))
+        directory.replace(at, placeholder.size(), name);
+      return directory;
+    }
+  } // namespace
+
+
+
+  Parameters
+  to_parameters(const std::string &scene, ParameterTable &table)
+  {
+    Parameters p;
+    p.scene     = scene;
+    p.dimension = table.get_unsigned("Dimension");
+
+    const std::vector<std::string> lengths = table.get_list("Mesh/Lengths");
+    for (std::size_t d = 0; d < lengths.size(); ++d)
+      read_number(lengths[d], p.box.lengths[d]);
+    const std::vector<std::string> cells = table.get_list("Mesh/Cells");
+    for (std::size_t d = 0; d < cells.size(); ++d)
+      p.box.cells[d] = static_cast<unsigned int>(std::stoul(cells[d]));
+    p.box.rotation = table.get_double("Mesh/Rotation");
+
+    p.material.young_modulus = table.get_double("Material/Young modulus");
+    p.material.poisson_ratio = table.get_double("Material/Poisson ratio");
+    p.material.hypothesis = table.get("Material/Hypothesis") == "plane stress" ?
+                              Material::Hypothesis::plane_stress :
+                              Material::Hypothesis::plane_strain;
+
+    p.clamped_boundaries =
+      read_sides(table, "Boundary conditions/Clamped boundaries", p.dimension);
+    p.contact_boundaries =
+      read_sides(table, "Boundary conditions/Contact boundary", p.dimension);
+    p.tangential_displacement_fixed =
+      table.get("Contact law/Tangential displacement") == "fixed";
+
+    p.loads     = read_loads(p.dimension, p.material, table);
+    p.load_path = read_load_path(table);
+
+    p.law.name           = table.get("Contact law/Law");
+    p.law.bond_stiffness = table.get_double("Contact law/Bond stiffness");
+    p.law.bond_threshold = table.get_double("Contact law/Bond threshold");
+    p.quadrature_name    = table.get("Contact law/Quadrature");
+    p.quadrature = ContactQuadratureParameters::parse(p.quadrature_name);
+
+    read_solver(table, p);
+    p.verification_tolerance = table.get_double("Verification/Tolerance");
+    const std::string exact  = "Verification/Exact displacement";
+    p.exact_displacement =
+      read_expression(table, exact, p.dimension, p.loads.constants);
+
+    p.output.directory = output_directory(table, scene);
+    // The effective scene names the directory itself, so that a second run of
+    // it does not write elsewhere.
+    table.assign("Output/Directory=" + p.output.directory);
+    p.output.body_vtu         = table.get_bool("Output/Body VTU");
+    p.output.contact_vtu      = table.get_bool("Output/Contact VTU");
+    p.output.contact_profile  = table.get_bool("Output/Contact profile");
+    p.output.history          = table.get_bool("Output/History");
+    p.output.displacement     = table.get_bool("Output/Displacement");
+    p.output.path_plots       = table.get_bool("Output/Load path plots");
+    p.output.path_contact_vtu = table.get_bool("Output/Load path contact VTU");
+    p.output.path_body_vtu    = table.get_bool("Output/Load path body VTU");
+    p.output.machine_details  = table.get_bool("Output/Machine details");
+
+    check_consistency(table, p);
+    if (!table.errors().empty())
+      throw BadInput(table.errors());
+
+    std::ostringstream effective;
+    table.print(effective, false);
+    p.effective_scene = effective.str();
+    p.values          = table.values();
+    for (const auto &[path, unused] : p.values)
+      p.locations[path] = table.location(path);
+    return p;
+  }
+} // namespace Debond

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/archive.h>
+#include <debond/linear_algebra/cholesky.h>
+
+#include <Eigen/Dense>
+
+#include <cmath>
+
+namespace Debond
+{
+  void
+  UpdatableCholesky::reserve(const unsigned int capacity)
+  {
+    factor.resize(capacity, capacity);
+    n = 0;
+  }
+
+
+
+  void
+  UpdatableCholesky::clear()
+  {
+    n = 0;
+  }
+
+
+
+  unsigned int
+  UpdatableCholesky::size() const
+  {
+    return n;
+  }
+
+
+
+  double
+  UpdatableCholesky::append(const Eigen::Ref<const Eigen::VectorXd> &column,
+                            const double                             diagonal,
+                            const double                             tolerance)
+  {
+    Eigen::VectorXd row = column;
+    factor.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(row);
+
+    const double independent = diagonal - row.squaredNorm();
+    if (!(independent > tolerance * diagonal))
+      return independent / diagonal;
+
+    factor.row(n).head(n) = row.transpose();
+    factor(n, n)          = std::sqrt(independent);
+    ++n;
+    return independent / diagonal;
+  }
+
+
+
+  void
+  UpdatableCholesky::remove(const unsigned int k)
+  {
+    const unsigned int    trailing = n - k - 1;
+    const Eigen::VectorXd deleted  = factor.col(k).segment(k + 1, trailing);
+
+    // A column at a time, downwards: source and target overlap.
+    for (unsigned int j = 0; j < k; ++j)
+      for (unsigned int i = k; i + 1 < n; ++i)
+        factor(i, j) = factor(i + 1, j);
+    for (unsigned int j = k; j + 1 < n; ++j)
+      for (unsigned int i = j; i + 1 < n; ++i)
+        factor(i, j) = factor(i + 1, j + 1);
+    --n;
+
+    Eigen::VectorXd w = deleted;
+    update_trailing(k, w);
+  }
+
+
+
+  void
+  UpdatableCholesky::update(Eigen::VectorXd w)
+  {
+    update_trailing(0, w);
+  }
+
+
+
+  void
+  UpdatableCholesky::update_trailing(const unsigned int          first,
+                                     Eigen::Ref<Eigen::VectorXd> w)
+  {
+    for (unsigned int k = first; k < n; ++k)
+      {
+        double      &diagonal = factor(k, k);
+        const double entry    = w(k - first);
+        const double r        = std::hypot(diagonal, entry);
+        const double c        = r / diagonal;
+        const double s        = entry / diagonal;
+        diagonal              = r;
+
+        const unsigned int rest   = n - k - 1;
+        auto               column = factor.col(k).segment(k + 1, rest);
+        auto               tail   = w.tail(rest);
+        column                    = (column + s * tail) / c;
+        tail                      = c * tail - s * column;
+      }
+  }
+
+
+
+  double
+  UpdatableCholesky::downdate(const Eigen::Ref<const Eigen::VectorXd> &w,
+                              const double tolerance)
+  {
+    // Golub and Van Loan, Section 6.5.4: rotate (p, rho), with L p = w, onto
+    // the last unit vector; the same rotations take L to the new factor.
+    Eigen::VectorXd p = w;
+    factor.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(p);
+
+    const double independent = 1. - p.squaredNorm();
+    if (!(independent > tolerance))
+      return independent;
+
+    double          rho   = std::sqrt(independent);
+    Eigen::VectorXd carry = Eigen::VectorXd::Zero(n);
+    for (unsigned int k = n; k-- > 0;)
+      {
+        const double r = std::hypot(rho, p(k));
+        const double c = rho / r;
+        const double s = p(k) / r;
+        rho            = r;
+
+        for (unsigned int i = k; i < n; ++i)
+          {
+            const double l = factor(i, k);
+            const double h = carry(i);
+            carry(i)       = c * h + s * l;
+            factor(i, k)   = c * l - s * h;
+          }
+      }
+    return independent;
+  }
+
+
+
+  void
+  UpdatableCholesky::solve_in_place(Eigen::Ref<Eigen::VectorXd> b) const
+  {
+    const auto L = factor.topLeftCorner(n, n).triangularView<Eigen::Lower>();
+    L.solveInPlace(b);
+    L.transpose().solveInPlace(b);
+  }
+
+
+
+  void
+  UpdatableCholesky::save(OutArchive &archive) const
+  {
+    save_matrix(archive,
+                factor.topLeftCorner(n, n).triangularView<Eigen::Lower>());
+  }
+
+
+
+  void
+  UpdatableCholesky::load(InArchive &archive)
+  {
+    const Eigen::MatrixXd loaded = load_matrix(archive);
+    require_fit(loaded.rows() <= factor.rows());
+    n                          = static_cast<unsigned int>(loaded.rows());
+    factor.topLeftCorner(n, n) = loaded;
+  }
+} // namespace Debond

@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/lapack_templates.h>
+
+#include <debond/linear_algebra/condensation.h>
+
+#include <cholmod.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+namespace Debond
+{
+  namespace
+  {
+    /// A CHOLMOD object that frees itself.
+    template <typename Object, int (*release)(Object **, cholmod_common *)>
+    class Owned
+    {
+    public:
+      Owned(Object *object, cholmod_common &common)
+        : object(object)
+        , common(common)
+      {
+        if (object == nullptr)
+          throw std::bad_alloc();
+      }
+
+      ~Owned()
+      {
+        release(&object, &common);
+      }
+
+      Owned(const Owned &) = delete;
+
+      Object *
+      operator->() const
+      {
+        return object;
+      }
+
+      Object *
+      get() const
+      {
+        return object;
+      }
+
+    private:
+      Object         *object;
+      cholmod_common &common;
+    };
+
+    using Dense  = Owned<cholmod_dense, cholmod_free_dense>;
+    using Sparse = Owned<cholmod_sparse, cholmod_free_sparse>;
+  } // namespace
+
+
+
+  /// The factorisation P A P' = L L'.
+  class Condensation::Factor
+  {
+  public:
+    Factor(const dealii::SparseMatrix<double> &A,
+           const std::vector<unsigned int>    &unknowns,
+           const unsigned int                  n_kept)
+      : n(static_cast<int>(unknowns.size()))
+      , n_kept(n_kept)
+    {
+      cholmod_start(&common);
+      common.print = 0;
+      // Errors are thrown below.
+      common.error_handler = nullptr;
+      try
+        {
+          factorize(A, unknowns);
+        }
+      catch (...)
+        {
+          cholmod_free_factor(&L, &common);
+          cholmod_finish(&common);
+          throw;
+        }
+    }
+
+    ~Factor()
+    {
+      cholmod_free_factor(&L, &common);
+      cholmod_finish(&common);
+    }
+
+    Factor(const Factor &) = delete;
+
+    /// Solves with one part of the factorisation, CHOLMOD_P, CHOLMOD_L, ...
+    std::vector<double>
+    solve(const int system, const std::vector<double> &right_side)
+    {
+      Dense b(cholmod_allocate_dense(n, 1, n, CHOLMOD_REAL, &common), common);
+      std::copy(right_side.begin(),
+                right_side.end(),
+                static_cast<double *>(b->x));
+      const Dense   x(cholmod_solve(system, L, b.get(), &common), common);
+      const double *values = static_cast<const double *>(x->x);
+      return std::vector<double>(values, values + n);
+    }
+
+    /// The trailing block L_ss of the factor, lower triangular.
+    dealii::FullMatrix<double>
+    trailing_block() const
+    {
+      dealii::FullMatrix<double> block(n_kept, n_kept);
+      const int                  first = n - n_kept;
+      const int                 *super = static_cast<const int *>(L->super);
+      const int                 *pi    = static_cast<const int *>(L->pi);
+      const int                 *px    = static_cast<const int *>(L->px);
+      const int                 *rows  = static_cast<const int *>(L->s);
+      const double              *x     = static_cast<const double *>(L->x);
+      for (int k = 0; k < static_cast<int>(L->nsuper); ++k)
+        {
+          const int n_rows = pi[k + 1] - pi[k];
+          for (int column = std::max(super[k], first); column < super[k + 1];
+               ++column)
+            {
+              const double *values = x + px[k] + (column - super[k]) * n_rows;
+              for (int r = column - super[k]; r < n_rows; ++r)
+                block(rows[pi[k] + r] - first, column - first) = values[r];
+            }
+        }
+      return block;
+    }
+
+  private:
+    void
+    factorize(const dealii::SparseMatrix<double> &A,
+              const std::vector<unsigned int>    &unknowns)
+    {
+      std::vector<int> position(A.m(), -1);
+      for (int i = 0; i < n; ++i)
+        position[unknowns[i]] = i;
+
+      // The upper triangle by columns, which is the lower one by rows.
+      std::size_t n_entries = 0;
+      for (const unsigned int row : unknowns)
+        for (auto entry = A.begin(row); entry != A.end(row); ++entry)
+          n_entries += position[entry->column()] >= 0 &&
+                       position[entry->column()] <= position[row];
+      const Sparse matrix(cholmod_allocate_sparse(
+                            n, n, n_entries, 0, 1, 1, CHOLMOD_REAL, &common),
+                          common);
+      int         *starts = static_cast<int *>(matrix->p);
+      int         *rows   = static_cast<int *>(matrix->i);
+      double      *values = static_cast<double *>(matrix->x);
+      std::size_t  next   = 0;
+      for (int i = 0; i < n; ++i)
+        {
+          starts[i] = static_cast<int>(next);
+          for (auto entry = A.begin(unknowns[i]); entry != A.end(unknowns[i]);
+               ++entry)
+            if (const int j = position[entry->column()]; j >= 0 && j <= i)
+              {
+                rows[next]     = j;
+                values[next++] = entry->value();
+              }
+        }
+      starts[n] = static_cast<int>(next);
+
+      std::vector<int> group(n, 0), permutation(n);
+      std::fill(group.end() - n_kept, group.end(), 1);
+      if (!cholmod_camd(matrix.get(),
+                        nullptr,
+                        0,
+                        group.data(),
+                        permutation.data(),
+                        &common))
+        throw std::bad_alloc();
+      // CAMD keeps the groups apart but not the order within the last one.
+      for (unsigned int k = 0; k < n_kept; ++k)
+        permutation[n - n_kept + k] = n - n_kept + k;
+
+      common.nmethods           = 1;
+      common.method[0].ordering = CHOLMOD_GIVEN;
+      common.supernodal         = CHOLMOD_SUPERNODAL;
+      common.final_ll           = 1;
+      // A postordering is free to mix the kept unknowns with the others.
+      common.postorder = 0;
+      L                = cholmod_analyze_p(
+        matrix.get(), permutation.data(), nullptr, 0, &common);
+      if (L == nullptr)
+        throw std::bad_alloc();
+      for (unsigned int k = 0; k < n_kept; ++k)
+        if (static_cast<const int *>(L->Perm)[n - n_kept + k] !=
+            static_cast<int>(n - n_kept + k))
+          throw std::runtime_error(
+            "Condensation: the ordering did not keep the contact normals last.");
+
+      cholmod_factorize(matrix.get(), L, &common);
+      if (common.status == CHOLMOD_NOT_POSDEF)
+        throw std::runtime_error(
+          "Condensation: the elasticity matrix is not positive definite (row " +
+          std::to_string(L->minor) + " of " + std::to_string(n) +
+          "). Check the supports and the material.");
+      if (common.status != CHOLMOD_OK)
+        throw std::bad_alloc();
+    }
+
+    int             n;
+    unsigned int    n_kept;
+    cholmod_common  common;
+    cholmod_factor *L = nullptr;
+  };
+
+
+
+  Condensation::Condensation(
+    const dealii::SparseMatrix<double>      &A,
+    const dealii::Vector<double>            &f,
+    const std::vector<unsigned int>         &kept,
+    const std::function<bool(unsigned int)> &is_excluded)
+    : n(f.size())
+  {
+    std::vector<char> is_kept(n, 0);
+    for (const unsigned int i : kept)
+      is_kept[i] = 1;
+    for (unsigned int i = 0; i < n; ++i)
+      if (is_kept[i] == 0 && !is_excluded(i))
+        unknowns.push_back(i);
+    unknowns.insert(unknowns.end(), kept.begin(), kept.end());
+
+    factor = std::make_unique<Factor>(A, unknowns, kept.size());
+
+    y = forward(f);
+
+    const unsigned int n_eliminated =
+      static_cast<unsigned int>(unknowns.size() - kept.size());
+    given_c_0 = 0.;
+    for (unsigned int i = 0; i < n_eliminated; ++i)
+      given_c_0 -= 0.5 * y[i] * y[i];
+
+    L_ss = factor->trailing_block();
+    S.reinit(kept.size(), kept.size());
+    if (!kept.empty())
+      L_ss.mTmult(S, L_ss);
+    given_g = condensed_load(y);
+    g       = given_g;
+  }
+
+
+
+  Condensation::~Condensation() = default;
+
+
+
+  void
+  Condensation::scale_load(const double factor)
+  {
+    load_factor = factor;
+    g.equ(factor, given_g);
+  }
+
+
+
+  const dealii::FullMatrix<double> &
+  Condensation::schur_complement() const
+  {
+    return S;
+  }
+
+
+
+  const dealii::Vector<double> &
+  Condensation::load() const
+  {
+    return g;
+  }
+
+
+
+  double
+  Condensation::energy_at_zero() const
+  {
+    return load_factor * load_factor * given_c_0;
+  }
+
+
+
+  double
+  Condensation::energy_without_contact() const
+  {
+    double sum = 0.;
+    for (const double entry : y)
+      sum += 0.5 * entry * entry;
+    return load_factor * load_factor * sum;
+  }
+
+
+
+  double
+  Condensation::condition_estimate() const
+  {
+    const dealii::types::blas_int n_kept =
+      static_cast<dealii::types::blas_int>(S.m());
+    if (n_kept == 0)
+      return 1.;
+    const double                         norm = S.l1_norm();
+    double                               reciprocal;
+    std::vector<double>                  work(3 * n_kept);
+    std::vector<dealii::types::blas_int> integers(n_kept);
+    dealii::types::blas_int              info;
+    // L_ss by rows is its transpose by columns, the upper factor.
+    dealii::pocon("U",
+                  &n_kept,
+                  &L_ss(0, 0),
+                  &n_kept,
+                  &norm,
+                  &reciprocal,
+                  work.data(),
+                  integers.data(),
+                  &info);
+    AssertThrow(info == 0, dealii::ExcInternalError());
+    return 1. / reciprocal;
+  }
+
+
+
+  std::vector<double>
+  Condensation::forward(const dealii::Vector<double> &f) const
+  {
+    std::vector<double> right_side(unknowns.size());
+    for (unsigned int i = 0; i < unknowns.size(); ++i)
+      right_side[i] = f(unknowns[i]);
+    return factor->solve(CHOLMOD_L, factor->solve(CHOLMOD_P, right_side));
+  }
+
+
+
+  dealii::Vector<double>
+  Condensation::condensed_load(const std::vector<double> &reduced) const
+  {
+    const unsigned int n_kept = static_cast<unsigned int>(L_ss.m());
+    const unsigned int n_eliminated =
+      static_cast<unsigned int>(unknowns.size()) - n_kept;
+    dealii::Vector<double> result(n_kept);
+    for (unsigned int i = 0; i < n_kept; ++i)
+      for (unsigned int j = 0; j <= i; ++j)
+        result(i) += L_ss(i, j) * reduced[n_eliminated + j];
+    return result;
+  }
+
+
+
+  dealii::Vector<double>
+  Condensation::backward(const double                  scale,
+                         const std::vector<double>    &reduced,
+                         const dealii::Vector<double> &s) const
+  {
+    const unsigned int n_eliminated =
+      static_cast<unsigned int>(unknowns.size()) - s.size();
+    std::vector<double> x(unknowns.size());
+    for (unsigned int i = 0; i < n_eliminated; ++i)
+      x[i] = scale * reduced[i];
+    for (unsigned int j = 0; j < s.size(); ++j)
+      {
+        double sum = 0.;
+        for (unsigned int i = j; i < s.size(); ++i)
+          sum += L_ss(i, j) * s(i);
+        x[n_eliminated + j] = sum;
+      }
+    x = factor->solve(CHOLMOD_Pt, factor->solve(CHOLMOD_Lt, x));
+
+    dealii::Vector<double> u(n);
+    for (unsigned int i = 0; i < n_eliminated; ++i)
+      u(unknowns[i]) = x[i];
+    for (unsigned int i = 0; i < s.size(); ++i)
+      u(unknowns[n_eliminated + i]) = s(i);
+    return u;
+  }
+
+
+
+  dealii::Vector<double>
+  Condensation::expand(const dealii::Vector<double> &s) const
+  {
+    return backward(load_factor, y, s);
+  }
+
+
+
+  dealii::Vector<double>
+  Condensation::solve(
+    const dealii::Vector<double> &other_f,
+    const std::function<dealii::Vector<double>(const dealii::Vector<double> &)>
+      &kept_unknowns) const
+  {
+    const std::vector<double> reduced = forward(other_f);
+    return backward(1., reduced, kept_unknowns(condensed_load(reduced)));
+  }
+} // namespace Debond

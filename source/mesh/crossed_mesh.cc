@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/tensor.h>
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/tria.h>
+
+#include <debond/mesh/crossed_mesh.h>
+
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+namespace Debond
+{
+  namespace
+  {
+    template <int dim>
+    void
+    check_coarse_mesh(const dealii::Triangulation<dim> &coarse)
+    {
+      if (coarse.n_active_cells() == 0)
+        throw std::invalid_argument(
+          "Crossed subdivision: the coarse mesh has no cells.");
+
+      for (const auto &cell : coarse.active_cell_iterators())
+        {
+          if (!cell->reference_cell().is_hyper_cube())
+            throw std::invalid_argument(
+              "Crossed subdivision: the coarse mesh has a cell that is no " +
+              std::string(dim == 2 ? "quadrilateral." : "hexahedron."));
+
+          bool hanging_nodes = cell->level() + 1u != coarse.n_levels();
+          for (const auto &face : cell->face_iterators())
+            hanging_nodes = hanging_nodes || face->has_children();
+          if (hanging_nodes)
+            throw std::invalid_argument(
+              "Crossed subdivision: the coarse mesh is locally refined; all "
+              "its active cells must be on one level.");
+        }
+    }
+
+
+
+    /// The cell with the given corners; throws if it is turned inside out.
+    template <int dim>
+    dealii::CellData<dim>
+    simplex(const std::array<unsigned int, dim + 1> &corners,
+            const std::vector<dealii::Point<dim>>   &vertices)
+    {
+      dealii::Tensor<2, dim> edges;
+      for (unsigned int d = 0; d < dim; ++d)
+        edges[d] = vertices[corners[d + 1]] - vertices[corners[0]];
+
+      if (!(dealii::determinant(edges) > 0.))
+        {
+          std::ostringstream message;
+          message << "Crossed subdivision: the coarse cell with centre ("
+                  << vertices[corners[dim]]
+                  << ") is so distorted that its centre does not see all of "
+                     "its faces.";
+          throw std::invalid_argument(message.str());
+        }
+
+      dealii::CellData<dim> cell(dim + 1);
+      cell.vertices.assign(corners.begin(), corners.end());
+      return cell;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  crossed_subdivision(const dealii::Triangulation<dim> &coarse,
+                      dealii::Triangulation<dim>       &crossed)
+  {
+    if (crossed.n_levels() != 0)
+      throw std::invalid_argument(
+        "Crossed subdivision: the triangulation to be filled is not empty.");
+    check_coarse_mesh(coarse);
+
+    std::vector<dealii::Point<dim>> vertices = coarse.get_vertices();
+
+    // Only in 3D do the faces have a centre of their own.
+    std::vector<unsigned int> face_centres(
+      dim == 3 ? coarse.n_raw_faces() : 0,
+      dealii::numbers::invalid_unsigned_int);
+
+    std::vector<dealii::CellData<dim>> cells;
+    cells.reserve(coarse.n_active_cells() * (dim == 2 ? 4 : 24));
+    dealii::SubCellData subcells;
+
+    for (const auto &cell : coarse.active_cell_iterators())
+      {
+        const unsigned int cell_centre =
+          static_cast<unsigned int>(vertices.size());
+        vertices.push_back(cell->center());
+
+        // A simplex on the edge ab of a face, (a, b, cell_centre) in 2D and
+        // (a, b, face_centre, cell_centre) in 3D.
+        const auto add_cell =
+          [&](const std::array<unsigned int, dim + 1> &corners) {
+            cells.push_back(simplex<dim>(corners, vertices));
+            cells.back().material_id = cell->material_id();
+            cells.back().manifold_id = cell->manifold_id();
+          };
+
+        for (const unsigned int f : cell->face_indices())
+          {
+            const auto face = cell->face(f);
+
+            // The corners as the cell numbers them, so that the orientation
+            // of the simplices is known beforehand.
+            const auto corner = [&](const unsigned int v) {
+              return cell->vertex_index(
+                dealii::GeometryInfo<dim>::face_to_cell_vertices(f, v));
+            };
+
+            const auto add_face =
+              [&](auto &faces, const std::vector<unsigned int> &corners) {
+                // Triangulation gives all other faces these ids by itself.
+                if (!face->at_boundary() &&
+                    face->manifold_id() == dealii::numbers::flat_manifold_id)
+                  return;
+                faces.emplace_back(dim);
+                faces.back().vertices    = corners;
+                faces.back().boundary_id = face->boundary_id();
+                faces.back().manifold_id = face->manifold_id();
+              };
+
+            if constexpr (dim == 2)
+              {
+                unsigned int a = corner(0);
+                unsigned int b = corner(1);
+                if (f == 0 || f == 3)
+                  std::swap(a, b);
+                add_cell({{a, b, cell_centre}});
+                add_face(subcells.boundary_lines, {a, b});
+              }
+            else
+              {
+                unsigned int &face_centre = face_centres[face->index()];
+                const bool    is_new =
+                  face_centre == dealii::numbers::invalid_unsigned_int;
+                if (is_new)
+                  {
+                    face_centre = static_cast<unsigned int>(vertices.size());
+                    vertices.push_back(face->center());
+                  }
+
+                // deal.II numbers the corners of a quadrilateral line by line,
+                // here they are needed along its circumference.
+                constexpr std::array<unsigned int, 4> circumference = {
+                  {0, 1, 3, 2}};
+                for (unsigned int e = 0; e < 4; ++e)
+                  {
+                    unsigned int a = corner(circumference[e]);
+                    unsigned int b = corner(circumference[(e + 1) % 4]);
+                    if (f % 2 == 1)
+                      std::swap(a, b);
+                    add_cell({{a, b, face_centre, cell_centre}});
+                    if (is_new)
+                      add_face(subcells.boundary_quads, {a, b, face_centre});
+                  }
+              }
+          }
+      }
+
+    crossed.create_triangulation(vertices, cells, subcells);
+  }
+
+
+
+  template <int dim>
+  void
+  make_box(const BoxParameters &parameters, dealii::Triangulation<dim> &crossed)
+  {
+    dealii::Point<dim>        corner;
+    std::vector<unsigned int> cells(dim);
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        if (!(parameters.lengths[d] > 0.))
+          throw std::invalid_argument(
+            "Box: length " + std::to_string(parameters.lengths[d]) +
+            " in direction " + std::to_string(d) + " must be positive.");
+        if (parameters.cells[d] == 0)
+          throw std::invalid_argument("Box: the number of cells in direction " +
+                                      std::to_string(d) +
+                                      " is 0, it must be at least 1.");
+        corner[d] = parameters.lengths[d];
+        cells[d]  = parameters.cells[d];
+      }
+
+    dealii::Triangulation<dim> coarse;
+    dealii::GridGenerator::subdivided_hyper_rectangle(
+      coarse, cells, dealii::Point<dim>(), corner, /*colorize=*/true);
+    crossed_subdivision(coarse, crossed);
+
+    if (parameters.rotation != 0.)
+      {
+        const double angle = parameters.rotation * dealii::numbers::PI / 180.;
+        if constexpr (dim == 2)
+          dealii::GridTools::rotate(angle, crossed);
+        else
+          dealii::GridTools::rotate(dealii::Tensor<1, 3>({0., 0., 1.}),
+                                    angle,
+                                    crossed);
+      }
+  }
+
+
+
+  template <int dim>
+  const std::map<std::string, dealii::types::boundary_id> &
+  boundary_names()
+  {
+    static const std::map<std::string, dealii::types::boundary_id> names = [] {
+      std::map<std::string, dealii::types::boundary_id> sides = {{"left", 0},
+                                                                 {"right", 1},
+                                                                 {"bottom", 2},
+                                                                 {"top", 3}};
+      if (dim == 3)
+        {
+          sides["back"]  = 4;
+          sides["front"] = 5;
+        }
+      return sides;
+    }();
+    return names;
+  }
+
+
+
+  template <int dim>
+  std::string
+  boundary_name(const dealii::types::boundary_id id)
+  {
+    for (const auto &[name, named_id] : boundary_names<dim>())
+      if (named_id == id)
+        return name;
+    return "boundary " + std::to_string(id);
+  }
+
+
+
+  template void
+  crossed_subdivision(const dealii::Triangulation<2> &,
+                      dealii::Triangulation<2> &);
+  template void
+  crossed_subdivision(const dealii::Triangulation<3> &,
+                      dealii::Triangulation<3> &);
+  template void
+  make_box(const BoxParameters &, dealii::Triangulation<2> &);
+  template void
+  make_box(const BoxParameters &, dealii::Triangulation<3> &);
+  template const std::map<std::string, dealii::types::boundary_id> &
+  boundary_names<2>();
+  template const std::map<std::string, dealii::types::boundary_id> &
+  boundary_names<3>();
+  template std::string
+  boundary_name<2>(const dealii::types::boundary_id);
+  template std::string
+  boundary_name<3>(const dealii::types::boundary_id);
+} // namespace Debond

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/optimization/bundle/bundle_qp.h>
+#include <debond/optimization/bundle/bundle_qp_tolerances.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+// What a point of the bundle QP violates.
+namespace Debond
+{
+  void
+  BundleQP::evaluate()
+  {
+    solution.lambda.setZero(m);
+    for (unsigned int k = 0; k < cuts.size(); ++k)
+      solution.lambda(cuts[k]) = lambda(k);
+    solution.mu = mu;
+
+    solution.d.setZero(mu.size());
+    for (unsigned int k = 0; k < cuts.size(); ++k)
+      solution.d -= lambda(k) / u * bounded.col(cuts[k]);
+    for (unsigned int i = 0; i < mu.size(); ++i)
+      if (bound_active[i])
+        solution.d(i) = b(i);
+
+    solution.slopes.noalias() = bounded.leftCols(m).transpose() * solution.d;
+    for (unsigned int k = 0; k < cuts.size(); ++k)
+      solution.slopes -= lambda(k) / u * gram.col(cuts[k]).head(m);
+    solution.v = (solution.slopes - beta).maxCoeff();
+  }
+
+
+
+  /// At the point of evaluate(), where mu'(d - b) = 0.
+  double
+  BundleQP::dual_objective() const
+  {
+    return solution.lambda.dot(0.5 * solution.slopes - beta) - 0.5 * mu.dot(b);
+  }
+
+
+
+  /// The constraint outside the working set whose violation promises the
+  /// largest increase of the dual function.
+  std::pair<BundleQP::Entering, unsigned int>
+  BundleQP::most_violated() const
+  {
+    double v = 0.;
+    for (unsigned int k = 0; k < cuts.size(); ++k)
+      v += lambda(k) * (solution.slopes(cuts[k]) - beta(cuts[k]));
+
+    double longest_cut = 0.;
+    for (const unsigned int j : cuts)
+      longest_cut = std::max(longest_cut, gram(j, j));
+    longest_cut         = std::sqrt(longest_cut);
+    const double d_norm = solution.d.norm();
+
+    std::pair<Entering, unsigned int> entering(Entering::nothing, 0);
+    double                            largest_gain = 0.;
+    std::vector<char>                 in_set(m, 0);
+    for (const unsigned int j : cuts)
+      in_set[j] = 1;
+    for (unsigned int j = 0; j < m; ++j)
+      if (!in_set[j])
+        {
+          const double excess = solution.slopes(j) - beta(j) - v;
+          const double rounding =
+            QPTolerance::rounding * (std::sqrt(gram(j, j)) * longest_cut / u +
+                                     bounded.col(j).norm() * d_norm + beta(j));
+          if (excess > QPTolerance::cut * std::abs(v) + rounding)
+            {
+              const double gain = excess * excess / (h(j, j) + kappa);
+              if (gain > largest_gain)
+                {
+                  largest_gain = gain;
+                  entering     = {Entering::cut, j};
+                }
+            }
+        }
+
+    const double d_largest =
+      mu.size() > 0 ? solution.d.lpNorm<Eigen::Infinity>() : 0.;
+    for (unsigned int i = 0; i < mu.size(); ++i)
+      if (!bound_active[i])
+        {
+          const double excess   = solution.d(i) - b(i);
+          double       rounding = 0.;
+          for (unsigned int k = 0; k < cuts.size(); ++k)
+            rounding += lambda(k) * std::abs(bounded(i, cuts[k]));
+          rounding *= QPTolerance::rounding / u;
+          if (excess > QPTolerance::bound * d_largest + rounding)
+            {
+              const double gain = excess * excess * u;
+              if (gain > largest_gain)
+                {
+                  largest_gain = gain;
+                  entering     = {Entering::bound, i};
+                }
+            }
+        }
+    return entering;
+  }
+
+
+
+  void
+  BundleQP::compute_residuals()
+  {
+    const Eigen::VectorXd &x = solution.lambda;
+
+    const Eigen::VectorXd cut_force = bounded.leftCols(m) * x;
+    const Eigen::VectorXd cut_force_terms =
+      bounded.leftCols(m).cwiseAbs() * x.cwiseAbs();
+    double largest_force = std::numeric_limits<double>::min();
+    double d_largest     = std::numeric_limits<double>::min();
+    for (unsigned int i = 0; i < mu.size(); ++i)
+      {
+        largest_force =
+          std::max({largest_force, cut_force_terms(i), std::abs(mu(i))});
+        d_largest = std::max(d_largest, std::abs(solution.d(i)));
+      }
+
+    solution.stationarity = std::abs(x.sum() - 1.);
+    solution.feasibility  = std::max(0., -x.minCoeff());
+    for (unsigned int i = 0; i < mu.size(); ++i)
+      {
+        solution.stationarity =
+          std::max(solution.stationarity,
+                   std::abs(u * solution.d(i) + cut_force(i) + mu(i)) /
+                     largest_force);
+        solution.feasibility = std::max(
+          {solution.feasibility,
+           (solution.d(i) - b(i)) / std::max(d_largest, cut_force_terms(i) / u),
+           -mu(i) / largest_force});
+      }
+
+    // sum_j lambda_j (v + beta_j - eta_j'd) + sum_i mu_i (b_i - d_i) is the
+    // duality gap.
+    double gap = 0.;
+    for (unsigned int j = 0; j < m; ++j)
+      gap += x(j) * (solution.v + beta(j) - solution.slopes(j));
+    for (unsigned int i = 0; i < mu.size(); ++i)
+      gap += mu(i) * std::abs(b(i) - solution.d(i));
+    double magnitude = std::abs(solution.v);
+    for (const unsigned int j : cuts)
+      {
+        double slope_terms =
+          bounded.col(j).cwiseAbs().dot(solution.d.cwiseAbs());
+        for (const unsigned int k : cuts)
+          slope_terms += x(k) * std::abs(gram(k, j)) / u;
+        magnitude += x(j) * (beta(j) + slope_terms);
+      }
+    solution.duality_gap = gap;
+    solution.complementarity =
+      std::abs(gap) / std::max(magnitude, std::numeric_limits<double>::min());
+  }
+} // namespace Debond

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/la_parallel_vector.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/base/archive.h>
+#include <debond/optimization/bundle/euclidean_direction.h>
+
+#include <algorithm>
+
+namespace Debond
+{
+  template <typename VectorType>
+  EuclideanDirection<VectorType>::EuclideanDirection(
+    const double       proximal_weight,
+    const UpperBounds &upper_bounds,
+    const unsigned int bundle_size,
+    const VectorType  &model)
+    : u(proximal_weight)
+    , bounds(upper_bounds)
+    , qp(bundle_size, static_cast<unsigned int>(bounds.indices.size()))
+    , subgradients(bundle_size, model)
+  {}
+
+
+
+  template <typename VectorType>
+  bool
+  EuclideanDirection<VectorType>::is_feasible(const VectorType &x) const
+  {
+    for (unsigned int i = 0; i < bounds.indices.size(); ++i)
+      if (!(x(bounds.indices[i]) <= bounds.upper[i]))
+        return false;
+    return true;
+  }
+
+
+
+  template <typename VectorType>
+  unsigned int
+  EuclideanDirection<VectorType>::size() const
+  {
+    return qp.n_cuts();
+  }
+
+
+
+  template <typename VectorType>
+  void
+  EuclideanDirection<VectorType>::clear()
+  {
+    qp.clear();
+  }
+
+
+
+  template <typename VectorType>
+  void
+  EuclideanDirection<VectorType>::add(const VectorType &eta)
+  {
+    const unsigned int j   = size();
+    VectorType        &cut = subgradients[j];
+    cut                    = eta;
+
+    Eigen::VectorXd bounded(bounds.indices.size());
+    for (unsigned int i = 0; i < bounds.indices.size(); ++i)
+      {
+        bounded(i)             = cut(bounds.indices[i]);
+        cut(bounds.indices[i]) = 0.;
+      }
+    Eigen::VectorXd products(j + 1);
+    for (unsigned int k = 0; k <= j; ++k)
+      products(k) = subgradients[k] * cut;
+    qp.add_cut(products, bounded);
+  }
+
+
+
+  template <typename VectorType>
+  const typename EuclideanDirection<VectorType>::Solution &
+  EuclideanDirection<VectorType>::solve(const VectorType      &x,
+                                        const Eigen::VectorXd &beta)
+  {
+    Eigen::VectorXd b(bounds.indices.size());
+    for (unsigned int i = 0; i < bounds.indices.size(); ++i)
+      b(i) = bounds.upper[i] - x(bounds.indices[i]);
+
+    const BundleQP::Solution &qp_solution = qp.solve(beta, b, u);
+    lambda                                = qp_solution.lambda;
+    d_bounded                             = qp_solution.d;
+
+    solution.v           = qp_solution.v;
+    solution.duality_gap = qp_solution.duality_gap;
+    solution.residual    = qp_solution.residual();
+    solution.steps       = qp_solution.steps;
+    solution.status      = to_string(qp_solution.status);
+    solution.slopes      = qp_solution.slopes;
+    return solution;
+  }
+
+
+
+  template <typename VectorType>
+  void
+  EuclideanDirection<VectorType>::direction(VectorType &d) const
+  {
+    d = 0.;
+    // Two at a time, to read and write d half as often.
+    std::vector<unsigned int> active;
+    for (unsigned int j = 0; j < size(); ++j)
+      if (lambda(j) > 0.)
+        active.push_back(j);
+    const auto factor = [&](const unsigned int k) {
+      return -lambda(active[k]) / u;
+    };
+    for (unsigned int k = 0; k + 1 < active.size(); k += 2)
+      d.add(factor(k),
+            subgradients[active[k]],
+            factor(k + 1),
+            subgradients[active[k + 1]]);
+    if (active.size() % 2 == 1)
+      d.add(factor(static_cast<unsigned int>(active.size()) - 1),
+            subgradients[active.back()]);
+    for (unsigned int i = 0; i < bounds.indices.size(); ++i)
+      d(bounds.indices[i]) = d_bounded(i);
+  }
+
+
+
+  template <typename VectorType>
+  double
+  EuclideanDirection<VectorType>::length(const VectorType &d) const
+  {
+    return d.l2_norm();
+  }
+
+
+
+  template <typename VectorType>
+  void
+  EuclideanDirection<VectorType>::project(VectorType &x) const
+  {
+    for (unsigned int i = 0; i < bounds.indices.size(); ++i)
+      x(bounds.indices[i]) =
+        std::min<double>(x(bounds.indices[i]), bounds.upper[i]);
+  }
+
+
+
+  template <typename VectorType>
+  void
+  EuclideanDirection<VectorType>::save(OutArchive &archive) const
+  {
+    qp.save(archive);
+    for (unsigned int j = 0; j < size(); ++j)
+      save_values(archive, subgradients[j]);
+  }
+
+
+
+  template <typename VectorType>
+  void
+  EuclideanDirection<VectorType>::load(InArchive &archive)
+  {
+    qp.load(archive);
+    for (unsigned int j = 0; j < size(); ++j)
+      load_values(archive, subgradients[j]);
+  }
+
+
+
+  template class EuclideanDirection<dealii::Vector<double>>;
+  template class EuclideanDirection<
+    dealii::LinearAlgebra::distributed::Vector<double>>;
+} // namespace Debond

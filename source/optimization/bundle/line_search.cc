@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/la_parallel_vector.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/optimization/bundle/line_search.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace Debond
+{
+  std::string
+  to_string(const StepKind kind)
+  {
+    switch (kind)
+      {
+        case StepKind::long_step:
+          return "long";
+        case StepKind::short_step:
+          return "short";
+        case StepKind::null_step:
+          return "null";
+      }
+    return "unknown";
+  }
+
+
+
+  namespace
+  {
+    /// Smaller steps than this count as no step.
+    constexpr double smallest_step = 1e-12;
+
+    /// Bisections for t_R.
+    constexpr unsigned int maximum_bisections = 60;
+
+
+
+    /// t_L and J(x_k + t_L d_k) - J(x_k) by the given rule; zero if there is
+    /// no descent.
+    template <typename VectorType>
+    void
+    find_descent(const LineRestriction<VectorType> &line,
+                 const double                       v,
+                 const LineSearchParameters        &parameters,
+                 LineSearchResult                  &result)
+    {
+      const auto descends = [&](const double t, const double change) {
+        return change <= parameters.m_L * t * v;
+      };
+
+      double t = 1., change = line.change(t), change_at_twice_t = change;
+      while (!descends(t, change))
+        {
+          t *= 0.5;
+          if (t < smallest_step)
+            return;
+          change_at_twice_t = change;
+          change            = line.change(t);
+        }
+
+      if (parameters.rule == DescentRule::minimum)
+        for (double half = line.change(0.5 * t);
+             half < change && descends(0.5 * t, half) && t > smallest_step;
+             half = line.change(0.5 * t))
+          {
+            t *= 0.5;
+            change_at_twice_t = change;
+            change            = half;
+          }
+      result.t_L    = t;
+      result.change = change;
+      if (t == 1.)
+        return;
+
+      if (parameters.rule == DescentRule::minimum)
+        {
+          // The parabola through t = 0, t and 2 t.
+          const double curvature = (change_at_twice_t - 2. * change) / (t * t);
+          const double slope     = (4. * change - change_at_twice_t) / (2. * t);
+          if (curvature > 0. && slope < 0.)
+            {
+              const double t_minimum = std::min(1., -slope / curvature);
+              const double minimum   = line.change(t_minimum);
+              if (minimum < change && descends(t_minimum, minimum))
+                {
+                  result.t_L    = t_minimum;
+                  result.change = minimum;
+                }
+            }
+        }
+      else if (parameters.rule == DescentRule::largest)
+        {
+          double upper = 2. * t;
+          for (unsigned int i = 0; i < maximum_bisections; ++i)
+            {
+              const double middle           = 0.5 * (result.t_L + upper);
+              const double change_at_middle = line.change(middle);
+              if (descends(middle, change_at_middle))
+                {
+                  result.t_L    = middle;
+                  result.change = change_at_middle;
+                }
+              else
+                upper = middle;
+            }
+        }
+    }
+  } // namespace
+
+
+
+  DescentRule
+  parse_descent_rule(const std::string &name)
+  {
+    if (name == "largest")
+      return DescentRule::largest;
+    if (name == "halving")
+      return DescentRule::halving;
+    if (name == "minimum")
+      return DescentRule::minimum;
+    throw std::invalid_argument("Line search '" + name +
+                                "' must be largest, halving or minimum.");
+  }
+
+
+
+  template <typename VectorType>
+  LineSearchResult
+  line_search(const LineRestriction<VectorType> &line,
+              const VectorType                  &d,
+              const double                       d_norm,
+              const double                       v,
+              const LineSearchParameters        &parameters,
+              VectorType                        &eta)
+  {
+    LineSearchResult result;
+    find_descent(line, v, parameters, result);
+
+    const auto evaluate = [&](const double t_R, const double change) {
+      result.t_R = t_R;
+      line.subgradient(t_R, eta);
+      result.slope          = eta * d;
+      const double t_beyond = t_R - result.t_L;
+      const double distance = t_beyond * d_norm;
+      result.alpha          = result.change - change + t_beyond * result.slope;
+      result.beta           = std::max(std::abs(result.alpha),
+                             parameters.gamma * distance * distance);
+    };
+
+    if (result.t_L >= parameters.t_bar)
+      {
+        result.kind = StepKind::long_step;
+        evaluate(result.t_L, result.change);
+        result.success = true;
+        return result;
+      }
+
+    result.kind  = result.t_L > 0. ? StepKind::short_step : StepKind::null_step;
+    double lower = result.t_L;
+    double upper = result.t_L > 0. ? 2. * result.t_L : 1.;
+    for (unsigned int i = 0; i < maximum_bisections; ++i)
+      {
+        const double middle = 0.5 * (lower + upper);
+        evaluate(middle, line.change(middle));
+        if (-result.beta + result.slope >= parameters.m_R * v)
+          {
+            result.success = true;
+            return result;
+          }
+        // Steep enough but too far away, or not yet there?
+        if (result.slope >= parameters.m_R * v)
+          upper = middle;
+        else
+          lower = middle;
+      }
+
+    // After a descent the subgradient at the new point is good enough to go
+    // on; without one, nothing would change.
+    if (result.t_L > 0.)
+      {
+        evaluate(result.t_L, result.change);
+        result.success = true;
+      }
+    return result;
+  }
+
+
+
+  template LineSearchResult
+  line_search(const LineRestriction<dealii::Vector<double>> &,
+              const dealii::Vector<double> &,
+              const double,
+              const double,
+              const LineSearchParameters &,
+              dealii::Vector<double> &);
+  template LineSearchResult
+  line_search(
+    const LineRestriction<dealii::LinearAlgebra::distributed::Vector<double>> &,
+    const dealii::LinearAlgebra::distributed::Vector<double> &,
+    const double,
+    const double,
+    const LineSearchParameters &,
+    dealii::LinearAlgebra::distributed::Vector<double> &);
+} // namespace Debond

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/full_matrix.h>
+
+#include <debond/base/archive.h>
+#include <debond/linear_algebra/eigen_view.h>
+#include <debond/optimization/bundle/bundle_qp.h>
+#include <debond/optimization/bundle/metric_direction.h>
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Debond
+{
+  MetricDirection::MetricDirection(const dealii::FullMatrix<double> &metric,
+                                   const PiecewiseQuadratic         &nonsmooth,
+                                   const unsigned int bundle_size)
+    : S(metric)
+    , phi(nonsmooth)
+    , eta(S.m(), bundle_size)
+    , active(S.m(), 0)
+  {}
+
+
+
+  bool
+  MetricDirection::is_feasible(const dealii::Vector<double> &x) const
+  {
+    return std::all_of(x.begin(), x.end(), [](const double s) {
+      return s <= 0.;
+    });
+  }
+
+
+
+  unsigned int
+  MetricDirection::size() const
+  {
+    return m;
+  }
+
+
+
+  void
+  MetricDirection::clear()
+  {
+    m = 0;
+  }
+
+
+
+  void
+  MetricDirection::add(const dealii::Vector<double> &new_eta)
+  {
+    eta.col(m++) = eigen_view(new_eta);
+  }
+
+
+
+  const MetricDirection::Solution &
+  MetricDirection::solve(const dealii::Vector<double> &x,
+                         const Eigen::VectorXd        &beta)
+  {
+    const unsigned int n = x.size();
+    Eigen::MatrixXd    M = eigen_view(S);
+    M += phi.curvature(x);
+    const Eigen::VectorXd b = -eigen_view(x);
+    const auto            G = eta.leftCols(m);
+
+    ActiveSetRule      rule;
+    Eigen::VectorXd    mu;
+    Eigen::VectorXd    force_terms; // of the stationarity condition
+    BundleQP::Solution inner;
+    solution.steps = 0;
+    bool settled   = false;
+    while (!settled && solution.steps < maximum_active_set_steps)
+      {
+        ++solution.steps;
+        std::vector<int> free;
+        d = b;
+        for (unsigned int i = 0; i < n; ++i)
+          if (active[i] == 0)
+            {
+              free.push_back(i);
+              d(i) = 0.;
+            }
+
+        // d_free = -M_ff^{-1} (G_f lambda + M_fb b_b).
+        Eigen::MatrixXd                         M_free = M(free, free);
+        Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(M_free);
+        const Eigen::MatrixXd                   G_free = G(free, Eigen::all);
+        const Eigen::MatrixXd                   X      = factor.solve(G_free);
+        const Eigen::VectorXd                   M_d    = M * d;
+        const Eigen::VectorXd x_b = factor.solve(M_d(free).eval());
+
+        const Eigen::MatrixXd H = G_free.transpose() * X;
+        BundleQP              qp(m, 0);
+        for (unsigned int j = 0; j < m; ++j)
+          qp.add_cut(H.col(j).head(j + 1), Eigen::VectorXd());
+        const Eigen::VectorXd shifted_beta =
+          beta + G_free.transpose() * x_b - G.transpose() * d;
+        inner = qp.solve(shifted_beta, Eigen::VectorXd(), 1.);
+
+        const Eigen::VectorXd d_free = -(X * inner.lambda + x_b);
+        for (unsigned int k = 0; k < free.size(); ++k)
+          d(free[k]) = d_free(k);
+
+        mu = -(G * inner.lambda + M * d);
+        force_terms =
+          G.cwiseAbs() * inner.lambda.cwiseAbs() + M.cwiseAbs() * d.cwiseAbs();
+        for (const int i : free)
+          mu(i) = 0.;
+        const double largest_force = n > 0 ? force_terms.maxCoeff() : 0.;
+        settled                    = rule.update(d - b,
+                              mu,
+                              active_set_noise *
+                                (n > 0 ? d.lpNorm<Eigen::Infinity>() : 0.),
+                              active_set_noise * largest_force,
+                              active) == 0;
+      }
+
+    solution.status = settled ? to_string(inner.status) : "iteration limit";
+    solution.slopes = G.transpose() * d;
+    solution.v      = (solution.slopes - beta).maxCoeff();
+    solution.duality_gap = inner.lambda.dot(
+      (solution.v + beta.array() - solution.slopes.array()).matrix());
+
+    // From the original data.
+    const Eigen::VectorXd stationarity = G * inner.lambda + M * d + mu;
+    const auto            relative = [](const double value, const double of) {
+      return value / std::max(of, std::numeric_limits<double>::min());
+    };
+    double residual = settled ? 0. : 1.;
+    for (unsigned int i = 0; i < n; ++i)
+      residual =
+        std::max({residual,
+                  relative(std::abs(stationarity(i)), force_terms.maxCoeff()),
+                  relative(d(i) - b(i), d.lpNorm<Eigen::Infinity>()),
+                  relative(-mu(i), force_terms.maxCoeff())});
+    const double slope_terms =
+      inner.lambda.dot(beta + G.cwiseAbs().transpose() * d.cwiseAbs());
+    solution.residual =
+      std::max(residual, relative(std::abs(solution.duality_gap), slope_terms));
+    return solution;
+  }
+
+
+
+  void
+  MetricDirection::direction(dealii::Vector<double> &direction) const
+  {
+    std::copy(d.begin(), d.end(), direction.begin());
+  }
+
+
+
+  double
+  MetricDirection::length(const dealii::Vector<double> &direction) const
+  {
+    return direction.size() > 0 ? std::sqrt(S.matrix_norm_square(direction)) :
+                                  0.;
+  }
+
+
+
+  void
+  MetricDirection::project(dealii::Vector<double> &x) const
+  {
+    for (double &s : x)
+      s = std::min(s, 0.);
+  }
+
+
+
+  void
+  MetricDirection::save(OutArchive &archive) const
+  {
+    save_matrix(archive, eta.leftCols(m));
+    archive << active;
+  }
+
+
+
+  void
+  MetricDirection::load(InArchive &archive)
+  {
+    const Eigen::MatrixXd subgradients = load_matrix(archive);
+    ActiveSet             bounds;
+    archive >> bounds;
+    require_fit(subgradients.rows() == eta.rows() &&
+                subgradients.cols() <= eta.cols() &&
+                bounds.size() == active.size());
+    m               = static_cast<unsigned int>(subgradients.cols());
+    eta.leftCols(m) = subgradients;
+    active          = bounds;
+  }
+} // namespace Debond

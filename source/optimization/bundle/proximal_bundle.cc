@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+#include <deal.II/lac/la_parallel_vector.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/base/archive.h>
+#include <debond/optimization/bundle/bundle.h>
+#include <debond/optimization/bundle/euclidean_direction.h>
+#include <debond/optimization/bundle/proximal_bundle.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Relative residual of the direction problem above which its solution is
+    /// not used.
+    constexpr double acceptable_qp_residual = 1e-9;
+
+    /// Whether inner products with a subgradient, which the QP is made of, are
+    /// finite numbers.
+    template <typename VectorType>
+    bool
+    is_usable(const VectorType &eta)
+    {
+      constexpr double largest = 1e140;
+      return eta.linfty_norm() < largest && std::isfinite(eta * eta);
+    }
+
+
+
+    [[noreturn]] void
+    out_of_range(const std::string &name,
+                 const double       value,
+                 const std::string &range)
+    {
+      std::ostringstream text;
+      text << name << " = " << value << " must be " << range << '.';
+      throw std::invalid_argument(text.str());
+    }
+
+
+
+    std::string
+    failure_message(const SolverStatus              status,
+                    const double                    v,
+                    const double                    qp_residual,
+                    const std::string              &qp_status,
+                    const ProximalBundleParameters &parameters)
+    {
+      std::ostringstream text;
+      text.precision(3);
+      switch (status)
+        {
+          case SolverStatus::iteration_limit:
+            text << "proximal bundle method: predicted descent " << v
+                 << " after " << parameters.maximum_iterations
+                 << " iterations, required is at least "
+                 << -parameters.epsilon_s
+                 << ". Try another proximal weight, more iterations, a larger "
+                    "bundle or a larger stop tolerance.";
+            break;
+          case SolverStatus::line_search:
+            text << "line search: no subgradient with slope above m_R v_k = "
+                 << parameters.m_R * v << " was found, predicted descent is "
+                 << v << ", required is at least " << -parameters.epsilon_s
+                 << ". Try a larger proximal weight or stop tolerance.";
+            break;
+          case SolverStatus::quadratic_program:
+            text
+              << "bundle QP, which ended as '" << qp_status
+              << "': relative residual " << qp_residual
+              << ", required is at most " << acceptable_qp_residual
+              << ". Try a larger proximal weight (it has units: energy per squared "
+                 "length) or a smaller bundle size.";
+            break;
+          case SolverStatus::not_finite:
+            text << "objective: the functional or its subgradient is not a "
+                    "finite number. Check the data of the scene.";
+            break;
+          case SolverStatus::interrupted:
+            text << "proximal bundle method: predicted descent " << v
+                 << ", required is at least " << -parameters.epsilon_s << '.';
+            break;
+          case SolverStatus::no_descent: // the line search sees to it
+          case SolverStatus::success:
+            break;
+        }
+      return text.str();
+    }
+  } // namespace
+
+
+
+  // Not in an unnamed namespace, where the archive would not find them.
+  template <typename Archive>
+  void
+  serialize(Archive &archive, BundleIteration &iteration, const unsigned int)
+  {
+    archive &iteration.iteration;
+    archive &iteration.functional;
+    archive &iteration.v;
+    archive &iteration.t_L;
+    archive &iteration.t_R;
+    archive &iteration.bundle_size;
+    archive &iteration.qp_steps;
+    archive &iteration.kind;
+  }
+
+
+
+  /// What a state has of a result: the rest is found at the end of a run.
+  template <typename Archive>
+  void
+  serialize(Archive &archive, ProximalBundleResult &result, const unsigned int)
+  {
+    archive &result.functional;
+    archive &result.long_steps;
+    archive &result.short_steps;
+    archive &result.null_steps;
+    archive &result.largest_qp_residual;
+    archive &result.history;
+  }
+
+
+
+  void
+  ProximalBundleParameters::validate() const
+  {
+    if (!(u > 0.) || !std::isfinite(u))
+      out_of_range("Proximal weight u_k", u, "positive");
+    if (!(gamma >= 0.) || !std::isfinite(gamma))
+      out_of_range("Distance weight gamma", gamma, "nonnegative");
+    if (!(t_bar > 0. && t_bar <= 1.))
+      out_of_range("Long step threshold t_bar", t_bar, "in (0, 1]");
+    if (!(m_L > 0. && m_L < 0.5))
+      out_of_range("Descent fraction m_L", m_L, "in (0, 1/2)");
+    if (!(m_R > m_L && m_R < 1.))
+      out_of_range("Slope fraction m_R", m_R, "in (m_L, 1)");
+    if (!(epsilon_s > 0.) || !std::isfinite(epsilon_s))
+      out_of_range("Stop tolerance epsilon_s", epsilon_s, "positive");
+    if (bundle_size < 2)
+      out_of_range("Bundle size", bundle_size, "at least 2");
+    if (maximum_iterations < 1)
+      out_of_range("Maximum iterations", maximum_iterations, "at least 1");
+  }
+
+
+
+  template <typename VectorType>
+  ProximalBundle<VectorType>::ProximalBundle(
+    const ProximalBundleParameters &parameters)
+    : parameters(parameters)
+  {
+    parameters.validate();
+  }
+
+
+
+  template <typename VectorType>
+  ProximalBundleResult
+  ProximalBundle<VectorType>::minimize(const Objective<VectorType> &objective,
+                                       const UpperBounds           &bounds,
+                                       VectorType                  &x,
+                                       const Monitor               &monitor,
+                                       Checkpoints *checkpoints) const
+  {
+    EuclideanDirection<VectorType> direction_problem(parameters.u,
+                                                     bounds,
+                                                     parameters.bundle_size,
+                                                     x);
+    return minimize(objective, direction_problem, x, monitor, checkpoints);
+  }
+
+
+
+  template <typename VectorType>
+  ProximalBundleResult
+  ProximalBundle<VectorType>::minimize(
+    const Objective<VectorType>  &objective,
+    DirectionProblem<VectorType> &direction_problem,
+    VectorType                   &x,
+    const Monitor                &monitor,
+    Checkpoints                  *checkpoints) const
+  {
+    if (!direction_problem.is_feasible(x))
+      throw std::invalid_argument(
+        "The start of the bundle method must satisfy the bounds.");
+
+    ProximalBundleResult       result;
+    const LineSearchParameters line_search_parameters{parameters.line_search,
+                                                      parameters.m_L,
+                                                      parameters.m_R,
+                                                      parameters.t_bar,
+                                                      parameters.gamma};
+
+    dealii::Timer qp_timer, objective_timer, algebra_timer;
+    qp_timer.stop();
+    objective_timer.stop();
+    algebra_timer.stop();
+
+    VectorType eta(x), d(x);
+
+    Bundle<VectorType> bundle(direction_problem, parameters.bundle_size);
+    const auto         restart = [&]() {
+      bundle.clear();
+      result.functional = objective.value(x);
+      objective.subgradient(x, eta);
+      if (is_usable(eta))
+        bundle.add(eta, 0., 0.);
+    };
+    const auto save = [&](OutArchive &archive) {
+      save_values(archive, x);
+      save_values(archive, eta);
+      bundle.save(archive);
+      archive << result;
+    };
+    if (InArchive *const state =
+          checkpoints != nullptr ? checkpoints->resume_from() : nullptr;
+        state != nullptr)
+      {
+        load_values(*state, x);
+        load_values(*state, eta);
+        bundle.load(*state);
+        *state >> result;
+      }
+    else
+      restart();
+
+    const typename Bundle<VectorType>::Solution *direction = nullptr;
+    while (true)
+      {
+        if (!std::isfinite(result.functional) || !is_usable(eta))
+          {
+            result.status = SolverStatus::not_finite;
+            break;
+          }
+        qp_timer.start();
+        direction = &bundle.solve(x, parameters.gamma);
+        qp_timer.stop();
+        result.v = direction->v;
+        if (!std::isfinite(result.v) || !direction->slopes.allFinite())
+          {
+            result.status = SolverStatus::not_finite;
+            break;
+          }
+
+        // d = 0 is feasible, so a positive v is a failure of the QP.
+        if (result.v - direction->duality_gap >= -parameters.epsilon_s &&
+            result.v <= parameters.epsilon_s)
+          {
+            result.status = SolverStatus::success;
+            break;
+          }
+        if (result.v > parameters.epsilon_s ||
+            !(direction->residual <= acceptable_qp_residual))
+          {
+            // Old subgradients may be to blame: once more without them.
+            if (bundle.size() > 1)
+              {
+                restart();
+                continue;
+              }
+            result.status = SolverStatus::quadratic_program;
+            break;
+          }
+        result.largest_qp_residual =
+          std::max(result.largest_qp_residual, direction->residual);
+        if (result.iterations() >= parameters.maximum_iterations)
+          {
+            result.status = SolverStatus::iteration_limit;
+            break;
+          }
+
+        algebra_timer.start();
+        direction_problem.direction(d);
+        const double d_length = direction_problem.length(d);
+        algebra_timer.stop();
+
+        objective_timer.start();
+        const auto             line = objective.along(x, d);
+        const LineSearchResult step = line_search(
+          *line, d, d_length, result.v, line_search_parameters, eta);
+        objective_timer.stop();
+        if (!step.success)
+          {
+            // Old subgradients may be to blame: once more without them.
+            if (bundle.size() > 1)
+              {
+                restart();
+                continue;
+              }
+            result.status = SolverStatus::line_search;
+            break;
+          }
+
+        BundleIteration iteration;
+        iteration.iteration   = result.iterations() + 1;
+        iteration.v           = result.v;
+        iteration.t_L         = step.t_L;
+        iteration.t_R         = step.t_R;
+        iteration.bundle_size = bundle.size();
+        iteration.qp_steps    = direction->steps;
+        iteration.kind        = step.kind;
+
+        algebra_timer.start();
+        if (step.t_L > 0.)
+          {
+            x.add(step.t_L, d);
+            direction_problem.project(x);
+            result.functional += step.change;
+            bundle.move(*direction, step, d_length);
+          }
+
+        if (bundle.full())
+          restart();
+        else if (is_usable(eta))
+          bundle.add(eta, step.alpha, (step.t_R - step.t_L) * d_length);
+        algebra_timer.stop();
+
+        switch (step.kind)
+          {
+            case StepKind::long_step:
+              ++result.long_steps;
+              break;
+            case StepKind::short_step:
+              ++result.short_steps;
+              break;
+            case StepKind::null_step:
+              ++result.null_steps;
+              break;
+          }
+        iteration.functional = result.functional;
+        result.history.push_back(iteration);
+        const bool go_on = !monitor || monitor(iteration);
+        if (checkpoints != nullptr)
+          checkpoints->offer(save,
+                             result.iterations(),
+                             !go_on || result.iterations() >=
+                                         parameters.maximum_iterations);
+        if (!go_on)
+          {
+            result.status = SolverStatus::interrupted;
+            break;
+          }
+      }
+
+    result.functional = objective.value(x);
+    if (result.status != SolverStatus::success)
+      result.message =
+        failure_message(result.status,
+                        result.v,
+                        direction != nullptr ? direction->residual : 0.,
+                        direction != nullptr ? direction->status :
+                                               "not started",
+                        parameters);
+    result.qp_seconds             = qp_timer.wall_time();
+    result.objective_seconds      = objective_timer.wall_time();
+    result.linear_algebra_seconds = algebra_timer.wall_time();
+    return result;
+  }
+
+
+
+  template class ProximalBundle<dealii::Vector<double>>;
+  template class ProximalBundle<
+    dealii::LinearAlgebra::distributed::Vector<double>>;
+} // namespace Debond

@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+
+#include <debond/linear_algebra/eigen_view.h>
+#include <debond/optimization/global/branch_and_bound.h>
+#include <debond/optimization/global/node_bound.h>
+#include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/optimization/majorise/majorise_minimise.h>
+
+#include <algorithm>
+#include <atomic>
+#include <future>
+#include <set>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Nodes that are bounded against the same best value, whatever the number
+    /// of threads, so that this number changes no result.
+    constexpr unsigned int batch_size = 8;
+
+    /// A node's vectors.
+    constexpr unsigned int vectors_per_node = 4;
+
+
+
+    /// A node, and what came out of it.
+    struct Job
+    {
+      ProofNode  node;
+      NodeResult result;
+
+      /// From the node's relaxation by majorise-minimise, unless its state had
+      /// been tried.
+      std::vector<bool>      broken;
+      dealii::Vector<double> s;
+      double                 value = std::numeric_limits<double>::infinity();
+    };
+
+
+
+    class ProofTree
+    {
+    public:
+      ProofTree(const BranchAndBoundParameters   &parameters,
+                const dealii::FullMatrix<double> &S,
+                const dealii::Vector<double>     &g,
+                const SeparableBonds             &bonds,
+                const dealii::Vector<double>     &start);
+
+      BranchAndBoundResult
+      run(const BranchAndBound::Monitor &monitor);
+
+    private:
+      const BranchAndBoundParameters   &parameters;
+      const dealii::FullMatrix<double> &S;
+      const dealii::Vector<double>     &g;
+      const SeparableBonds             &bonds;
+      const unsigned int                n;
+      const NodeBound                   node_bound;
+
+      dealii::Timer               timer;
+      BranchAndBoundResult        result;
+      std::set<ProofNode>         open;
+      std::set<std::vector<bool>> tried; ///< states that were minimised
+      double                      least_left_out;
+      unsigned int                n_created = 0;
+
+      void
+      minimise_from(const Eigen::VectorXd &x, Job &job) const;
+
+      void
+      take_if_better(const Job &job);
+
+      ProofStatus
+      check_limits() const;
+
+      std::vector<Job>
+      next_batch();
+
+      void
+      work_on(std::vector<Job> &batch) const;
+
+      void
+      branch(const Job &job);
+
+      ProofProgress
+      progress() const;
+    };
+
+
+
+    ProofTree::ProofTree(const BranchAndBoundParameters   &parameters,
+                         const dealii::FullMatrix<double> &S,
+                         const dealii::Vector<double>     &g,
+                         const SeparableBonds             &bonds,
+                         const dealii::Vector<double>     &start)
+      : parameters(parameters)
+      , S(S)
+      , g(g)
+      , bonds(bonds)
+      , n(g.size())
+      , node_bound(S, g, bonds)
+      , least_left_out(std::numeric_limits<double>::infinity())
+    {
+      result.upper = std::numeric_limits<double>::infinity();
+      result.lower = -std::numeric_limits<double>::infinity();
+      Job job;
+      minimise_from(eigen_view(start), job);
+      take_if_better(job);
+    }
+
+
+
+    void
+    ProofTree::minimise_from(const Eigen::VectorXd &x, Job &job) const
+    {
+      job.broken.resize(n);
+      for (unsigned int i = 0; i < n; ++i)
+        job.broken[i] = x(i) < -bonds.threshold;
+      if (tried.count(job.broken) > 0)
+        return;
+      job.s.reinit(n);
+      for (unsigned int i = 0; i < n; ++i)
+        job.s(i) = std::min(x(i), 0.);
+      CondensedProblem problem(S, g, bonds, job.s);
+      MajoriseMinimise({}).minimize(problem);
+      job.value = problem.evaluate().functional;
+    }
+
+
+
+    void
+    ProofTree::take_if_better(const Job &job)
+    {
+      tried.insert(job.broken);
+      if (job.value < result.upper)
+        {
+          result.upper = job.value;
+          result.s     = job.s;
+        }
+    }
+
+
+
+    ProofStatus
+    ProofTree::check_limits() const
+    {
+      if (result.nodes >= parameters.maximum_nodes)
+        return ProofStatus::node_limit;
+      if (timer.wall_time() > parameters.maximum_seconds)
+        return ProofStatus::time_limit;
+      if (double(open.size()) * vectors_per_node * n * sizeof(double) >
+          parameters.maximum_bytes)
+        return ProofStatus::memory_limit;
+      return ProofStatus::proved;
+    }
+
+
+
+    /// Takes the open nodes with the lowest bounds.
+    std::vector<Job>
+    ProofTree::next_batch()
+    {
+      std::vector<Job> batch;
+      while (!open.empty() && batch.size() < batch_size &&
+             result.nodes + batch.size() < parameters.maximum_nodes)
+        {
+          batch.emplace_back();
+          batch.back().node = open.extract(open.begin()).value();
+          if (batch.back().node.bound >= result.upper - parameters.tolerance)
+            {
+              least_left_out =
+                std::min(least_left_out, batch.back().node.bound);
+              batch.pop_back();
+            }
+        }
+      return batch;
+    }
+
+
+
+    void
+    ProofTree::work_on(std::vector<Job> &batch) const
+    {
+      std::atomic<unsigned int> next(0);
+      const auto                work = [&]() {
+        for (unsigned int k = next++; k < batch.size(); k = next++)
+          {
+            Job &job = batch[k];
+            job.result =
+              node_bound.bound(job.node, result.upper, parameters.tolerance);
+            if (job.node.bound < result.upper - parameters.tolerance)
+              minimise_from(job.node.x, job);
+          }
+      };
+      std::vector<std::future<void>> others;
+      for (unsigned int t = 1;
+           t < std::min<std::size_t>(parameters.n_threads, batch.size());
+           ++t)
+        others.push_back(std::async(std::launch::async, work));
+      work();
+      for (std::future<void> &other : others)
+        other.get();
+    }
+
+
+
+    void
+    ProofTree::branch(const Job &job)
+    {
+      if (!job.result.bond)
+        {
+          least_left_out = std::min(least_left_out, job.result.least);
+          return;
+        }
+      const unsigned int i      = *job.result.bond;
+      ProofNode          bonded = job.node, broken = job.node;
+      bonded.number   = ++n_created;
+      broken.number   = ++n_created;
+      bonded.lower(i) = -bonds.threshold;
+      broken.upper(i) = -bonds.threshold;
+      bonded.bound    = std::max(job.node.bound, job.result.half_bounds[0]);
+      broken.bound    = std::max(job.node.bound, job.result.half_bounds[1]);
+      open.insert(bonded);
+      open.insert(broken);
+    }
+
+
+
+    ProofProgress
+    ProofTree::progress() const
+    {
+      double lower = std::min(result.upper, least_left_out);
+      if (!open.empty())
+        lower = std::min(lower, open.begin()->bound);
+      return {result.nodes,
+              static_cast<unsigned int>(open.size()),
+              lower,
+              result.upper,
+              timer.wall_time()};
+    }
+
+
+
+    BranchAndBoundResult
+    ProofTree::run(const BranchAndBound::Monitor &monitor)
+    {
+      const double certified = node_bound.certificate(
+        Eigen::Map<const Eigen::VectorXd>(result.s.begin(), n));
+      if (certified >= result.upper - parameters.tolerance)
+        {
+          result.status  = ProofStatus::proved;
+          least_left_out = certified;
+          result.nodes   = 1;
+        }
+      else if (parameters.maximum_nodes > 0)
+        {
+          auto root = node_bound.root(result.upper);
+          if (!root)
+            return result;
+          root->bound = std::max(root->bound, certified);
+          open.insert(*root);
+          result.status = ProofStatus::proved;
+        }
+      else
+        {
+          result.status  = ProofStatus::node_limit;
+          least_left_out = certified;
+        }
+      unsigned int next_record = 1;
+      while (!open.empty() && result.status == ProofStatus::proved)
+        {
+          result.status = check_limits();
+          if (result.status != ProofStatus::proved)
+            break;
+          std::vector<Job> batch = next_batch();
+          work_on(batch);
+          for (const Job &job : batch)
+            {
+              take_if_better(job);
+              branch(job);
+            }
+          result.nodes += static_cast<unsigned int>(batch.size());
+          if (monitor && !monitor(progress()) && !open.empty())
+            result.status = ProofStatus::interrupted;
+          if (result.nodes >= next_record)
+            {
+              result.history.push_back(progress());
+              next_record = result.nodes + 1 + result.nodes / 10;
+            }
+        }
+      const ProofProgress end = progress();
+      if (result.status == ProofStatus::proved &&
+          result.upper - end.lower > parameters.tolerance)
+        result.status = ProofStatus::rounding;
+      result.lower   = end.lower;
+      result.seconds = end.seconds;
+      result.history.push_back(end);
+      return result;
+    }
+  } // namespace
+
+
+
+  std::string
+  to_string(const ProofStatus status)
+  {
+    switch (status)
+      {
+        case ProofStatus::proved:
+          return "proved";
+        case ProofStatus::node_limit:
+          return "node limit";
+        case ProofStatus::time_limit:
+          return "time limit";
+        case ProofStatus::memory_limit:
+          return "memory limit";
+        case ProofStatus::interrupted:
+          return "interrupted";
+        case ProofStatus::rounding:
+          return "tolerance too small";
+        case ProofStatus::no_bound:
+          return "no bound";
+      }
+    return "unknown";
+  }
+
+
+
+  BranchAndBound::BranchAndBound(
+    const BranchAndBoundParameters &proof_parameters)
+    : parameters(proof_parameters)
+  {}
+
+
+
+  BranchAndBoundResult
+  BranchAndBound::minimize(const dealii::FullMatrix<double> &S,
+                           const dealii::Vector<double>     &g,
+                           const SeparableBonds             &bonds,
+                           const dealii::Vector<double>     &start,
+                           const Monitor                    &monitor) const
+  {
+    return ProofTree(parameters, S, g, bonds, start).run(monitor);
+  }
+} // namespace Debond

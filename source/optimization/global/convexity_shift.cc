@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/exceptions.h>
+#include <deal.II/lac/lapack_full_matrix.h>
+
+#include <debond/optimization/global/convexity_shift.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Debond
+{
+  namespace
+  {
+    constexpr unsigned int power_iterations = 12;
+
+    /// The part of a coordinate's step that is done.
+    constexpr double step_share = 0.7;
+
+    /// Steps that change log det A by less are not worth their update.
+    constexpr double least_step = 1e-3;
+  } // namespace
+
+
+
+  namespace
+  {
+    /// The factor of A less a shift that covers its rounding. The bound of Rump
+    /// does not change if rows and columns are scaled, so that a shift in
+    /// proportion to each entry of the diagonal will do. Throws ExcSingular.
+    void
+    factorise_safely(const Eigen::MatrixXd            &A,
+                     dealii::LAPACKFullMatrix<double> &matrix)
+    {
+      const unsigned int n = matrix.m();
+      const double       shift =
+        (n + 3.) * 2. * std::numeric_limits<double>::epsilon() * n;
+      std::copy(A.data(), A.data() + A.size(), &matrix(0, 0));
+      for (unsigned int i = 0; i < n; ++i)
+        matrix(i, i) -= shift * std::abs(matrix(i, i));
+      matrix.set_property(dealii::LAPACKSupport::symmetric);
+      matrix.compute_cholesky_factorization();
+    }
+  } // namespace
+
+
+
+  bool
+  is_safely_positive_definite(const Eigen::MatrixXd &A)
+  {
+    dealii::LAPACKFullMatrix<double> matrix(
+      static_cast<unsigned int>(A.rows()));
+    try
+      {
+        factorise_safely(A, matrix);
+      }
+    catch (const dealii::LACExceptions::ExcSingular &)
+      {
+        return false;
+      }
+    return true;
+  }
+
+
+
+  std::optional<Eigen::MatrixXd>
+  safe_inverse(const Eigen::MatrixXd &A)
+  {
+    const unsigned int               n = static_cast<unsigned int>(A.rows());
+    dealii::LAPACKFullMatrix<double> matrix(n);
+    try
+      {
+        factorise_safely(A, matrix);
+        matrix.invert();
+      }
+    catch (const dealii::LACExceptions::ExcSingular &)
+      {
+        return {};
+      }
+    return Eigen::Map<const Eigen::MatrixXd>(&matrix(0, 0), n, n);
+  }
+
+
+
+  double
+  largest_multiple(const Eigen::MatrixXd &inverse_of_A,
+                   const Eigen::VectorXd &weights)
+  {
+    // Power iterations for W^{1/2} A^{-1} W^{1/2}.
+    const Eigen::VectorXd root   = weights.cwiseSqrt();
+    Eigen::VectorXd       v      = root;
+    double                lambda = 0.;
+    for (unsigned int k = 0; k < power_iterations && v.norm() > 0.; ++k)
+      {
+        v.normalize();
+        v      = root.cwiseProduct(inverse_of_A * root.cwiseProduct(v));
+        lambda = v.norm();
+      }
+    return lambda > 0. ? 1. / lambda : std::numeric_limits<double>::infinity();
+  }
+
+
+
+  void
+  raise_bound(const Eigen::MatrixXd           &inverse,
+              const Eigen::VectorXd           &v,
+              const double                     mu,
+              const std::vector<unsigned int> &which,
+              Eigen::VectorXd                 &D)
+  {
+    const unsigned int n = static_cast<unsigned int>(which.size());
+    Eigen::MatrixXd    P(n, n);
+    for (unsigned int l = 0; l < n; ++l)
+      for (unsigned int k = 0; k < n; ++k)
+        P(k, l) = inverse(which[k], which[l]);
+
+    for (unsigned int k = 0; k < n; ++k)
+      {
+        const unsigned int i    = which[k];
+        const double       best = v(i) > 0. ? 1. / P(k, k) - mu / v(i) : -D(i);
+        const double       step = step_share * std::max(best, -D(i));
+        if (std::abs(step) * P(k, k) < least_step)
+          continue;
+        D(i) += step;
+        const Eigen::VectorXd column = P.col(k);
+        P.noalias() +=
+          (step / (1. - step * P(k, k))) * column * column.transpose();
+      }
+  }
+} // namespace Debond

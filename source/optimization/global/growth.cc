@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/optimization/global/growth.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Rounding in roots, relative.
+    constexpr double outwards = 1e-6;
+  } // namespace
+
+
+
+  Interval
+  hull(const Interval &a, const Interval &b)
+  {
+    if (a.is_empty())
+      return b;
+    if (b.is_empty())
+      return a;
+    return {std::min(a.lower, b.lower), std::max(a.upper, b.upper)};
+  }
+
+
+
+  double
+  Growth::value(const double s) const
+  {
+    const double d = s - x;
+    return constant + slope * d + 0.5 * curvature * d * d;
+  }
+
+
+
+  double
+  Growth::least(const Interval &interval) const
+  {
+    if (interval.is_empty())
+      return std::numeric_limits<double>::infinity();
+    return value(std::min(std::max(x - slope / curvature, interval.lower),
+                          interval.upper));
+  }
+
+
+
+  Interval
+  Growth::where_at_most(const double level, const Interval &interval) const
+  {
+    if (least(interval) > level)
+      return {1., -1.};
+    const double centre = -slope / curvature;
+    const double radius =
+      std::sqrt(
+        std::max(0., centre * centre - 2. * (constant - level) / curvature)) *
+        (1. + outwards) +
+      outwards * std::abs(centre);
+    // Rounding must not leave out the least value.
+    const Interval inner = {std::max(interval.lower, x + centre - radius),
+                            std::min(interval.upper, x + centre + radius)};
+    return inner.is_empty() ? interval : inner;
+  }
+} // namespace Debond

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/optimization/global/guided_search.h>
+#include <debond/optimization/majorise/condensed_problem.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Debond
+{
+  namespace
+  {
+    /// A node takes about n^3 operations, of which this is a few seconds'
+    /// worth.
+    constexpr double       most_operations = 4e8;
+    constexpr unsigned int most_nodes      = 500;
+
+
+
+    /// For one problem.
+    class GuidedSearch
+    {
+    public:
+      GuidedSearch(const dealii::FullMatrix<double> &S,
+                   const dealii::Vector<double>     &g,
+                   const PiecewiseQuadratic         &phi,
+                   const SeparableBonds             &lumped,
+                   const bool                        is_separable,
+                   const NeighbourGraph             &neighbours,
+                   const MajoriseMinimise           &method,
+                   const GuidedSearchParameters     &parameters,
+                   const std::function<bool()>      &monitor)
+        : S(S)
+        , g(g)
+        , phi(phi)
+        , bonds(lumped)
+        , is_separable(is_separable)
+        , neighbours(neighbours)
+        , method(method)
+        , parameters(parameters)
+        , monitor(monitor)
+      {}
+
+      GuidedSearchResult
+      run(const std::function<bool(bool, dealii::Vector<double> &)> &may_end,
+          dealii::Vector<double>                                    &s)
+      {
+        if (is_separable && is_proved(s, 0))
+          return result;
+        BondSearchParameters quick;
+        quick.maximum_shift = 1;
+        quick.flips         = false;
+        quick.splits        = false;
+        search(quick, s);
+        if (!monitor() || is_proved(s, 0))
+          return result;
+        bool found = false;
+        for (const unsigned int improvements : result.search.improvements)
+          found = found || improvements > 0;
+        if ((may_end && may_end(found, s)) || !monitor() || is_proved(s, 1))
+          return result;
+        search({}, s);
+        const double n = s.size();
+        if (monitor())
+          is_proved(s,
+                    static_cast<unsigned int>(std::ceil(std::min(
+                      double(most_nodes), most_operations / (n * n * n)))));
+        return result;
+      }
+
+    private:
+      void
+      search(const BondSearchParameters &moves, dealii::Vector<double> &s)
+      {
+        add(
+          search_bonds(
+            S, g, phi, bonds.threshold, neighbours, method, moves, s, monitor),
+          result.search);
+      }
+
+      /// Branch and bound, and whether it ends with a proof. What it finds is
+      /// taken if it is lower.
+      bool
+      is_proved(dealii::Vector<double> &s, const unsigned int maximum_nodes)
+      {
+        CondensedProblem         problem(S, g, phi, s);
+        const double             functional = problem.evaluate().functional;
+        BranchAndBoundParameters limits;
+        limits.tolerance                 = parameters.tolerance;
+        limits.maximum_nodes             = maximum_nodes;
+        limits.maximum_bytes             = parameters.maximum_bytes;
+        limits.n_threads                 = parameters.n_threads;
+        const BranchAndBoundResult proof = BranchAndBound(limits).minimize(
+          S, g, bonds, s, [this](const ProofProgress &) { return monitor(); });
+        if (is_separable)
+          result.proof = proof;
+        dealii::Vector<double> other = proof.s;
+        CondensedProblem       other_problem(S, g, phi, other);
+        if (!is_separable && minimise_trial(method, other_problem).status !=
+                               SolverStatus::success)
+          {
+            ++result.search.failures;
+            return false;
+          }
+        const MajorantProblem::State state = other_problem.evaluate();
+        if (state.functional < functional - state.functional_rounding)
+          s = other;
+        result.is_closed = proof.status == ProofStatus::proved;
+        return result.is_closed;
+      }
+
+      const dealii::FullMatrix<double> &S;
+      const dealii::Vector<double>     &g;
+      const PiecewiseQuadratic         &phi;
+      const SeparableBonds             &bonds;
+      const bool                        is_separable;
+      const NeighbourGraph             &neighbours;
+      const MajoriseMinimise           &method;
+      const GuidedSearchParameters     &parameters;
+      const std::function<bool()>      &monitor;
+      GuidedSearchResult                result;
+    };
+  } // namespace
+
+
+
+  SeparableBonds
+  lumped_bonds(const PiecewiseQuadratic &phi,
+               const unsigned int        n,
+               const double              threshold)
+  {
+    return {phi.curvature(dealii::Vector<double>(n)) * Eigen::VectorXd::Ones(n),
+            threshold};
+  }
+
+
+
+  void
+  add(const BondSearchResult &more, BondSearchResult &search)
+  {
+    for (unsigned int k = 0; k < more.trials.size(); ++k)
+      {
+        search.trials[k] += more.trials[k];
+        search.improvements[k] += more.improvements[k];
+      }
+    search.failures += more.failures;
+    search.complete   = search.complete && more.complete;
+    search.functional = more.functional;
+  }
+
+
+
+  GuidedSearchResult
+  guided_search(
+    const dealii::FullMatrix<double>                          &S,
+    const dealii::Vector<double>                              &g,
+    const PiecewiseQuadratic                                  &phi,
+    const SeparableBonds                                      &lumped,
+    const bool                                                 is_separable,
+    const NeighbourGraph                                      &neighbours,
+    const MajoriseMinimise                                    &method,
+    const GuidedSearchParameters                              &parameters,
+    dealii::Vector<double>                                    &s,
+    const std::function<bool()>                               &monitor,
+    const std::function<bool(bool, dealii::Vector<double> &)> &may_end)
+  {
+    return GuidedSearch(S,
+                        g,
+                        phi,
+                        lumped,
+                        is_separable,
+                        neighbours,
+                        method,
+                        parameters,
+                        monitor)
+      .run(may_end, s);
+  }
+} // namespace Debond

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/multithread_info.h>
+
+#include <debond/base/version.h>
+#include <debond/input/parameters.h>
+#include <debond/program/command_line.h>
+#include <debond/program/run.h>
+#include <debond/solve/method_choice.h>
+#include <debond/solve/scene.h>
+
+#include <boost/program_options.hpp>
+
+#include <unistd.h>
+
+#include <iostream>
+#include <new>
+
+namespace Debond
+{
+  namespace
+  {
+    namespace po = boost::program_options;
+
+    const char *const usage =
+      "Usage: debond SCENE.prm [OPTIONS]\n"
+      "       debond --study STUDY.prm [OPTIONS]; see debond --study --help\n"
+      "\n"
+      "Solves the unilateral contact of an elastic body with an adhesive\n"
+      "foundation as the scene describes it.\n\n";
+
+    const char *const exit_codes =
+      "\nExit codes:\n"
+      "  0  success\n"
+      "  1  internal error\n"
+      "  2  bad input: command line or scene; nothing is written\n"
+      "  3  not converged: the stop criterion was not met\n"
+      "  4  interrupted by SIGINT or SIGTERM; the last iterate is written\n"
+      "  5  the output could not be written\n";
+
+
+
+    po::options_description
+    visible_options(const std::vector<FileCommand> &commands)
+    {
+      po::options_description options("Options");
+      options.add_options()                              //
+        ("help", "print this text")                      //
+        ("version", "print versions and the build type") //
+        ("print-parameters",
+         "print all parameters with their documentation as a scene, with the "
+         "defaults or the values of SCENE.prm and --set") //
+        ("restart",
+         "go on from the checkpoint in the output directory, see "
+         "Solver/Checkpoint interval")                      //
+        ("validate", "read and check the scene, then stop") //
+        ("set",
+         po::value<std::vector<std::string>>()->value_name(
+           "\"SECTION/PARAMETER=VALUE\""),
+         "give a parameter another value than the scene; can be repeated");
+      for (const FileCommand &command : commands)
+        options.add_options()(command.name.c_str(),
+                              po::value<std::string>()->value_name("FILE"),
+                              command.documentation.c_str());
+      return options;
+    }
+
+
+
+    /// Throws BadInput.
+    po::variables_map
+    parse(const int                      argc,
+          const char *const              argv[],
+          const po::options_description &visible)
+    {
+      po::options_description all;
+      all.add(visible);
+      all.add_options()("scene", po::value<std::string>());
+      po::positional_options_description positional;
+      positional.add("scene", 1);
+
+      // Abbreviations would make every new option a breaking change.
+      const int style = po::command_line_style::default_style &
+                        ~po::command_line_style::allow_guessing;
+      try
+        {
+          po::variables_map values;
+          po::store(po::command_line_parser(argc, argv)
+                      .options(all)
+                      .positional(positional)
+                      .style(style)
+                      .run(),
+                    values);
+          po::notify(values);
+          return values;
+        }
+      catch (const po::error &error)
+        {
+          throw BadInput({std::string(error.what()) + "; see debond --help"});
+        }
+    }
+
+
+
+    template <int dim>
+    ExitCode
+    run_or_validate(const Parameters &parameters, const bool only_validate)
+    {
+      if (!only_validate)
+        return run<dim>(parameters, std::cout, isatty(STDOUT_FILENO) == 1);
+
+      choose_method(parameters);
+      const Scene<dim> scene(parameters);
+      std::cout << parameters.scene << ": valid" << std::endl;
+      return ExitCode::success;
+    }
+
+
+
+    ExitCode
+    execute(const po::variables_map        &options,
+            const po::options_description  &visible,
+            const std::vector<FileCommand> &commands)
+    {
+      if (options.count("help") > 0)
+        {
+          std::cout << usage << visible << exit_codes;
+          return ExitCode::success;
+        }
+      if (options.count("version") > 0)
+        {
+          std::cout << "Debond " << program_version() << "\nrevision "
+                    << git_revision() << "\ndeal.II " << deal_ii_version()
+                    << "\nbuild type " << build_type() << std::endl;
+          return ExitCode::success;
+        }
+
+      for (const FileCommand &command : commands)
+        if (options.count(command.name) > 0)
+          return command.execute(options[command.name].as<std::string>());
+
+      std::vector<std::string> assignments;
+      if (options.count("set") > 0)
+        assignments = options["set"].as<std::vector<std::string>>();
+
+      ParameterTable table;
+      declare_parameters(table);
+      if (options.count("scene") > 0)
+        {
+          const std::string file = options["scene"].as<std::string>();
+          read_scene(file, table);
+          if (table.has_unknown_section("Study"))
+            throw BadInput(
+              {file + ": this is a study; run debond --study " + file});
+        }
+      for (const std::string &assignment : assignments)
+        table.assign(assignment);
+
+      if (options.count("print-parameters") > 0)
+        {
+          if (!table.errors().empty())
+            throw BadInput(table.errors());
+          table.print(std::cout, true);
+          return ExitCode::success;
+        }
+
+      if (options.count("scene") == 0)
+        throw BadInput({"no scene is given; see debond --help"});
+
+      const bool only_validate = options.count("validate") > 0;
+      Parameters parameters =
+        to_parameters(options["scene"].as<std::string>(), table);
+      parameters.restart = options.count("restart") > 0;
+      return parameters.dimension == 2 ?
+               run_or_validate<2>(parameters, only_validate) :
+               run_or_validate<3>(parameters, only_validate);
+    }
+  } // namespace
+
+
+
+  ExitCode
+  execute_command_line(const int                       argc,
+                       const char *const               argv[],
+                       const std::vector<FileCommand> &commands)
+  {
+    // The problem is solved on one core; more threads of deal.II's vector
+    // operations would only change rounding.
+    dealii::MultithreadInfo::set_thread_limit(1);
+
+    try
+      {
+        const po::options_description visible = visible_options(commands);
+        return execute(parse(argc, argv, visible), visible, commands);
+      }
+    catch (const BadInput &error)
+      {
+        for (const std::string &line : error.lines)
+          std::cerr << "debond: " << line << '\n';
+        return ExitCode::bad_input;
+      }
+    catch (const std::bad_alloc &)
+      {
+        std::cerr << "debond: there is not enough memory for this scene; try "
+                     "fewer cells or a smaller bundle"
+                  << std::endl;
+        return ExitCode::bad_input;
+      }
+  }
+} // namespace Debond

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/optimization/majorise/majorise_minimise.h>
+#include <debond/solve/global_branch.h>
+
+namespace Debond
+{
+  namespace
+  {
+    template <int dim>
+    class BranchSearch
+    {
+    public:
+      BranchSearch(const Parameters            &scene_parameters,
+                   const Scene<dim>            &scene,
+                   const std::function<bool()> &may_go_on,
+                   Condensation                &condensed)
+        : parameters(scene_parameters)
+        , scene(scene)
+        , may_go_on(may_go_on)
+        , condensed(condensed)
+      {
+        if (parameters.search != BondSearchChoice::quick)
+          parameters.search = BondSearchChoice::full;
+        parameters.prove = false;
+      }
+
+      void
+      search(const double factor, BranchPoint &point)
+      {
+        point.which = improve(parameters, factor, point);
+        // Without loads no energy is negative.
+        if (factor == 0.)
+          point.which.kind = MinimumKind::global;
+      }
+
+      void
+      prove(const double factor, BranchPoint &point)
+      {
+        if (point.which.kind == MinimumKind::global)
+          return;
+        Parameters proof       = parameters;
+        proof.search           = BondSearchChoice::none;
+        proof.prove            = true;
+        const MinimumKind kind = point.which.kind;
+        point.which            = improve(proof, factor, point);
+        if (point.which.kind != MinimumKind::global)
+          point.which.kind = kind;
+      }
+
+      /// Takes what majorise-minimise finds from @p neighbour if that is lower.
+      bool
+      start_from(const BranchPoint &neighbour,
+                 const double       factor,
+                 BranchPoint       &point)
+      {
+        condensed.scale_load(factor);
+        dealii::Vector<double>       s = neighbour.s;
+        CondensedProblem             problem(condensed.schur_complement(),
+                                 condensed.load(),
+                                 scene.adhesion(),
+                                 s);
+        const MajoriseMinimiseResult minimum =
+          MajoriseMinimise(parameters.majorise_minimise).minimize(problem);
+        const double rounding = problem.evaluate().functional_rounding;
+        if (minimum.status != SolverStatus::success ||
+            minimum.functional >= point.functional - rounding)
+          return false;
+        point.s          = s;
+        point.functional = minimum.functional;
+        return true;
+      }
+
+    private:
+      WhichMinimum
+      improve(const Parameters &what, const double factor, BranchPoint &point)
+      {
+        condensed.scale_load(factor);
+        const WhichMinimum which =
+          find_better_minimum(what,
+                              scene.problem().contact_boundary(),
+                              scene.law(),
+                              scene.adhesion(),
+                              condensed,
+                              may_go_on,
+                              point.s);
+        point.functional =
+          condensed_functional(condensed, scene.adhesion(), point.s);
+        return which;
+      }
+
+      Parameters                   parameters;
+      const Scene<dim>            &scene;
+      const std::function<bool()> &may_go_on;
+      Condensation                &condensed;
+    };
+  } // namespace
+
+
+
+  double
+  condensed_functional(const Condensation           &condensed,
+                       const PiecewiseQuadratic     &adhesion,
+                       const dealii::Vector<double> &s)
+  {
+    dealii::Vector<double> point = s;
+    return CondensedProblem(condensed.schur_complement(),
+                            condensed.load(),
+                            adhesion,
+                            point)
+      .evaluate()
+      .functional;
+  }
+
+
+
+  template <int dim>
+  Branch
+  global_branch(const Parameters            &parameters,
+                const Scene<dim>            &scene,
+                const Branch                &start,
+                const std::function<bool()> &may_go_on,
+                const BranchMonitor         &monitor,
+                Condensation                &condensed)
+  {
+    BranchSearch<dim> search(parameters, scene, may_go_on, condensed);
+    const bool        proves =
+      parameters.load_path.global_branch == GlobalBranch::prove;
+
+    Branch             branch;
+    const BranchPoint *last = nullptr;
+    for (const auto &[factor, given] : start)
+      {
+        if (!may_go_on())
+          return branch;
+        BranchPoint point = given;
+        if (last != nullptr)
+          search.start_from(*last, factor, point);
+        search.search(factor, point);
+        last = &(branch[factor] = point);
+        if (!proves)
+          monitor(factor, point);
+      }
+
+    last = nullptr;
+    for (auto entry = branch.rbegin(); entry != branch.rend(); ++entry)
+      {
+        if (!may_go_on())
+          return branch;
+        auto &[factor, point] = *entry;
+        if (last != nullptr && search.start_from(*last, factor, point))
+          search.search(factor, point);
+        if (proves)
+          {
+            search.prove(factor, point);
+            monitor(factor, point);
+          }
+        last = &point;
+      }
+    return branch;
+  }
+
+
+
+  template Branch
+  global_branch(const Parameters &,
+                const Scene<2> &,
+                const Branch &,
+                const std::function<bool()> &,
+                const BranchMonitor &,
+                Condensation &);
+  template Branch
+  global_branch(const Parameters &,
+                const Scene<3> &,
+                const Branch &,
+                const std::function<bool()> &,
+                const BranchMonitor &,
+                Condensation &);
+} // namespace Debond

@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+
+#include <debond/base/interrupt.h>
+#include <debond/elasticity/contact_condensation.h>
+#include <debond/elasticity/refinement.h>
+#include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/solve/global_branch.h>
+#include <debond/solve/load_path.h>
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace Debond
+{
+  namespace
+  {
+    template <int dim>
+    class PathFollower
+    {
+    public:
+      PathFollower(const Parameters               &parameters,
+                   const Scene<dim>               &scene,
+                   std::ostream                   &out,
+                   std::vector<LoadPathStep<dim>> &steps)
+        : parameters(parameters)
+        , scene(scene)
+        , out(out)
+        , steps(steps)
+        , condensed(condense_to_contact(scene.problem()))
+        , s(static_cast<unsigned int>(
+            scene.problem().contact_boundary().nodes.size()))
+      {
+        result.condition_estimate    = condensed.condition_estimate();
+        result.parts["condensation"] = timer.wall_time();
+      }
+
+      void
+      follow(const LoadPathObserver<dim> &observer)
+      {
+        timer.restart();
+        print_titles("broken part");
+        for (const double factor : parameters.load_path.factors)
+          {
+            if (!steps.empty() && guard.requested())
+              {
+                interrupt("the path is not complete");
+                break;
+              }
+            solve(factor, observer);
+            const LoadPathStep<dim> &step = steps.back();
+            print(factor,
+                  step.state.functional,
+                  step.state.broken_part,
+                  step.state.minimum.empty() ? step.status :
+                                               step.state.minimum);
+            if (!step.message.empty())
+              break;
+          }
+        result.parts["followed path"] = timer.wall_time();
+      }
+
+      /// Of a path without failures.
+      void
+      find_global_branch()
+      {
+        if (guard.requested())
+          {
+            if (result.status == SolverStatus::success)
+              interrupt("there is no global branch");
+            return;
+          }
+        timer.restart();
+        Branch followed;
+        for (unsigned int k = 0; k < steps.size(); ++k)
+          {
+            const double factor = steps[k].factor;
+            condensed.scale_load(factor);
+            const BranchPoint point    = {points[k],
+                                          condensed_functional(condensed,
+                                                            scene.adhesion(),
+                                                            points[k]),
+                                          {}};
+            const auto [entry, is_new] = followed.emplace(factor, point);
+            if (!is_new && point.functional < entry->second.functional)
+              entry->second = point;
+          }
+
+        if (parameters.output.machine_details)
+          out << "  global branch\n";
+        const bool proves =
+          parameters.load_path.global_branch == GlobalBranch::prove;
+        print_titles(proves ? "gap" : "states tried");
+        const Branch branch = global_branch(
+          parameters,
+          scene,
+          followed,
+          [this]() { return !guard.requested(); },
+          [&](const double factor, const BranchPoint &point) {
+            condensed.scale_load(factor);
+            print(factor,
+                  point.functional + condensed.energy_at_zero(),
+                  proves ? point.which.relative_gap : point.which.search_trials,
+                  to_string(point.which.kind));
+          },
+          condensed);
+        for (const auto &[factor, point] : branch)
+          add_global(factor, point);
+        if (guard.requested())
+          interrupt("the global branch is not complete");
+        result.parts["global branch"] = timer.wall_time();
+      }
+
+      SolveResult
+      take_result()
+      {
+        // Numbers of the last factor; the state's word may come from the global
+        // branch.
+        condensed.scale_load(steps.back().factor);
+        result.load_factor  = steps.back().factor;
+        result.u            = displacement(steps.back().factor, points.back());
+        result.functional   = steps.back().state.functional;
+        result.minimum.kind = kinds.back();
+        return result;
+      }
+
+    private:
+      void
+      solve(const double factor, const LoadPathObserver<dim> &observer)
+      {
+        const dealii::Vector<double> last = s;
+        const double last_factor = steps.empty() ? 0. : steps.back().factor;
+
+        condensed.scale_load(factor);
+        CondensedProblem             problem(condensed.schur_complement(),
+                                 condensed.load(),
+                                 scene.adhesion(),
+                                 s);
+        const MajoriseMinimiseResult minimum =
+          MajoriseMinimise(parameters.majorise_minimise).minimize(problem);
+        result.status    = minimum.status;
+        result.criterion = minimum.residual;
+        for (MajoriseMinimiseIteration iteration : minimum.history)
+          {
+            iteration.iteration = ++result.iterations;
+            iteration.functional += condensed.energy_at_zero();
+            result.majorise_history.push_back(iteration);
+          }
+
+        LoadPathStep<dim> step;
+        step.step       = static_cast<unsigned int>(steps.size() + 1);
+        step.factor     = factor;
+        step.iterations = static_cast<unsigned int>(minimum.history.size());
+        const dealii::Vector<double> u            = displacement(factor, s);
+        const Verification<dim>      verification = verify(factor, u);
+        step.state                                = load_path_state(
+          scene.problem(), scene.adhesion(), factor, u, verification);
+        step.change_factor = change_factor(last_factor, last, factor);
+        step.status        = to_string(minimum.status);
+        kinds.push_back(kind_without_search(scene.law(), scene.adhesion(), s));
+        if (minimum.status != SolverStatus::success)
+          step.message = result.message = location(step) + minimum.message;
+        else if (!is_verified(verification))
+          {
+            step.status  = "not verified";
+            step.message = location(step) + failure(verification);
+          }
+        else
+          step.state.minimum = to_string(kinds.back());
+        points.push_back(s);
+        steps.push_back(step);
+        observer(step, u, verification);
+      }
+
+      /// Of all unknowns, refined where rounding has a say in it.
+      dealii::Vector<double>
+      displacement(const double factor, const dealii::Vector<double> &point)
+      {
+        dealii::Vector<double> u = condensed.expand(point);
+        CondensedCorrection    solver(condensed);
+        const std::string      note = refine_where_needed(
+          scene.problem(),
+          scene.adhesion(),
+          factor,
+          solver,
+          [this]() { return !guard.requested(); },
+          u);
+        if (!note.empty() && result.notes.empty())
+          result.notes.push_back(note);
+        return u;
+      }
+
+      Verification<dim>
+      verify(const double factor, const dealii::Vector<double> &u) const
+      {
+        return Debond::verify(
+          scene.problem(), scene.adhesion(), scene.law(), u, factor);
+      }
+
+      bool
+      is_verified(const Verification<dim> &verification) const
+      {
+        return verification.error() <= parameters.verification_tolerance;
+      }
+
+      std::string
+      failure(const Verification<dim> &verification) const
+      {
+        return verification_failure(verification.error(),
+                                    parameters.verification_tolerance);
+      }
+
+      static std::string
+      location(const LoadPathStep<dim> &step)
+      {
+        std::ostringstream text;
+        text << "load path, step " << step.step << ", factor " << step.factor
+             << ": ";
+        return text.str();
+      }
+
+      /// See LoadPathStep::change_factor.
+      std::optional<double>
+      change_factor(const double                  last_factor,
+                    const dealii::Vector<double> &last,
+                    const double                  factor) const
+      {
+        const double M = scene.law().bond_threshold();
+        if (M == 0. || last_factor == 0. ||
+            parameters.quadrature.rule !=
+              ContactQuadratureParameters::Rule::nodal)
+          return {};
+
+        double     first     = factor / last_factor;
+        const bool increases = first > 1.;
+        bool       changes   = false;
+        for (unsigned int i = 0; i < last.size(); ++i)
+          if (last(i) < 0. && increases == (last(i) >= -M))
+            {
+              const double reached = -M / last(i);
+              if (increases ? reached < first : reached > first)
+                {
+                  changes = true;
+                  first   = reached;
+                }
+            }
+        return changes ? std::optional<double>(first * last_factor) :
+                         std::nullopt;
+      }
+
+      /// Enters a point of the global branch at all steps with its factor.
+      void
+      add_global(const double factor, const BranchPoint &point)
+      {
+        condensed.scale_load(factor);
+        const dealii::Vector<double> u = displacement(factor, point.s);
+        const Verification<dim>      verification = verify(factor, u);
+        LoadPathState<dim>           state        = load_path_state(
+          scene.problem(), scene.adhesion(), factor, u, verification);
+        const bool verified = is_verified(verification);
+        if (verified)
+          state.minimum = to_string(point.which.kind);
+        for (unsigned int k = 0; k < steps.size(); ++k)
+          if (steps[k].factor == factor)
+            {
+              LoadPathStep<dim> &step = steps[k];
+              step.global             = state;
+              if (point.which.proof_attempted)
+                step.relative_gap = point.which.relative_gap;
+              if (!verified && step.message.empty())
+                step.message =
+                  location(step) + "global branch: " + failure(verification);
+              // The followed state is this one, or as good.
+              if (step.message.empty() &&
+                  step.state.functional <=
+                    state.functional +
+                      parameters.proof.tolerance * std::abs(state.functional))
+                {
+                  kinds[k]           = point.which.kind;
+                  step.state.minimum = state.minimum;
+                }
+            }
+      }
+
+      void
+      interrupt(const std::string &what)
+      {
+        result.status  = SolverStatus::interrupted;
+        result.message = location(steps.back()) + "interrupted, " + what;
+      }
+
+      void
+      print_titles(const std::string &third) const
+      {
+        if (parameters.output.machine_details)
+          out << std::setw(11) << "factor" << std::setw(17) << "J"
+              << std::setw(14) << third << "  state" << std::endl;
+      }
+
+      void
+      print(const double       factor,
+            const double       functional,
+            const double       number,
+            const std::string &word) const
+      {
+        if (parameters.output.machine_details)
+          out << std::setw(11) << factor << std::scientific
+              << std::setprecision(8) << std::setw(17) << functional
+              << std::defaultfloat << std::setprecision(3) << std::setw(14)
+              << number << std::setprecision(6) << "  " << word << std::endl;
+      }
+
+      const Parameters               &parameters;
+      const Scene<dim>               &scene;
+      std::ostream                   &out;
+      std::vector<LoadPathStep<dim>> &steps;
+      const InterruptGuard            guard;
+      dealii::Timer                   timer;
+      Condensation                    condensed;
+      dealii::Vector<double>          s;
+      SolveResult                     result;
+
+      /// By step.
+      std::vector<dealii::Vector<double>> points;
+      std::vector<MinimumKind>            kinds;
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  SolveResult
+  follow_load_path(const Parameters               &parameters,
+                   const Scene<dim>               &scene,
+                   const LoadPathObserver<dim>    &observer,
+                   std::ostream                   &out,
+                   std::vector<LoadPathStep<dim>> &steps)
+  {
+    PathFollower<dim> path(parameters, scene, out, steps);
+    path.follow(observer);
+    if (parameters.load_path.global_branch != GlobalBranch::none &&
+        steps.back().message.empty())
+      path.find_global_branch();
+    return path.take_result();
+  }
+
+
+
+  template SolveResult
+  follow_load_path(const Parameters &,
+                   const Scene<2> &,
+                   const LoadPathObserver<2> &,
+                   std::ostream &,
+                   std::vector<LoadPathStep<2>> &);
+  template SolveResult
+  follow_load_path(const Parameters &,
+                   const Scene<3> &,
+                   const LoadPathObserver<3> &,
+                   std::ostream &,
+                   std::vector<LoadPathStep<3>> &);
+} // namespace Debond

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <debond/solve/method_choice.h>
+#include <debond/solve/scene_size.h>
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Below, the choice hardly matters, and a factorisation is exact.
+    constexpr double seconds_that_matter = 10.;
+
+
+
+    std::string
+    in_gib(const double bytes)
+    {
+      const double       gib = bytes / (1 << 30);
+      std::ostringstream text;
+      text << std::fixed << std::setprecision(gib < 10. ? 1 : 0) << gib
+           << " GiB";
+      return text.str();
+    }
+
+
+
+    std::string
+    rounded(const double number)
+    {
+      std::ostringstream text;
+      text << std::setprecision(2) << number;
+      return text.str();
+    }
+
+
+
+    double
+    memory_limit(const Parameters &parameters)
+    {
+      return parameters.memory_limit > 0. ? parameters.memory_limit :
+                                            available_memory();
+    }
+
+
+
+    /// A path needs S for its many loads.
+    void
+    check_load_path(const Parameters &parameters, const MethodChoice &choice)
+    {
+      const auto refuse = [&parameters](const std::string &entry,
+                                        const std::string &reason) {
+        throw BadInput(
+          {parameters.scene + ": Load path/" + entry + " " + reason});
+      };
+      if (choice.method != SolverMethod::majorise_minimise)
+        refuse("Factors",
+               "needs Solver/Method = majorise minimise or automatic, not " +
+                 choice.method);
+      if (choice.linear_solver != LinearSolver::direct)
+        refuse("Factors",
+               "needs Solver/Linear solver = direct, not " +
+                 choice.linear_solver);
+      if (parameters.prove)
+        refuse("Factors",
+               "follows minima that need not be global: in place of "
+               "Solver/Prove = true use Load path/Global branch = prove");
+      if (parameters.load_path.global_branch == GlobalBranch::prove &&
+          parameters.quadrature.rule !=
+            ContactQuadratureParameters::Rule::nodal)
+        refuse("Global branch",
+               "= prove needs Contact law/Quadrature = nodal, which gives "
+               "each node a bond of its own");
+    }
+  } // namespace
+
+
+
+  double
+  memory_left(const Parameters &parameters)
+  {
+    if (parameters.memory_limit == 0.)
+      return available_memory();
+    dealii::Utilities::System::MemoryStats memory;
+    dealii::Utilities::System::get_memory_stats(memory);
+    return std::max(0.,
+                    parameters.memory_limit -
+                      1024. * static_cast<double>(memory.VmRSS));
+  }
+
+
+
+  MethodChoice
+  choose_method(const Parameters &parameters)
+  {
+    const SceneSize    size          = scene_size(parameters);
+    const unsigned int dim           = parameters.dimension;
+    const double       limit         = memory_limit(parameters);
+    const double       direct_memory = memory_with_factorisation(size, dim);
+
+    MethodChoice choice = {parameters.method, parameters.linear_solver, "", 0.};
+    if (choice.method == SolverMethod::euclidean_bundle)
+      {
+        choice.linear_solver = LinearSolver::none;
+        choice.memory =
+          memory_with_bundle(size, dim, parameters.bundle.bundle_size);
+      }
+    else
+      {
+        if (choice.method == SolverMethod::automatic)
+          {
+            choice.method = SolverMethod::majorise_minimise;
+            choice.reason =
+              "it is exact after finitely many steps, at the price of about "
+              "one linear solve";
+          }
+        if (choice.method == SolverMethod::energy_bundle)
+          {
+            if (choice.linear_solver == LinearSolver::multigrid)
+              throw BadInput(
+                {parameters.scene +
+                 ": Solver/Method = energy bundle needs the Schur complement "
+                 "of a factorisation; Solver/Linear solver must be direct or "
+                 "automatic"});
+            choice.linear_solver = LinearSolver::direct;
+          }
+        else if (choice.linear_solver == LinearSolver::automatic)
+          {
+            choice.linear_solver = LinearSolver::direct;
+            const double direct_seconds =
+              seconds_with_factorisation(parameters);
+            const double multigrid_seconds = seconds_with_multigrid(parameters);
+            std::string  reason;
+            if (direct_memory > limit)
+              reason = "a factorisation would take about " +
+                       in_gib(direct_memory) + ", there are " + in_gib(limit);
+            else if (direct_seconds > seconds_that_matter &&
+                     direct_seconds > multigrid_seconds)
+              reason = "it takes less time";
+            if (!reason.empty())
+              {
+                choice.linear_solver = LinearSolver::multigrid;
+                choice.reason += (choice.reason.empty() ? "" : "; ") +
+                                 ("by multigrid, since " + reason);
+              }
+            if (std::max(direct_seconds, multigrid_seconds) >
+                seconds_that_matter)
+              choice.reason +=
+                (choice.reason.empty() ? "" : "; ") +
+                ("estimated are " + rounded(direct_seconds) +
+                 " s with a factorisation, " + rounded(multigrid_seconds) +
+                 " s with multigrid");
+          }
+        choice.memory = choice.linear_solver == LinearSolver::direct ?
+                          direct_memory :
+                          memory_with_multigrid(size, dim);
+      }
+
+    if (!parameters.load_path.factors.empty())
+      check_load_path(parameters, choice);
+    const bool searches = parameters.search == BondSearchChoice::quick ||
+                          parameters.search == BondSearchChoice::full;
+    if ((searches || parameters.prove) &&
+        choice.linear_solver != LinearSolver::direct)
+      throw BadInput(
+        {parameters.scene + ": Solver/" + (searches ? "Search" : "Prove") +
+         " needs a method with a direct linear solver, not " + choice.method +
+         " with the linear solver " + choice.linear_solver});
+    if (parameters.prove &&
+        parameters.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
+      throw BadInput({parameters.scene +
+                      ": Solver/Prove needs Contact law/Quadrature = nodal, "
+                      "which gives each node a bond of its own"});
+
+    if (choice.memory > limit)
+      throw BadInput({parameters.scene + ": about " + rounded(size.unknowns) +
+                      " unknowns need about " + in_gib(choice.memory) +
+                      " of memory with " + choice.method +
+                      (choice.linear_solver == LinearSolver::none ?
+                         "" :
+                         " and the linear solver " + choice.linear_solver) +
+                      ", the limit is " + in_gib(limit) +
+                      "; try fewer Mesh/Cells" +
+                      (choice.linear_solver == LinearSolver::direct ?
+                         ", Solver/Linear solver = multigrid," :
+                         "") +
+                      " or a higher Solver/Memory limit"});
+    return choice;
+  }
+} // namespace Debond

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+
+#include <debond/input/expression.h>
+#include <debond/solve/displacement.h>
+#include <debond/solve/scene.h>
+
+namespace Debond
+{
+  namespace
+  {
+    using Vector = dealii::Vector<double>;
+
+    template <int dim>
+    BoundaryConditions
+    boundary_conditions(const Parameters &parameters)
+    {
+      BoundaryConditions conditions;
+      for (const std::string &side : parameters.clamped_boundaries)
+        conditions.clamped.insert(boundary_names<dim>().at(side));
+      for (const std::string &side : parameters.contact_boundaries)
+        conditions.contact.insert(boundary_names<dim>().at(side));
+      conditions.tangential_displacement_fixed =
+        parameters.tangential_displacement_fixed;
+      return conditions;
+    }
+
+
+
+    template <int dim>
+    Loads<dim>
+    make_loads(const LoadParameters &parameters)
+    {
+      Loads<dim> loads;
+      if (!parameters.body_force.empty())
+        loads.body_force =
+          make_function<dim>(parameters.body_force, parameters.constants);
+      for (const auto &[side, expression] : parameters.tractions)
+        loads.tractions[boundary_names<dim>().at(side)] =
+          make_function<dim>(expression, parameters.constants);
+      return loads;
+    }
+
+
+
+    /// Throws std::invalid_argument if the file has no displacement that the
+    /// problem admits.
+    template <int dim>
+    dealii::Vector<double>
+    read_start(const std::string &file_name, const ElasticProblem<dim> &problem)
+    {
+      const dealii::Vector<double> u =
+        read_displacement(file_name, problem.n_dofs());
+      bool admissible = true;
+      for (unsigned int i = 0; i < problem.n_dofs(); ++i)
+        admissible = admissible && (u(i) == 0. || !problem.is_constrained(i));
+      for (const auto &node : problem.contact_boundary().nodes)
+        admissible = admissible && u(node.dof) <= 0.;
+      if (!admissible)
+        throw std::invalid_argument(
+          file_name + " does not satisfy the scene's boundary conditions");
+      return u;
+    }
+
+
+
+    /// The load that a message of the assembly speaks of.
+    std::string
+    load_entry(const LoadParameters &loads, const std::string &message)
+    {
+      for (const auto &[side, unused] : loads.tractions)
+        if (message.find("traction on " + side + " ") != std::string::npos)
+          return "Loads/Traction " + side;
+      return "Loads/Body force";
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Scene<dim>::Scene(const Parameters &parameters, const MatrixStorage storage)
+  {
+    dealii::Timer timer;
+    std::string   entry = "Mesh/Lengths"; // that errors belong to
+    try
+      {
+        make_box<dim>(parameters.box, triangulation);
+        seconds_for_mesh = timer.wall_time();
+
+        timer.restart();
+        entry           = "Boundary conditions/Clamped boundaries";
+        elastic_problem = std::make_unique<ElasticProblem<dim>>(
+          triangulation, boundary_conditions<dim>(parameters));
+        entry.clear(); // one of the loads
+        elastic_problem->assemble(parameters.material,
+                                  make_loads<dim>(parameters.loads),
+                                  storage);
+        entry = "Contact law/Quadrature";
+        add_contact(parameters, storage);
+        entry = "Solver/Euclidean bundle/Start";
+        // A run that restarts has its start already.
+        if (parameters.start.empty() || parameters.restart)
+          first_iterate.reinit(elastic_problem->n_dofs());
+        else
+          first_iterate = read_start(parameters.start, *elastic_problem);
+      }
+    catch (const std::invalid_argument &error)
+      {
+        if (entry.empty())
+          entry = load_entry(parameters.loads, error.what());
+        throw BadInput({parameters.locations.at(entry) + ": " + entry + ": " +
+                        error.what()});
+      }
+    seconds_for_assembly = timer.wall_time();
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::add_contact(const Parameters   &parameters,
+                          const MatrixStorage storage)
+  {
+    adhesive_law = make_law(parameters.law);
+    quadrature =
+      std::make_unique<ContactQuadrature<dim>>(parameters.quadrature,
+                                               adhesive_law->kinks());
+    adhesion_integral = std::make_unique<AdhesionIntegral<dim>>(
+      elastic_problem->contact_boundary(), *adhesive_law, *quadrature);
+    const auto make_functional = [this](const auto &A) {
+      using MatrixType = std::decay_t<decltype(A)>;
+      energy           = std::make_unique<Functional<dim, MatrixType, Vector>>(
+        A,
+        elastic_problem->load(),
+        elastic_problem->contact_boundary(),
+        *adhesion_integral);
+    };
+    if (storage == MatrixStorage::serial)
+      make_functional(elastic_problem->matrix());
+    else
+      make_functional(elastic_problem->trilinos_matrix());
+  }
+
+
+
+  template <int dim>
+  const ElasticProblem<dim> &
+  Scene<dim>::problem() const
+  {
+    return *elastic_problem;
+  }
+
+
+
+  template <int dim>
+  const AdhesiveLaw &
+  Scene<dim>::law() const
+  {
+    return *adhesive_law;
+  }
+
+
+
+  template <int dim>
+  const AdhesionIntegral<dim> &
+  Scene<dim>::adhesion() const
+  {
+    return *adhesion_integral;
+  }
+
+
+
+  template <int dim>
+  const Objective<dealii::Vector<double>> &
+  Scene<dim>::functional() const
+  {
+    return *energy;
+  }
+
+
+
+  template <int dim>
+  const dealii::Vector<double> &
+  Scene<dim>::start() const
+  {
+    return first_iterate;
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  Scene<dim>::n_cells() const
+  {
+    return triangulation.n_active_cells();
+  }
+
+
+
+  template <int dim>
+  double
+  Scene<dim>::mesh_seconds() const
+  {
+    return seconds_for_mesh;
+  }
+
+
+
+  template <int dim>
+  double
+  Scene<dim>::assembly_seconds() const
+  {
+    return seconds_for_assembly;
+  }
+
+
+
+  template class Scene<2>;
+  template class Scene<3>;
+} // namespace Debond

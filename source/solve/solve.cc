@@ -1,0 +1,532 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+
+#include <debond/base/interrupt.h>
+#include <debond/contact/boundary_coarsening.h>
+#include <debond/elasticity/contact_condensation.h>
+#include <debond/elasticity/mesh_transfer.h>
+#include <debond/elasticity/multigrid.h>
+#include <debond/elasticity/multigrid_problem.h>
+#include <debond/elasticity/refinement.h>
+#include <debond/optimization/bundle/metric_direction.h>
+#include <debond/optimization/majorise/coarse_start.h>
+#include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/solve/progress.h>
+#include <debond/solve/scene_size.h>
+#include <debond/solve/solve.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <memory>
+
+namespace Debond
+{
+  namespace
+  {
+    using Vector = dealii::Vector<double>;
+
+
+
+    /// Contact boundaries with more nodes take their start from coarser ones.
+    constexpr unsigned int coarsest_contact_nodes = 50;
+
+    /// With fewer unknowns nothing takes more than some seconds.
+    constexpr unsigned int fewest_announced = 50000;
+
+    /// On coarser meshes, where the time for a factorisation does not count.
+    constexpr double largest_coarse_factorisation = 3e4;
+
+
+
+    /// Prints iterations, if it has a stream, and ends the method on a signal.
+    class Watch
+    {
+    public:
+      explicit Watch(const InterruptGuard &guard)
+        : guard(guard)
+      {}
+
+      Watch(const InterruptGuard &guard, std::ostream &out, const bool terminal)
+        : guard(guard)
+        , progress(std::make_unique<Progress>(out, terminal))
+        , log(&out)
+      {}
+
+      /// Prints no iterations, but what the other one announces.
+      Watch(const InterruptGuard &guard, const Watch &other)
+        : guard(guard)
+        , log(other.log)
+      {}
+
+      /// Says what takes long now, if there are many unknowns.
+      void
+      announce(const std::string &what, const unsigned int n_unknowns) const
+      {
+        if (log != nullptr && n_unknowns > fewest_announced)
+          *log << "  " << what << ", " << n_unknowns << " unknowns"
+               << std::endl;
+      }
+
+      ~Watch()
+      {
+        if (progress)
+          progress->finish();
+      }
+
+      Watch(const Watch &) = delete;
+
+      /// The difference between J and the functional that the method sees.
+      void
+      add_energy(const double energy)
+      {
+        offset = energy;
+      }
+
+      template <typename Iteration>
+      bool
+      operator()(Iteration iteration)
+      {
+        iteration.functional += offset;
+        if (progress)
+          progress->report(iteration);
+        return !guard.requested();
+      }
+
+      bool
+      may_go_on() const
+      {
+        return !guard.requested();
+      }
+
+    private:
+      double                    offset = 0.;
+      const InterruptGuard     &guard;
+      std::unique_ptr<Progress> progress;
+      std::ostream             *log = nullptr;
+    };
+
+
+
+    void
+    add_bundle_result(const ProximalBundleResult &bundle, SolveResult &result)
+    {
+      result.status                     = bundle.status;
+      result.message                    = bundle.message;
+      result.iterations                 = bundle.iterations();
+      result.long_steps                 = bundle.long_steps;
+      result.short_steps                = bundle.short_steps;
+      result.null_steps                 = bundle.null_steps;
+      result.criterion                  = bundle.v;
+      result.largest_qp_residual        = bundle.largest_qp_residual;
+      result.bundle_history             = bundle.history;
+      result.parts["quadratic program"] = bundle.qp_seconds;
+      result.parts["functional"]        = bundle.objective_seconds;
+      result.parts["linear algebra"]    = bundle.linear_algebra_seconds;
+    }
+
+
+
+    /// The normal displacements of the contact nodes.
+    template <int dim>
+    Vector
+    normal_displacements(const Scene<dim> &scene, const Vector &u)
+    {
+      const auto &nodes = scene.problem().contact_boundary().nodes;
+      Vector      s(static_cast<unsigned int>(nodes.size()));
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        s(i) = u(nodes[i].dof);
+      return s;
+    }
+
+
+
+    /// J(u), from the strains.
+    template <int dim>
+    double
+    functional_of(const Scene<dim> &scene, const Vector &u)
+    {
+      return scene.problem().elastic_functional(u) +
+             scene.adhesion().value(normal_displacements(scene, u));
+    }
+
+
+
+    template <int dim>
+    void
+    solve_by_euclidean_bundle(const Parameters &parameters,
+                              const Scene<dim> &scene,
+                              Checkpoints      *checkpoints,
+                              Watch            &watch,
+                              SolveResult      &result)
+    {
+      result.u = scene.start();
+      add_bundle_result(ProximalBundle<Vector>(parameters.bundle)
+                          .minimize(scene.functional(),
+                                    unilateral_constraint(
+                                      scene.problem().contact_boundary()),
+                                    result.u,
+                                    std::ref(watch),
+                                    checkpoints),
+                        result);
+    }
+
+
+
+    template <int dim>
+    void
+    solve_by_energy_bundle(const Parameters   &parameters,
+                           const Scene<dim>   &scene,
+                           const Condensation &condensed,
+                           Checkpoints        *checkpoints,
+                           Watch              &watch,
+                           Vector             &s,
+                           SolveResult        &result)
+    {
+      // The condensed functional has the same form on the normals alone.
+      ContactBoundary<dim> normals = scene.problem().contact_boundary();
+      for (unsigned int i = 0; i < normals.nodes.size(); ++i)
+        normals.nodes[i].dof = i;
+      const Functional<dim, dealii::FullMatrix<double>, Vector> functional(
+        condensed.schur_complement(),
+        condensed.load(),
+        normals,
+        scene.adhesion());
+
+      ProximalBundleParameters bundle = parameters.energy_bundle;
+      // Without loads any tolerance will do.
+      bundle.epsilon_s =
+        std::max(bundle.epsilon_s * condensed.energy_without_contact(),
+                 std::numeric_limits<double>::min());
+      MetricDirection direction(condensed.schur_complement(),
+                                scene.adhesion(),
+                                bundle.bundle_size);
+      add_bundle_result(ProximalBundle<Vector>(bundle).minimize(functional,
+                                                                direction,
+                                                                s,
+                                                                std::ref(watch),
+                                                                checkpoints),
+                        result);
+      // The functional differs from J by the energy at s = 0.
+      for (BundleIteration &iteration : result.bundle_history)
+        iteration.functional += condensed.energy_at_zero();
+    }
+
+
+
+    void
+    add_majorise_result(const MajoriseMinimiseResult &minimum,
+                        SolveResult                  &result)
+    {
+      result.status     = minimum.status;
+      result.message    = minimum.message;
+      result.iterations = static_cast<unsigned int>(minimum.history.size());
+      result.criterion  = minimum.residual;
+      result.majorise_history = minimum.history;
+      for (const MajoriseMinimiseIteration &iteration : minimum.history)
+        result.linear_iterations += iteration.linear_iterations;
+    }
+
+
+
+    template <int dim>
+    void
+    solve_by_majorise_minimise(const Parameters   &parameters,
+                               const Scene<dim>   &scene,
+                               const Condensation &condensed,
+                               Watch              &watch,
+                               Vector             &s,
+                               SolveResult        &result)
+    {
+      const MajoriseMinimise method(parameters.majorise_minimise);
+      s = coarse_start(condensed.schur_complement(),
+                       condensed.load(),
+                       scene.adhesion(),
+                       coarsen(scene.problem().contact_boundary(),
+                               coarsest_contact_nodes),
+                       method,
+                       result.notes,
+                       [&watch](const MajoriseMinimiseIteration &) {
+                         return watch.may_go_on();
+                       });
+      CondensedProblem problem(condensed.schur_complement(),
+                               condensed.load(),
+                               scene.adhesion(),
+                               s);
+      add_majorise_result(method.minimize(problem, std::ref(watch)), result);
+      for (MajoriseMinimiseIteration &iteration : result.majorise_history)
+        iteration.functional += condensed.energy_at_zero();
+    }
+
+
+
+    /// Refines a success if rounding has a say in it.
+    template <int dim>
+    void
+    refine_result(const Scene<dim> &scene,
+                  CorrectionSolver &solver,
+                  const Watch      &watch,
+                  SolveResult      &result)
+    {
+      if (result.status != SolverStatus::success)
+        return;
+      const dealii::Timer timer;
+      const Vector        before = normal_displacements(scene, result.u);
+      const std::string   note   = refine_where_needed(
+        scene.problem(),
+        scene.adhesion(),
+        1.,
+        solver,
+        [&watch]() { return watch.may_go_on(); },
+        result.u);
+      if (!note.empty())
+        result.notes.push_back(note);
+      // The search knows other bonds than the result has.
+      const Vector after = normal_displacements(scene, result.u);
+      if (after.size() > 0 && (scene.adhesion().curvature(after) -
+                               scene.adhesion().curvature(before))
+                                  .norm() > 0.)
+        result.minimum.kind =
+          kind_without_search(scene.law(), scene.adhesion(), after);
+      result.parts["refinement"] = timer.wall_time();
+    }
+
+
+
+    template <int dim>
+    void
+    solve_condensed(const std::string &method,
+                    const Parameters  &parameters,
+                    const Scene<dim>  &scene,
+                    Checkpoints       *checkpoints,
+                    Watch             &watch,
+                    SolveResult       &result)
+    {
+      dealii::Timer              timer;
+      const ElasticProblem<dim> &problem = scene.problem();
+      watch.announce("factorisation", problem.n_free_dofs());
+      const Condensation condensed = condense_to_contact(problem);
+      result.condition_estimate    = condensed.condition_estimate();
+      result.parts["condensation"] = timer.wall_time();
+
+      watch.add_energy(condensed.energy_at_zero());
+      timer.restart();
+      Vector s(
+        static_cast<unsigned int>(problem.contact_boundary().nodes.size()));
+      // If no contact node is free, there is no metric either.
+      if (method == SolverMethod::energy_bundle && s.size() > 0)
+        solve_by_energy_bundle(
+          parameters, scene, condensed, checkpoints, watch, s, result);
+      else
+        solve_by_majorise_minimise(
+          parameters, scene, condensed, watch, s, result);
+      result.parts["contact"] = timer.wall_time();
+
+      if (result.status == SolverStatus::success)
+        {
+          timer.restart();
+          const Vector followed = s;
+          result.minimum        = find_better_minimum(
+            parameters,
+            problem.contact_boundary(),
+            scene.law(),
+            scene.adhesion(),
+            condensed,
+            [&]() { return watch.may_go_on(); },
+            s);
+          result.parts["search and proof"] = timer.wall_time();
+          if (result.minimum.search_trials > 0 ||
+              result.minimum.proof_attempted)
+            {
+              result.functional_from_start =
+                functional_of(scene, condensed.expand(followed));
+              result.is_replaced = s != followed;
+            }
+        }
+
+      timer.restart();
+      result.u                  = condensed.expand(s);
+      result.parts["expansion"] = timer.wall_time();
+
+      CondensedCorrection solver(condensed);
+      refine_result(scene, solver, watch, result);
+    }
+
+
+
+    template <int dim>
+    void
+    solve_by_multigrid(const Parameters     &parameters,
+                       const Scene<dim>     &scene,
+                       const InterruptGuard &guard,
+                       Watch                &watch,
+                       SolveResult          &result);
+
+
+
+    /// The solution on a mesh of half as many cells in each direction, at the
+    /// nodes of the scene's mesh; zero if that mesh is the coarsest. The search
+    /// of the scene is done on the first mesh that is factorised; @p search
+    /// gets its counts.
+    template <int dim>
+    Vector
+    solution_on_coarser_mesh(const Parameters         &parameters,
+                             const Scene<dim>         &scene,
+                             const InterruptGuard     &guard,
+                             const Watch              &fine_watch,
+                             std::vector<std::string> &notes,
+                             WhichMinimum             &search)
+    {
+      Parameters coarse = parameters;
+      coarse.start.clear(); // belongs to the finest mesh
+      coarse.prove = false;
+      for (unsigned int d = 0; d < dim; ++d)
+        coarse.box.cells[d] = (coarse.box.cells[d] + 1) / 2;
+      if (coarse.box.cells == parameters.box.cells)
+        return Vector(scene.problem().n_dofs());
+
+      const bool factorised =
+        scene_size(coarse).unknowns <= largest_coarse_factorisation;
+      const Scene<dim> coarse_scene(coarse,
+                                    factorised ? MatrixStorage::serial :
+                                                 MatrixStorage::trilinos);
+      Watch            watch(guard, fine_watch);
+      SolveResult      result;
+      if (factorised)
+        solve_condensed(SolverMethod::majorise_minimise,
+                        coarse,
+                        coarse_scene,
+                        nullptr,
+                        watch,
+                        result);
+      else
+        solve_by_multigrid(coarse, coarse_scene, guard, watch, result);
+      notes.insert(notes.end(), result.notes.begin(), result.notes.end());
+      search                 = result.minimum;
+      search.proof_attempted = false;
+      if (result.status != SolverStatus::success)
+        notes.push_back(
+          "start on the mesh of " + std::to_string(coarse_scene.n_cells()) +
+          (dim == 2 ? " triangles: " : " tetrahedra: ") + result.message);
+      return interpolate_displacement(coarse.box,
+                                      coarse_scene.problem(),
+                                      result.u,
+                                      scene.problem());
+    }
+
+
+
+    template <int dim>
+    void
+    solve_by_multigrid(const Parameters     &parameters,
+                       const Scene<dim>     &scene,
+                       const InterruptGuard &guard,
+                       Watch                &watch,
+                       SolveResult          &result)
+    {
+      dealii::Timer timer;
+      result.u = solution_on_coarser_mesh(
+        parameters, scene, guard, watch, result.notes, result.minimum);
+      result.parts["coarser meshes"] = timer.wall_time();
+      if (!watch.may_go_on())
+        {
+          result.status  = SolverStatus::interrupted;
+          result.message = "multigrid: the start from coarser meshes was "
+                           "interrupted, and is the result.";
+          return;
+        }
+
+      timer.restart();
+      // Most of the nodes that are in contact on the coarser mesh will be here.
+      // To know them saves a third of the iterations in 2D (640x64), but costs
+      // a quarter more in 3D (80x8x8), where few aggregates lie inside.
+      std::vector<dealii::types::global_dof_index> held;
+      if (dim == 2)
+        for (const auto &node : scene.problem().contact_boundary().nodes)
+          if (result.u(node.dof) == 0.)
+            held.push_back(node.dof);
+      watch.announce("multigrid", scene.problem().n_free_dofs());
+      const Multigrid multigrid(scene.problem(), held);
+      result.parts["multigrid setup"] = timer.wall_time();
+
+      timer.restart();
+      MultigridProblem<dim> problem(scene.problem(),
+                                    scene.adhesion(),
+                                    multigrid,
+                                    result.u,
+                                    [&watch]() { return watch.may_go_on(); });
+      add_majorise_result(MajoriseMinimise(parameters.majorise_minimise)
+                            .minimize(problem, std::ref(watch)),
+                          result);
+      result.parts["contact"] = timer.wall_time();
+
+      std::vector<dealii::types::global_dof_index> normals;
+      for (const auto &node : scene.problem().contact_boundary().nodes)
+        normals.push_back(node.dof);
+      MultigridCorrection solver(multigrid, normals);
+      refine_result(scene, solver, watch, result);
+    }
+  } // namespace
+
+
+
+  MatrixStorage
+  matrix_storage(const MethodChoice &choice)
+  {
+    return choice.linear_solver == LinearSolver::multigrid ?
+             MatrixStorage::trilinos :
+             MatrixStorage::serial;
+  }
+
+
+
+  template <int dim>
+  SolveResult
+  solve(const MethodChoice &choice,
+        const Parameters   &parameters,
+        const Scene<dim>   &scene,
+        std::ostream       &out,
+        const bool          terminal,
+        Checkpoints        *checkpoints)
+  {
+    SolveResult result;
+    {
+      const InterruptGuard guard;
+      const auto           watch = parameters.output.machine_details ?
+                                     std::make_unique<Watch>(guard, out, terminal) :
+                                     std::make_unique<Watch>(guard);
+      if (choice.method == SolverMethod::euclidean_bundle)
+        solve_by_euclidean_bundle(
+          parameters, scene, checkpoints, *watch, result);
+      else if (choice.linear_solver == LinearSolver::multigrid)
+        solve_by_multigrid(parameters, scene, guard, *watch, result);
+      else
+        solve_condensed(
+          choice.method, parameters, scene, checkpoints, *watch, result);
+    }
+    if (choice.linear_solver != LinearSolver::direct)
+      result.minimum.kind =
+        kind_without_search(scene.law(),
+                            scene.adhesion(),
+                            normal_displacements(scene, result.u));
+    result.functional = functional_of(scene, result.u);
+    return result;
+  }
+
+
+
+  template SolveResult
+  solve(const MethodChoice &,
+        const Parameters &,
+        const Scene<2> &,
+        std::ostream &,
+        const bool,
+        Checkpoints *);
+  template SolveResult
+  solve(const MethodChoice &,
+        const Parameters &,
+        const Scene<3> &,
+        std::ostream &,
+        const bool,
+        Checkpoints *);
+} // namespace Debond

@@ -1,0 +1,522 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/contact/boundary_coarsening.h>
+#include <debond/contact/boundary_graph.h>
+#include <debond/optimization/global/bond_search.h>
+#include <debond/optimization/global/guided_search.h>
+#include <debond/optimization/majorise/coarse_start.h>
+#include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/solve/global_branch.h>
+#include <debond/solve/method_choice.h>
+#include <debond/solve/which_minimum.h>
+
+#include <cmath>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Displacements this close to the kink, relative, count as on it.
+    constexpr double kink_width = 1e-6;
+
+
+
+    /// On contact boundaries with more nodes a search takes more than a fifth
+    /// of the solve, so that it has to be asked for: automatic searches on a
+    /// coarser one.
+    constexpr unsigned int largest_automatic_search = 200;
+
+
+
+    /// Where a proof is cheap: automatic looks there before it goes on.
+    constexpr unsigned int coarse_look = 50;
+
+
+
+    BondSearchParameters
+    search_parameters(const Parameters &parameters)
+    {
+      if (parameters.search == BondSearchChoice::full)
+        return parameters.full_search;
+      BondSearchParameters quick;
+      quick.maximum_shift = 1;
+      quick.flips         = false;
+      quick.splits        = false;
+      return quick;
+    }
+
+
+
+    bool
+    wants_search(const Parameters &parameters)
+    {
+      return parameters.search == BondSearchChoice::automatic ?
+               parameters.method == SolverMethod::automatic :
+               parameters.search != BondSearchChoice::none;
+    }
+
+
+
+    /// Whether each contact node has a bond of its own, with two branches.
+    bool
+    is_separable(const Parameters &parameters, const AdhesiveLaw &law)
+    {
+      return law.shape() == LawShape::two_branches &&
+             parameters.quadrature.rule ==
+               ContactQuadratureParameters::Rule::nodal;
+    }
+
+
+
+    void
+    add_search(const BondSearchResult &search,
+               const unsigned int      n_nodes,
+               WhichMinimum           &result)
+    {
+      for (const unsigned int trials : search.trials)
+        result.search_trials += trials;
+      for (const unsigned int improvements : search.improvements)
+        result.search_improvements += improvements;
+      result.search_failures += search.failures;
+      result.search_nodes = n_nodes;
+      result.kind         = search.complete && result.search_failures == 0 ?
+                              MinimumKind::best_known :
+                              MinimumKind::stationary;
+    }
+
+
+
+    /// What the bonds can change in J: at most their energy if all are broken,
+    /// and no more than the contact nodes gain without foundation and bonds,
+    /// 1/2 g'S^{-1}g.
+    double
+    energy_of_bonds(const Condensation &condensed, const SeparableBonds &bonds)
+    {
+      return std::min(condensed.energy_without_contact() +
+                        condensed.energy_at_zero(),
+                      0.5 * bonds.stiffness.sum() * bonds.threshold *
+                        bonds.threshold);
+    }
+
+
+
+    void
+    add_proof(const BranchAndBoundResult &proof,
+              const SeparableBonds       &bonds,
+              const Condensation         &condensed,
+              WhichMinimum               &result)
+    {
+      result.proof_attempted = true;
+      result.proof_status    = proof.status;
+      result.proof_nodes     = proof.nodes;
+      result.lower_bound     = proof.lower + condensed.energy_at_zero();
+      const double scale     = energy_of_bonds(condensed, bonds);
+      const double gap       = proof.upper - proof.lower;
+      result.relative_gap    = gap > 0. ? gap / scale : 0.;
+      if (proof.status == ProofStatus::proved)
+        result.kind = MinimumKind::global;
+    }
+
+
+
+    GuidedSearchParameters
+    guided_search_parameters(const Parameters &parameters, const double energy)
+    {
+      GuidedSearchParameters guided;
+      guided.tolerance     = parameters.proof.tolerance * energy;
+      guided.maximum_bytes = memory_left(parameters);
+      guided.n_threads     = parameters.proof.n_threads;
+      return guided;
+    }
+
+
+
+    /// The coarse unknowns of a prolongation that meet at a fine one.
+    NeighbourGraph
+    coarse_neighbours(const Eigen::SparseMatrix<double> &P)
+    {
+      const Eigen::SparseMatrix<double> meeting = P.transpose() * P;
+      NeighbourGraph                    graph(P.cols());
+      for (unsigned int j = 0; j < meeting.cols(); ++j)
+        for (Eigen::SparseMatrix<double>::InnerIterator entry(meeting, j);
+             entry;
+             ++entry)
+          if (entry.row() != j)
+            graph[j].insert(static_cast<unsigned int>(entry.row()));
+      return graph;
+    }
+
+
+
+    /// The search of Search = automatic, and how far it can be from the
+    /// minimum.
+    template <int dim>
+    class AutomaticSearch
+    {
+    public:
+      AutomaticSearch(const Parameters            &parameters,
+                      const ContactBoundary<dim>  &boundary,
+                      const AdhesiveLaw           &law,
+                      const AdhesionIntegral<dim> &adhesion,
+                      const Condensation          &condensed,
+                      const std::function<bool()> &may_go_on,
+                      dealii::Vector<double>      &s,
+                      WhichMinimum                &result)
+        : parameters(parameters)
+        , boundary(boundary)
+        , law(law)
+        , adhesion(adhesion)
+        , condensed(condensed)
+        , may_go_on(may_go_on)
+        , s(s)
+        , result(result)
+        , method(parameters.majorise_minimise)
+        , graph(neighbours(boundary))
+        , bonds(lumped_bonds(adhesion, s.size(), law.bond_threshold()))
+        , energy(energy_of_bonds(condensed, bonds))
+        , separable(is_separable(parameters, law))
+      {
+        result.search_nodes = s.size();
+      }
+
+      /// All on the contact nodes themselves, with a look at coarser ones
+      /// before the expensive part.
+      void
+      search_all_nodes()
+      {
+        const auto look_at_coarser = [&](const bool found,
+                                         dealii::Vector<double> &) {
+          return s.size() > coarse_look && !found &&
+                 look_on_coarse_mesh(coarse_look);
+        };
+        const GuidedSearchResult guided =
+          guided_search(condensed.schur_complement(),
+                        condensed.load(),
+                        adhesion,
+                        bonds,
+                        separable,
+                        graph,
+                        method,
+                        guided_search_parameters(parameters, energy),
+                        s,
+                        may_go_on,
+                        look_at_coarser);
+        const bool rests_on_coarse = result.closed_nodes > 0;
+        add_search(guided.search, s.size(), result);
+        if (guided.proof && !rests_on_coarse)
+          add_proof(*guided.proof, bonds, condensed, result);
+      }
+
+      /// Starts from rest and from all bonds broken, the rest on coarser nodes.
+      void
+      search_coarse_nodes()
+      {
+        if (separable && is_certified())
+          return;
+        BondSearchParameters starts;
+        starts.maximum_shift = 0;
+        starts.flips         = false;
+        starts.splits        = false;
+        if (!search(starts) && look_on_coarse_mesh(coarse_look))
+          return;
+        look_on_coarse_mesh(largest_automatic_search);
+        BondSearchParameters edges = starts;
+        edges.starts               = false;
+        edges.maximum_shift        = 1;
+        search(edges);
+        if (separable)
+          is_certified();
+      }
+
+    private:
+      bool
+      is_certified()
+      {
+        BranchAndBoundParameters no_nodes;
+        no_nodes.maximum_nodes = 0;
+        no_nodes.tolerance     = parameters.proof.tolerance * energy;
+        const BranchAndBoundResult certificate =
+          BranchAndBound(no_nodes).minimize(condensed.schur_complement(),
+                                            condensed.load(),
+                                            bonds,
+                                            s);
+        if (certificate.status != ProofStatus::proved)
+          return false;
+        add_proof(certificate, bonds, condensed, result);
+        return true;
+      }
+
+      /// Returns whether it found something.
+      bool
+      search(const BondSearchParameters &moves)
+      {
+        const unsigned int     before = result.search_improvements;
+        const BondSearchResult search =
+          search_bonds(condensed.schur_complement(),
+                       condensed.load(),
+                       adhesion,
+                       law.bond_threshold(),
+                       graph,
+                       method,
+                       moves,
+                       s,
+                       may_go_on);
+        add_search(search, result.search_nodes, result);
+        return result.search_improvements > before;
+      }
+
+      /// A search on a coarser contact mesh of at most @p n_nodes. The best of
+      /// it is minimised on the finer ones, and taken if it is lower there.
+      /// Returns whether the coarse minimum is known with lumped bonds, and
+      /// leads to the state that is known already.
+      bool
+      look_on_coarse_mesh(const unsigned int n_nodes)
+      {
+        const auto prolongations = coarsen(boundary, n_nodes);
+        const auto monitor       = [&](const auto &) { return may_go_on(); };
+        bool       is_closed     = false;
+
+        std::vector<std::string> failures;
+        dealii::Vector<double>   point = coarse_start(
+          condensed.schur_complement(),
+          condensed.load(),
+          adhesion,
+          prolongations,
+          method,
+          failures,
+          monitor,
+          [&](const dealii::FullMatrix<double> &S,
+              const dealii::Vector<double>     &g,
+              const PiecewiseQuadratic         &phi,
+              dealii::Vector<double>           &coarse_s) {
+            const GuidedSearchResult guided = guided_search(
+              S,
+              g,
+              phi,
+              lumped_bonds(phi, coarse_s.size(), law.bond_threshold()),
+              false,
+              coarse_neighbours(prolongations.back()),
+              method,
+              guided_search_parameters(parameters, energy),
+              coarse_s,
+              may_go_on);
+            add_search(guided.search, coarse_s.size(), result);
+            is_closed = guided.is_closed;
+          });
+        CondensedProblem             problem(condensed.schur_complement(),
+                                 condensed.load(),
+                                 adhesion,
+                                 point);
+        const MajoriseMinimiseResult minimum =
+          minimise_trial(method, problem, monitor);
+        const auto given = CondensedProblem(condensed.schur_complement(),
+                                            condensed.load(),
+                                            adhesion,
+                                            s)
+                             .evaluate();
+        const double above = minimum.functional - given.functional;
+        if (minimum.status != SolverStatus::success)
+          {
+            ++result.search_failures;
+            return false;
+          }
+        if (above < -given.functional_rounding)
+          {
+            s = point;
+            ++result.search_improvements;
+          }
+        is_closed = is_closed && std::abs(above) <= given.functional_rounding;
+        if (is_closed)
+          result.closed_nodes = result.search_nodes;
+        return is_closed;
+      }
+
+      const Parameters            &parameters;
+      const ContactBoundary<dim>  &boundary;
+      const AdhesiveLaw           &law;
+      const AdhesionIntegral<dim> &adhesion;
+      const Condensation          &condensed;
+      const std::function<bool()> &may_go_on;
+      dealii::Vector<double>      &s;
+      WhichMinimum                &result;
+      const MajoriseMinimise       method;
+      const NeighbourGraph         graph;
+      const SeparableBonds         bonds;
+      const double                 energy; ///< of bonds
+      const bool                   separable;
+    };
+
+
+
+    template <int dim>
+    void
+    prove(const Parameters            &parameters,
+          const AdhesiveLaw           &law,
+          const AdhesionIntegral<dim> &adhesion,
+          const Condensation          &condensed,
+          const std::function<bool()> &may_go_on,
+          dealii::Vector<double>      &s,
+          WhichMinimum                &result)
+    {
+      const SeparableBonds bonds =
+        lumped_bonds(adhesion, s.size(), law.bond_threshold());
+      const double functional = condensed_functional(condensed, adhesion, s);
+      BranchAndBoundParameters proof_parameters = parameters.proof;
+      proof_parameters.tolerance *= energy_of_bonds(condensed, bonds);
+      proof_parameters.maximum_bytes = memory_left(parameters);
+      const BranchAndBoundResult proof =
+        BranchAndBound(proof_parameters)
+          .minimize(condensed.schur_complement(),
+                    condensed.load(),
+                    bonds,
+                    s,
+                    [&](const ProofProgress &) { return may_go_on(); });
+      add_proof(proof, bonds, condensed, result);
+      result.proof_history = proof.history;
+      for (ProofProgress &progress : result.proof_history)
+        {
+          progress.lower += condensed.energy_at_zero();
+          progress.upper += condensed.energy_at_zero();
+        }
+      // A rounding in J is no better minimum.
+      if (proof.upper < functional - proof_parameters.tolerance)
+        s = proof.s;
+    }
+  } // namespace
+
+
+
+  std::string
+  to_string(const MinimumKind kind)
+  {
+    switch (kind)
+      {
+        case MinimumKind::stationary:
+          return "stationary";
+        case MinimumKind::local_minimum:
+          return "local minimum";
+        case MinimumKind::best_known:
+          return "best known";
+        case MinimumKind::global:
+          return "global";
+      }
+    return "unknown";
+  }
+
+
+
+  template <int dim>
+  MinimumKind
+  kind_without_search(const AdhesiveLaw            &law,
+                      const AdhesionIntegral<dim>  &adhesion,
+                      const dealii::Vector<double> &s)
+  {
+    if (law.shape() == LawShape::convex || s.size() == 0)
+      return MinimumKind::global;
+
+    // No quadrature point is so close to the kink that it changes its branch.
+    dealii::Vector<double> more = s, less = s;
+    more *= 1. + kink_width;
+    less *= 1. - kink_width;
+    const Eigen::SparseMatrix<double> difference =
+      adhesion.curvature(more) - adhesion.curvature(less);
+    return difference.norm() == 0. ? MinimumKind::local_minimum :
+                                     MinimumKind::stationary;
+  }
+
+
+
+  template <int dim>
+  WhichMinimum
+  find_better_minimum(const Parameters            &parameters,
+                      const ContactBoundary<dim>  &boundary,
+                      const AdhesiveLaw           &law,
+                      const AdhesionIntegral<dim> &adhesion,
+                      const Condensation          &condensed,
+                      const std::function<bool()> &may_go_on,
+                      dealii::Vector<double>      &s)
+  {
+    WhichMinimum result;
+    result.kind = kind_without_search(law, adhesion, s);
+    if (result.kind == MinimumKind::global)
+      return result;
+
+    if (law.shape() == LawShape::other &&
+        (wants_search(parameters) || parameters.prove))
+      {
+        const std::string reason = "needs a law with two branches, which " +
+                                   parameters.law.name + " is not";
+        if (parameters.prove)
+          throw BadInput({parameters.scene + ": Solver/Prove " + reason});
+        if (parameters.search != BondSearchChoice::automatic)
+          throw BadInput({parameters.scene + ": Solver/Search " + reason});
+        result.notes.push_back("no search for a lower minimum: that " + reason);
+        return result;
+      }
+
+    if (wants_search(parameters))
+      {
+        if (parameters.search == BondSearchChoice::automatic)
+          {
+            AutomaticSearch<dim> automatic(parameters,
+                                           boundary,
+                                           law,
+                                           adhesion,
+                                           condensed,
+                                           may_go_on,
+                                           s,
+                                           result);
+            if (s.size() <= largest_automatic_search)
+              automatic.search_all_nodes();
+            else
+              automatic.search_coarse_nodes();
+          }
+        else
+          add_search(search_bonds(condensed.schur_complement(),
+                                  condensed.load(),
+                                  adhesion,
+                                  law.bond_threshold(),
+                                  neighbours(boundary),
+                                  MajoriseMinimise(
+                                    parameters.majorise_minimise),
+                                  search_parameters(parameters),
+                                  s,
+                                  may_go_on),
+                     s.size(),
+                     result);
+        if (result.kind != MinimumKind::best_known &&
+            result.kind != MinimumKind::global)
+          result.kind = kind_without_search(law, adhesion, s);
+      }
+    if (parameters.prove)
+      prove(parameters, law, adhesion, condensed, may_go_on, s, result);
+    result.interrupted = !may_go_on();
+    return result;
+  }
+
+
+
+  template MinimumKind
+  kind_without_search(const AdhesiveLaw &,
+                      const AdhesionIntegral<2> &,
+                      const dealii::Vector<double> &);
+  template MinimumKind
+  kind_without_search(const AdhesiveLaw &,
+                      const AdhesionIntegral<3> &,
+                      const dealii::Vector<double> &);
+  template WhichMinimum
+  find_better_minimum(const Parameters &,
+                      const ContactBoundary<2> &,
+                      const AdhesiveLaw &,
+                      const AdhesionIntegral<2> &,
+                      const Condensation &,
+                      const std::function<bool()> &,
+                      dealii::Vector<double> &);
+  template WhichMinimum
+  find_better_minimum(const Parameters &,
+                      const ContactBoundary<3> &,
+                      const AdhesiveLaw &,
+                      const AdhesionIntegral<3> &,
+                      const Condensation &,
+                      const std::function<bool()> &,
+                      dealii::Vector<double> &);
+} // namespace Debond
