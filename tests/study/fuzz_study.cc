@@ -11,7 +11,7 @@
 #include <iostream>
 #include <regex>
 
-#include "../application/mutator.h"
+#include "../program/mutator.h"
 #include "../check.h"
 
 using namespace Debond;
