@@ -232,11 +232,14 @@ namespace Debond
       point_at(const std::array<double, dim> &barycentric) const
       {
         // The sample points on the edge of the face are moved inwards, so that
-        // a traction which jumps there is taken from this side of the jump.
+        // a traction which jumps there is taken from this side of the jump. A
+        // coordinate that all vertices share stays as it is, for the traction
+        // may jump there, too.
         constexpr double   inset = 1e-12;
-        dealii::Point<dim> point;
-        for (unsigned int v = 0; v < dim; ++v)
-          point += ((1. - inset) * barycentric[v] + inset / dim) * vertices[v];
+        dealii::Point<dim> point = vertices[0];
+        for (unsigned int v = 1; v < dim; ++v)
+          point += ((1. - inset) * barycentric[v] + inset / dim) *
+                   (vertices[v] - vertices[0]);
         return point;
       }
 
@@ -395,49 +398,116 @@ namespace Debond
 
 
 
-    /// Throws std::invalid_argument if the halves of the cell, of their halves
-    /// and so on, in which most of the body force is, keep too much of it.
+    /// Values in a part of a cell that differ by less do not grow without bound
+    /// there.
+    constexpr double largest_ratio = 2.;
+
+
+
+    /// The halves of a simplex, cut at the middle of its longest edge.
+    template <int dim>
+    std::array<Simplex<dim>, 2>
+    bisect(const Simplex<dim> &simplex)
+    {
+      unsigned int a = 0, b = 1;
+      for (unsigned int v = 0; v <= dim; ++v)
+        for (unsigned int w = v + 1; w <= dim; ++w)
+          if (simplex[v].distance_square(simplex[w]) >
+              simplex[a].distance_square(simplex[b]))
+            {
+              a = v;
+              b = w;
+            }
+      const dealii::Point<dim> middle =
+        simplex[a] + 0.5 * (simplex[b] - simplex[a]);
+      std::array<Simplex<dim>, 2> halves = {{simplex, simplex}};
+      halves[0][b]                       = middle;
+      halves[1][a]                       = middle;
+      return halves;
+    }
+
+
+
+    /// Throws std::invalid_argument if the body force grows without bound in
+    /// the cell so much that it has no integral. The parts of the cell in which
+    /// it is large and varies, those at a pole, are halved again and again.
+    /// Their share of the integral stays as it is for 1/x and for 1/r^2 around
+    /// a line, grows for 1/x^2, and halves for 1/sqrt(x) when parts are a
+    /// quarter as wide.
     template <int dim>
     void
-    check_growth(Simplex<dim>            simplex,
+    check_growth(const Simplex<dim>     &cell,
                  const SimplexRule<dim> &rule,
                  const std::string      &name,
                  CheckedLoad<dim>       &body_force)
     {
-      const auto mean = [&](const Simplex<dim> &part) {
-        double sum = 0.;
-        for (unsigned int q = 0; q < rule.size(); ++q)
-          sum += rule.weight(q) * body_force(rule.point(q, part)).norm();
-        return sum;
+      constexpr unsigned int first_halvings = dim == 2 ? 8 : 6;
+      constexpr unsigned int last_halvings  = dim == 2 ? 16 : 15;
+      constexpr double       least_growth   = 3.;
+      constexpr double       largest_share  = 0.7;
+
+      struct Part
+      {
+        Simplex<dim>       simplex;
+        double             smallest = 0., largest = 0.; // of the body force
+        bool               varies = true;
+        dealii::Point<dim> place; // of the largest
       };
 
-      const double all     = mean(simplex);
-      double       measure = 1.;
-      double       part    = 1.;
-      for (unsigned int k = 0; k < bisections_to_a_point; ++k)
+      // The smallest value stands for all in a part: the largest one depends on
+      // how close to the pole a point of the rule happens to be.
+      std::vector<Part> parts(1);
+      parts[0].simplex = cell;
+      double mean = 0., share_before = 0.;
+      for (unsigned int halvings = 1; halvings <= last_halvings; ++halvings)
         {
-          // At the middle of the longest edge.
-          unsigned int a = 0, b = 1;
-          for (unsigned int v = 0; v <= dim; ++v)
-            for (unsigned int w = v + 1; w <= dim; ++w)
-              if (simplex[v].distance_square(simplex[w]) >
-                  simplex[a].distance_square(simplex[b]))
-                {
-                  a = v;
-                  b = w;
-                }
-          const dealii::Point<dim> middle =
-            simplex[a] + 0.5 * (simplex[b] - simplex[a]);
-          Simplex<dim> first = simplex, second = simplex;
-          first[b]              = middle;
-          second[a]             = middle;
-          const double in_first = mean(first), in_second = mean(second);
-          simplex = in_first > in_second ? first : second;
-          measure *= 0.5;
-          part = measure * std::max(in_first, in_second);
+          const double measure = std::ldexp(1., -static_cast<int>(halvings));
+          std::vector<Part> halves;
+          for (const Part &part : parts)
+            for (const Simplex<dim> &simplex : bisect(part.simplex))
+              {
+                Part half;
+                half.simplex  = simplex;
+                half.smallest = std::numeric_limits<double>::max();
+                for (unsigned int q = 0; q < rule.size(); ++q)
+                  {
+                    const dealii::Point<dim> point = rule.point(q, simplex);
+                    const double             size  = body_force(point).norm();
+                    half.smallest = std::min(half.smallest, size);
+                    if (size > half.largest)
+                      {
+                        half.largest = size;
+                        half.place   = point;
+                      }
+                  }
+                half.varies = half.largest > largest_ratio * half.smallest;
+                // Points on both sides of a pole may have about one value.
+                const bool goes_on = half.varies || part.varies;
+                if (halvings == first_halvings ||
+                    (halvings < first_halvings && !goes_on))
+                  mean += measure * half.smallest;
+                if (goes_on)
+                  halves.push_back(half);
+              }
+          parts.clear();
+          double share = 0.;
+          for (const Part &half : halves)
+            if (halvings < first_halvings || half.largest > least_growth * mean)
+              {
+                parts.push_back(half);
+                share += measure * half.smallest;
+              }
+          if (halvings == first_halvings)
+            share_before = share;
+          if (halvings == last_halvings && share > largest_share * share_before)
+            throw_unbounded(name,
+                            std::max_element(parts.begin(),
+                                             parts.end(),
+                                             [](const Part &a, const Part &b) {
+                                               return a.largest < b.largest;
+                                             })
+                              ->place);
         }
-      if (part > largest_part_at_a_point * all)
-        throw_unbounded(name, simplex[0]);
     }
 
 
@@ -448,9 +518,6 @@ namespace Debond
                    const dealii::Function<dim>   &function,
                    dealii::Vector<double>        &forces)
     {
-      // Values in a cell that differ by less do not grow without bound there.
-      constexpr double largest_ratio = 2.;
-
       const std::string      name = "body force";
       CheckedLoad<dim>       body_force(function, name);
       const SimplexRule<dim> rule;

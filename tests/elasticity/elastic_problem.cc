@@ -323,6 +323,18 @@ test_rough_loads()
     2. * (std::sqrt(a) + std::sqrt(0.4 - a)),
     1e-5);
 
+  // All points of the side are on the same side of a jump.
+  {
+    Loads<2> loads;
+    loads.tractions[top] = load<2>([](const Point<2> &p) {
+      return Tensor<1, 2>({0., p[1] < 0.04 ? 1. : 2.});
+    });
+    problem.assemble(Material(), loads);
+    check("a jump at the side's own y",
+          std::abs(problem.total_load()[1] / 0.8 - 1.),
+          1e-12);
+  }
+
   const auto body = [&](const std::function<double(double)> &f) {
     Loads<2> loads;
     loads.body_force = load<2>([&](const Point<2> &p) {
@@ -359,6 +371,8 @@ test_rough_loads()
     [&] { resultant([](const double x) { return 1. / std::abs(x); }); });
   print_error([&] { body(near_node); });
   print_error([&] { body(inside); });
+  print_error([&] { body([](const double x) { return 1. / x; }); });
+  print_error([&] { body([a](const double x) { return 1. / (x - a); }); });
 
   // In 3D the pole may run along a line, across the faces or their sides.
   Triangulation<3> solid;
@@ -386,6 +400,23 @@ test_rough_loads()
   });
   print_error([&] {
     on_top([](const Point<3> &p) { return 1e-6 / std::pow(p[0] - 0.1, 2); });
+  });
+
+  const auto in_bar = [&](const std::function<double(Point<3>)> &f) {
+    Loads<3> loads;
+    loads.body_force = load<3>([&](const Point<3> &p) {
+      return Tensor<1, 3>({f(p), 0., 0.});
+    });
+    bar.assemble(Material(), loads);
+    return bar.total_load()[0];
+  };
+  check("1/r in the body in 3D",
+        in_bar([](const Point<3> &p) { return 1. / p.norm(); }) > 0.);
+  print_error([&] { in_bar([](const Point<3> &p) { return 1. / p[0]; }); });
+  print_error([&] {
+    in_bar([](const Point<3> &p) {
+      return 1. / (std::pow(p[0] - 0.13, 2) + std::pow(p[1] - 0.011, 2));
+    });
   });
 }
 

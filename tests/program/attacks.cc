@@ -142,7 +142,9 @@ namespace
     const unsigned int form = random.below(3), d = random.below(dim);
     const double       length = attack.own.lengths[d];
     const unsigned int n      = attack.own.cells[d];
-    const double       jump   = length * (1 + random.below(n)) / n;
+    const unsigned int before = 1 + random.below(n);
+    // At the end of the box rounding would say on which side of the jump it is.
+    const double jump = before < n ? length * before / n : 2. * length;
 
     // The components in global coordinates, of the point in the box.
     const double      angle    = attack.rotation * std::acos(-1.) / 180.;
@@ -636,7 +638,9 @@ namespace
                 << scene_text(scene);
     else if (print_figures)
       std::cout << number << ": " << outcome.kind << ": " << outcome.detail
-                << std::endl;
+                << '\n'
+                << (outcome.kind == "rejected" ? scene_text(scene) : "")
+                << std::flush;
   }
 } // namespace
 
