@@ -11,8 +11,8 @@
 #include <iostream>
 #include <regex>
 
-#include "../program/mutator.h"
 #include "../check.h"
+#include "../program/mutator.h"
 
 using namespace Debond;
 using namespace Fuzz;
