@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# check_install.sh DEBOND BUILD_DIRECTORY CMAKE: what is installed into an empty
+# directory runs there, and its pages find each other.
+tests=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+. "$tests/../common.sh"
+build=$2
+cmake=$3
+prefix=$directory/prefix
+
+"$cmake" --install "$build" --prefix "$prefix" >log
+mkdir work
+cd work
+"$prefix/bin/debond" "$prefix/share/debond/prm/benchmark-40x4.prm" >log ||
+  fail "The installed program fails: $(cat log)"
+grep -Eq "status +success" log || fail "no success: $(cat log)"
+"$prefix/bin/debond" --study --validate \
+  "$prefix/share/debond/prm/studies/table-1.prm" >log ||
+  fail "An installed study is not read: $(cat log)"
+"$tests/check_links.py" "$prefix/share/doc/debond"
+[ -s "$prefix/share/doc/debond/LICENSE" ] || fail "no licence"
