@@ -438,6 +438,67 @@ namespace Debond
 
 
 
-  template class ElasticProblem<2>;
-  template class ElasticProblem<3>;
+  // What is defined here; the rest is in elastic_assembly.cc.
+  template ElasticProblem<2>::ElasticProblem(const dealii::Triangulation<2> &,
+                                             const BoundaryConditions &);
+  template const dealii::DoFHandler<2> &
+  ElasticProblem<2>::dof_handler() const;
+  template const dealii::Mapping<2> &
+  ElasticProblem<2>::mapping() const;
+  template const dealii::SparseMatrix<double> &
+  ElasticProblem<2>::matrix() const;
+  template const dealii::TrilinosWrappers::SparseMatrix &
+  ElasticProblem<2>::trilinos_matrix() const;
+  template double
+  ElasticProblem<2>::diagonal_entry(const unsigned int) const;
+  template const dealii::Vector<double> &
+  ElasticProblem<2>::load() const;
+  template const dealii::Vector<double> &
+  ElasticProblem<2>::applied_nodal_forces() const;
+  template const ContactBoundary<2> &
+  ElasticProblem<2>::contact_boundary() const;
+  template const std::vector<ElasticProblem<2>::Frame> &
+  ElasticProblem<2>::contact_frames() const;
+  template unsigned int
+  ElasticProblem<2>::n_dofs() const;
+  template unsigned int
+  ElasticProblem<2>::n_free_dofs() const;
+  template unsigned int
+  ElasticProblem<2>::n_dofs_paper() const;
+  template bool
+  ElasticProblem<2>::is_constrained(
+    const dealii::types::global_dof_index) const;
+  template const Material &
+  ElasticProblem<2>::material() const;
+  template ElasticProblem<3>::ElasticProblem(const dealii::Triangulation<3> &,
+                                             const BoundaryConditions &);
+  template const dealii::DoFHandler<3> &
+  ElasticProblem<3>::dof_handler() const;
+  template const dealii::Mapping<3> &
+  ElasticProblem<3>::mapping() const;
+  template const dealii::SparseMatrix<double> &
+  ElasticProblem<3>::matrix() const;
+  template const dealii::TrilinosWrappers::SparseMatrix &
+  ElasticProblem<3>::trilinos_matrix() const;
+  template double
+  ElasticProblem<3>::diagonal_entry(const unsigned int) const;
+  template const dealii::Vector<double> &
+  ElasticProblem<3>::load() const;
+  template const dealii::Vector<double> &
+  ElasticProblem<3>::applied_nodal_forces() const;
+  template const ContactBoundary<3> &
+  ElasticProblem<3>::contact_boundary() const;
+  template const std::vector<ElasticProblem<3>::Frame> &
+  ElasticProblem<3>::contact_frames() const;
+  template unsigned int
+  ElasticProblem<3>::n_dofs() const;
+  template unsigned int
+  ElasticProblem<3>::n_free_dofs() const;
+  template unsigned int
+  ElasticProblem<3>::n_dofs_paper() const;
+  template bool
+  ElasticProblem<3>::is_constrained(
+    const dealii::types::global_dof_index) const;
+  template const Material &
+  ElasticProblem<3>::material() const;
 } // namespace Debond
