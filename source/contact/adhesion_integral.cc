@@ -46,8 +46,7 @@ namespace Debond
     xi = 0.;
     for (const Point &point : points(s))
       {
-        const double force =
-          point.weight * law.clarke_interval(point.trace(s)).upper;
+        const double force = point.weight * law.derivative(point.trace(s));
         for (unsigned int k = 0; k < point.n_nodes; ++k)
           xi(point.nodes[k]) += point.shape[k] * force;
       }

@@ -1,20 +1,60 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/parameter_table.h>
+#include <debond/base/text.h>
 #include <debond/contact/law.h>
 #include <debond/contact/laws/none.h>
 #include <debond/contact/laws/winkler.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <map>
-#include <stdexcept>
 
 namespace Debond
 {
-  LawShape
-  AdhesiveLaw::shape() const
+  AdhesiveLaw::AdhesiveLaw(const std::vector<ConvexBranch> &branches)
+    : minimum(branches)
   {
-    return LawShape::other;
+    for (unsigned int k = 0; k < minimum.size(); ++k)
+      names.push_back(branches[minimum[k].branch].name);
+  }
+
+
+
+  double
+  AdhesiveLaw::value(const double s) const
+  {
+    return s > 0. ? 0. : minimum.value(s);
+  }
+
+
+
+  Interval
+  AdhesiveLaw::clarke_interval(const double s) const
+  {
+    if (s > 0.)
+      return {0., 0.};
+    const unsigned int k     = minimum.index(s);
+    const double       force = minimum[k].derivative(s);
+    // The other side, if s is a kink.
+    const double other =
+      s == 0. ? 0. :
+                (s == minimum[k].lower ? minimum[k + 1].derivative(s) : force);
+    return {std::min(force, other), std::max(force, other)};
+  }
+
+
+
+  double
+  AdhesiveLaw::derivative(const double s) const
+  {
+    return s > 0. ? 0. : minimum[minimum.index(s)].derivative(s);
+  }
+
+
+
+  double
+  AdhesiveLaw::curvature(const double s) const
+  {
+    return s > 0. ? 0. : minimum[minimum.index(s)].curvature;
   }
 
 
@@ -44,24 +84,70 @@ namespace Debond
 
 
 
+  std::vector<double>
+  AdhesiveLaw::kinks() const
+  {
+    std::vector<double> result;
+    for (unsigned int k = minimum.size() - 1; k > 0; --k)
+      result.push_back(minimum[k].upper);
+    if (!is_loose(0))
+      result.push_back(0.);
+    return result;
+  }
+
+
+
+  const BranchMinimum &
+  AdhesiveLaw::branches() const
+  {
+    return minimum;
+  }
+
+
+
+  const std::string &
+  AdhesiveLaw::name(const unsigned int piece) const
+  {
+    return names[piece];
+  }
+
+
+
+  bool
+  AdhesiveLaw::is_loose(const unsigned int piece) const
+  {
+    return minimum[piece].curvature == 0. && minimum[piece].slope == 0.;
+  }
+
+
+
+  double
+  AdhesiveLaw::bond_threshold() const
+  {
+    return std::abs(minimum[minimum.size() - 1].upper);
+  }
+
+
+
+  double
+  AdhesiveLaw::bond_strength() const
+  {
+    double strength = 0.;
+    for (const double kink : kinks())
+      strength = std::max(strength, -clarke_interval(kink).lower);
+    return strength;
+  }
+
+
+
   namespace
   {
-    using Factory =
-      std::function<std::unique_ptr<AdhesiveLaw>(const ContactLawParameters &)>;
-
-    const std::map<std::string, Factory> &
-    registry()
+    const std::vector<LawKind> &
+    kinds()
     {
-      static const std::map<std::string, Factory> laws = {
-        {"none",
-         [](const ContactLawParameters &) {
-           return std::make_unique<NoAdhesion>();
-         }},
-        {"winkler", [](const ContactLawParameters &parameters) {
-           return std::make_unique<WinklerLaw>(parameters.bond_stiffness,
-                                               parameters.bond_threshold);
-         }}};
-      return laws;
+      static const std::vector<LawKind> all = {winkler_kind(),
+                                               no_adhesion_kind()};
+      return all;
     }
   } // namespace
 
@@ -71,25 +157,40 @@ namespace Debond
   law_names()
   {
     std::vector<std::string> names;
-    for (const auto &law : registry())
-      names.push_back(law.first);
+    for (const LawKind &kind : kinds())
+      names.push_back(kind.name);
+    std::sort(names.begin(), names.end());
     return names;
   }
 
 
 
-  std::unique_ptr<AdhesiveLaw>
-  make_law(const ContactLawParameters &parameters)
+  void
+  declare_laws(ParameterTable &table)
   {
-    const auto law = registry().find(parameters.name);
-    if (law == registry().end())
-      {
-        std::string message =
-          "The contact law \"" + parameters.name + "\" is unknown; known are:";
-        for (const std::string &name : law_names())
-          message += " " + name;
-        throw std::invalid_argument(message);
-      }
-    return law->second(parameters);
+    std::vector<std::string> descriptions;
+    for (const LawKind &kind : kinds())
+      descriptions.push_back(kind.name + " " + kind.description);
+    table.declare("Contact law/Law",
+                  kinds()[0].name,
+                  one_of(law_names()),
+                  "The adhesive law: " + join(descriptions, "; "),
+                  "none");
+    for (const LawKind &kind : kinds())
+      kind.declare(table);
+  }
+
+
+
+  ContactLawParameters
+  read_law(ParameterTable &table)
+  {
+    const std::string name = table.get("Contact law/Law");
+    const auto        kind =
+      std::find_if(kinds().begin(), kinds().end(), [&](const LawKind &k) {
+        return k.name == name;
+      });
+    // Another name has been rejected already.
+    return (kind == kinds().end() ? kinds()[0] : *kind).read(table);
   }
 } // namespace Debond

@@ -100,22 +100,7 @@ namespace Debond
     declare_loads(table);
     declare_load_path(table);
 
-    table.declare(
-      "Contact law/Law",
-      defaults.law.name,
-      one_of(law_names()),
-      "The adhesive law: winkler is the paper's, with bonds that pull in proportion to the displacement and break at the threshold; none has no adhesion",
-      "none");
-    table.declare("Contact law/Bond stiffness",
-                  shortest_text(defaults.law.bond_stiffness),
-                  quantity(true),
-                  "a",
-                  "force per volume");
-    table.declare("Contact law/Bond threshold",
-                  shortest_text(defaults.law.bond_threshold),
-                  quantity(),
-                  "M, the displacement at which bonds break",
-                  "length");
+    declare_laws(table);
     table.declare(
       "Contact law/Quadrature",
       "nodal",
@@ -331,11 +316,9 @@ namespace Debond
     p.loads     = read_loads(p.dimension, p.material, table);
     p.load_path = read_load_path(table);
 
-    p.law.name           = table.get("Contact law/Law");
-    p.law.bond_stiffness = table.get_double("Contact law/Bond stiffness");
-    p.law.bond_threshold = table.get_double("Contact law/Bond threshold");
-    p.quadrature_name    = table.get("Contact law/Quadrature");
-    p.quadrature = ContactQuadratureParameters::parse(p.quadrature_name);
+    p.law             = read_law(table);
+    p.quadrature_name = table.get("Contact law/Quadrature");
+    p.quadrature      = ContactQuadratureParameters::parse(p.quadrature_name);
 
     read_solver(table, p);
     p.verification_tolerance = table.get_double("Verification/Tolerance");

@@ -128,10 +128,9 @@ namespace Debond
     line(out, "contact") << list(parameters.contact_boundaries) << ", "
                          << summary.contact_nodes << " nodes\n";
     line(out, "contact law") << parameters.law.name;
-    if (parameters.law.name != "none")
-      out << ", a = " << parameters.law.bond_stiffness
-          << ", M = " << parameters.law.bond_threshold << ", "
-          << parameters.quadrature_name << " quadrature";
+    if (!parameters.law.data.empty())
+      out << ", " << parameters.law.data << ", " << parameters.quadrature_name
+          << " quadrature";
     out << '\n';
     line(out, "method") << summary.method;
     if (summary.linear_solver != LinearSolver::none)

@@ -121,7 +121,7 @@ namespace Debond
   Scene<dim>::add_contact(const Parameters   &parameters,
                           const MatrixStorage storage)
   {
-    adhesive_law = make_law(parameters.law);
+    adhesive_law = std::make_unique<AdhesiveLaw>(parameters.law.branches);
     quadrature =
       std::make_unique<ContactQuadrature<dim>>(parameters.quadrature,
                                                adhesive_law->kinks());

@@ -56,13 +56,12 @@ namespace Debond
 
 
 
-    /// Whether each contact node has a bond of its own, with two branches.
+    /// Whether each contact node has a multiple of the law for its own.
     bool
-    is_separable(const Parameters &parameters, const AdhesiveLaw &law)
+    is_separable(const Parameters &parameters)
     {
-      return law.shape() == LawShape::two_branches &&
-             parameters.quadrature.rule ==
-               ContactQuadratureParameters::Rule::nodal;
+      return parameters.quadrature.rule ==
+             ContactQuadratureParameters::Rule::nodal;
     }
 
 
@@ -85,23 +84,23 @@ namespace Debond
 
 
 
-    /// What the bonds can change in J: at most their energy if all are broken,
+    /// What the bonds can change in J: at most the most that they can take up,
     /// and no more than the contact nodes gain without foundation and bonds,
     /// 1/2 g'S^{-1}g.
     double
-    energy_of_bonds(const Condensation &condensed, const SeparableBonds &bonds)
+    energy_of_bonds(const Condensation      &condensed,
+                    const SeparableBranches &lumped)
     {
       return std::min(condensed.energy_without_contact() +
                         condensed.energy_at_zero(),
-                      0.5 * bonds.stiffness.sum() * bonds.threshold *
-                        bonds.threshold);
+                      lumped.largest_value());
     }
 
 
 
     void
     add_proof(const BranchAndBoundResult &proof,
-              const SeparableBonds       &bonds,
+              const SeparableBranches    &lumped,
               const Condensation         &condensed,
               WhichMinimum               &result)
     {
@@ -109,7 +108,7 @@ namespace Debond
       result.proof_status    = proof.status;
       result.proof_nodes     = proof.nodes;
       result.lower_bound     = proof.lower + condensed.energy_at_zero();
-      const double scale     = energy_of_bonds(condensed, bonds);
+      const double scale     = energy_of_bonds(condensed, lumped);
       const double gap       = proof.upper - proof.lower;
       result.relative_gap    = gap > 0. ? gap / scale : 0.;
       if (proof.status == ProofStatus::proved)
@@ -171,9 +170,9 @@ namespace Debond
         , result(result)
         , method(parameters.majorise_minimise)
         , graph(neighbours(boundary))
-        , bonds(lumped_bonds(adhesion, s.size(), law.bond_threshold()))
-        , energy(energy_of_bonds(condensed, bonds))
-        , separable(is_separable(parameters, law))
+        , lumped(lumped_branches(adhesion, s.size(), law.branches()))
+        , energy(energy_of_bonds(condensed, lumped))
+        , separable(is_separable(parameters))
       {
         result.search_nodes = s.size();
       }
@@ -192,7 +191,7 @@ namespace Debond
           guided_search(condensed.schur_complement(),
                         condensed.load(),
                         adhesion,
-                        bonds,
+                        lumped,
                         separable,
                         graph,
                         method,
@@ -203,7 +202,7 @@ namespace Debond
         const bool rests_on_coarse = result.closed_nodes > 0;
         add_search(guided.search, s.size(), result);
         if (guided.proof && !rests_on_coarse)
-          add_proof(*guided.proof, bonds, condensed, result);
+          add_proof(*guided.proof, lumped, condensed, result);
       }
 
       /// Starts from rest and from all bonds broken, the rest on coarser nodes.
@@ -237,11 +236,11 @@ namespace Debond
         const BranchAndBoundResult certificate =
           BranchAndBound(no_nodes).minimize(condensed.schur_complement(),
                                             condensed.load(),
-                                            bonds,
+                                            lumped,
                                             s);
         if (certificate.status != ProofStatus::proved)
           return false;
-        add_proof(certificate, bonds, condensed, result);
+        add_proof(certificate, lumped, condensed, result);
         return true;
       }
 
@@ -266,7 +265,7 @@ namespace Debond
 
       /// A search on a coarser contact mesh of at most @p n_nodes. The best of
       /// it is minimised on the finer ones, and taken if it is lower there.
-      /// Returns whether the coarse minimum is known with lumped bonds, and
+      /// Returns whether the coarse minimum is known, if lumped, and
       /// leads to the state that is known already.
       bool
       look_on_coarse_mesh(const unsigned int n_nodes)
@@ -292,7 +291,7 @@ namespace Debond
               S,
               g,
               phi,
-              lumped_bonds(phi, coarse_s.size(), law.bond_threshold()),
+              lumped_branches(phi, coarse_s.size(), law.branches()),
               false,
               coarse_neighbours(prolongations.back()),
               method,
@@ -340,7 +339,7 @@ namespace Debond
       WhichMinimum                &result;
       const MajoriseMinimise       method;
       const NeighbourGraph         graph;
-      const SeparableBonds         bonds;
+      const SeparableBranches      lumped;
       const double                 energy; ///< of bonds
       const bool                   separable;
     };
@@ -357,20 +356,20 @@ namespace Debond
           dealii::Vector<double>      &s,
           WhichMinimum                &result)
     {
-      const SeparableBonds bonds =
-        lumped_bonds(adhesion, s.size(), law.bond_threshold());
+      const SeparableBranches lumped =
+        lumped_branches(adhesion, s.size(), law.branches());
       const double functional = condensed_functional(condensed, adhesion, s);
       BranchAndBoundParameters proof_parameters = parameters.proof;
-      proof_parameters.tolerance *= energy_of_bonds(condensed, bonds);
+      proof_parameters.tolerance *= energy_of_bonds(condensed, lumped);
       proof_parameters.maximum_bytes = memory_left(parameters);
       const BranchAndBoundResult proof =
         BranchAndBound(proof_parameters)
           .minimize(condensed.schur_complement(),
                     condensed.load(),
-                    bonds,
+                    lumped,
                     s,
                     [&](const ProofProgress &) { return may_go_on(); });
-      add_proof(proof, bonds, condensed, result);
+      add_proof(proof, lumped, condensed, result);
       result.proof_history = proof.history;
       for (ProofProgress &progress : result.proof_history)
         {
@@ -410,7 +409,7 @@ namespace Debond
                       const AdhesionIntegral<dim>  &adhesion,
                       const dealii::Vector<double> &s)
   {
-    if (law.shape() == LawShape::convex || s.size() == 0)
+    if (law.branches().size() == 1 || s.size() == 0)
       return MinimumKind::global;
 
     // No quadrature point is so close to the kink that it changes its branch.
@@ -440,11 +439,12 @@ namespace Debond
     if (result.kind == MinimumKind::global)
       return result;
 
-    if (law.shape() == LawShape::other &&
+    if (law.curvature(0.) == 0. &&
         (wants_search(parameters) || parameters.prove))
       {
-        const std::string reason = "needs a law with two branches, which " +
-                                   parameters.law.name + " is not";
+        // The nodes' multiples of the law are known by their curvature at 0.
+        const std::string reason = "needs a law with a curvature at 0, which " +
+                                   parameters.law.name + " does not have";
         if (parameters.prove)
           throw BadInput({parameters.scene + ": Solver/Prove " + reason});
         if (parameters.search != BondSearchChoice::automatic)

@@ -457,10 +457,10 @@ namespace Debond
               const double                least_u,
               const double                largest_force)
     {
-      const auto          law  = make_law(parameters);
+      const AdhesiveLaw   law(parameters.branches);
       std::vector<double> ends = {
-        std::min(least_u, -1.1 * law->bond_threshold())};
-      for (const double kink : law->kinks())
+        std::min(least_u, -1.1 * law.bond_threshold())};
+      for (const double kink : law.kinks())
         if (kink < 0.)
           ends.push_back(kink);
       ends.push_back(0.);
@@ -469,8 +469,8 @@ namespace Debond
         {
           // The force is linear on a branch.
           const double centre    = (ends[k] + ends[k + 1]) / 2.;
-          const double force     = law->clarke_interval(centre).lower;
-          const double curvature = law->curvature(centre);
+          const double force     = law.derivative(centre);
+          const double curvature = law.curvature(centre);
           for (const double end : {ends[k], ends[k + 1]})
             points.emplace_back(end, force + curvature * (end - centre));
         }
@@ -483,8 +483,14 @@ namespace Debond
     bool
     is_same(const ContactLawParameters &a, const ContactLawParameters &b)
     {
-      return a.name == b.name && a.bond_stiffness == b.bond_stiffness &&
-             a.bond_threshold == b.bond_threshold;
+      return std::equal(a.branches.begin(),
+                        a.branches.end(),
+                        b.branches.begin(),
+                        b.branches.end(),
+                        [](const ConvexBranch &c, const ConvexBranch &d) {
+                          return c.curvature == d.curvature &&
+                                 c.slope == d.slope && c.constant == d.constant;
+                        });
     }
 
 

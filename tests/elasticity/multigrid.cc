@@ -8,6 +8,7 @@
 #include <deal.II/lac/solver_cg.h>
 
 #include <debond/contact/adhesion_integral.h>
+#include <debond/contact/laws/winkler.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/elasticity/multigrid.h>
@@ -147,16 +148,13 @@ namespace
 
 
     // The same minimum as the condensed problem's, from its neighbourhood.
-    ContactLawParameters law_parameters;
-    law_parameters.bond_stiffness = 69.;
-    law_parameters.bond_threshold = 0.002;
-    const auto law                = make_law(law_parameters);
+    const AdhesiveLaw law(winkler_law(69., 0.002).branches);
     for (const std::string rule : {"nodal", "gauss 2"})
       {
         const ContactQuadrature<dim> quadrature(
-          ContactQuadratureParameters::parse(rule), law->kinks());
+          ContactQuadratureParameters::parse(rule), law.kinks());
         const AdhesionIntegral<dim> adhesion(serial.problem->contact_boundary(),
-                                             *law,
+                                             law,
                                              quadrature);
         std::vector<unsigned int>   normals;
         for (const auto &node : serial.problem->contact_boundary().nodes)

@@ -5,6 +5,7 @@
 #include <deal.II/base/function_parser.h>
 
 #include <debond/contact/adhesion_integral.h>
+#include <debond/contact/laws/winkler.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/mesh/crossed_mesh.h>
@@ -81,7 +82,7 @@ namespace
   Minimum
   minimise(const dealii::Triangulation<dim> &mesh,
            const std::string                &traction,
-           const ContactLawParameters       &law_parameters)
+           const AdhesiveLaw                &law)
   {
     BoundaryConditions conditions;
     conditions.clamped = {boundary_names<dim>().at("left"),
@@ -97,11 +98,10 @@ namespace
     loads.tractions[boundary_names<dim>().at("top")] = top;
     problem.assemble(Material(), loads);
 
-    const std::unique_ptr<AdhesiveLaw> law = make_law(law_parameters);
-    const ContactQuadrature<dim>       quadrature(
-      ContactQuadratureParameters::parse("nodal"), law->kinks());
+    const ContactQuadrature<dim> quadrature(
+      ContactQuadratureParameters::parse("nodal"), law.kinks());
     const AdhesionIntegral<dim> adhesion(problem.contact_boundary(),
-                                         *law,
+                                         law,
                                          quadrature);
     std::vector<unsigned int>   normals;
     for (const auto &node : problem.contact_boundary().nodes)
@@ -128,9 +128,9 @@ namespace
 
   template <int dim>
   void
-  test(const BoxParameters        &box,
-       const std::string          &traction,
-       const ContactLawParameters &law)
+  test(const BoxParameters &box,
+       const std::string   &traction,
+       const AdhesiveLaw   &law)
   {
     dealii::Triangulation<dim> mesh;
     make_box(box, mesh);
@@ -148,11 +148,11 @@ namespace
         value_error =
           std::max(value_error, std::abs(minimum.value / expected.value - 1.));
         distance =
-          std::max(distance, difference.linfty_norm() / law.bond_threshold);
+          std::max(distance, difference.linfty_norm() / law.bond_threshold());
       }
     const unsigned int n_broken =
       std::count_if(expected.s.begin(), expected.s.end(), [&](const double s) {
-        return s < -law.bond_threshold;
+        return s < -law.bond_threshold();
       });
     std::cout << dim << "D, " << n_broken << " of " << expected.s.size()
               << " bonds broken: J to 1e-12: " << verdict(value_error, 1e-12)
@@ -168,8 +168,8 @@ int
 main(int argc, char *[])
 {
   print_figures = argc > 1;
-  ContactLawParameters law;
-  BoxParameters        box;
+  const AdhesiveLaw law(winkler_law(69., 0.002).branches);
+  BoxParameters     box;
   test<2>(box, "0; if(x < 0.2, 0.69, -0.345)", law);
   box.cells = {{80, 8, 1}};
   test<2>(box, "0; if(x < 0.2, 0.69, -0.345)", law);

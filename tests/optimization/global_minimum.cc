@@ -29,12 +29,45 @@ namespace
 {
   using Vector = dealii::Vector<double>;
 
+  /// k/2 min(s^2, M^2)
+  BranchMinimum
+  bond(const double k, const double M)
+  {
+    return BranchMinimum(
+      {{k, 0., 0.L, "bonded"}, {0., 0., 0.5L * k * M * M, "broken"}});
+  }
+
+
+
+  SeparableBranches
+  bonds_of(const Eigen::VectorXd &stiffness, const double threshold)
+  {
+    std::vector<BranchMinimum> f;
+    for (const double k : stiffness)
+      f.push_back(bond(k, threshold));
+    return SeparableBranches(f);
+  }
+
+
+
   struct Problem
   {
     Eigen::MatrixXd            S_eigen;
     dealii::FullMatrix<double> S;
     Vector                     g;
-    SeparableBonds             bonds;
+    SeparableBranches          bonds; ///< with two branches
+
+    double
+    stiffness(const unsigned int i) const
+    {
+      return bonds.f[i][0].curvature;
+    }
+
+    double
+    threshold(const unsigned int i) const
+    {
+      return -bonds.f[i][1].upper;
+    }
 
     /// As exact as a double can be: bounds come close to it.
     double
@@ -44,11 +77,12 @@ namespace
       for (unsigned int i = 0; i < s.size(); ++i)
         {
           const long double s_i   = s(i);
-          const long double bond  = std::min(std::abs(s(i)), bonds.threshold);
+          const long double M     = threshold(i);
+          const long double bond  = std::min(std::abs(s_i), M);
           long double       force = -g(i);
           for (unsigned int j = 0; j < s.size(); ++j)
             force += 0.5L * S(i, j) * s(j);
-          sum += force * s_i + 0.5L * bonds.stiffness(i) * bond * bond;
+          sum += force * s_i + 0.5L * stiffness(i) * bond * bond;
         }
       return static_cast<double>(sum);
     }
@@ -77,13 +111,15 @@ namespace
         for (unsigned int i = 0; i < n; ++i)
           S(i, i) = 0.05 - (S.row(i).sum() - S(i, i));
       }
-    Problem p = {
-      S,
-      dealii::FullMatrix<double>(n, n),
-      Vector(n),
-      SeparableBonds(Eigen::VectorXd::NullaryExpr(
-                       n, [&]() { return std::pow(10., uniform(engine)); }),
-                     0.5 + 0.4 * uniform(engine))};
+    // The threshold is drawn first.
+    const double          threshold = 0.5 + 0.4 * uniform(engine);
+    const Eigen::VectorXd stiffness = Eigen::VectorXd::NullaryExpr(n, [&]() {
+      return std::pow(10., uniform(engine));
+    });
+    Problem               p         = {S,
+                                       dealii::FullMatrix<double>(n, n),
+                                       Vector(n),
+                                       bonds_of(stiffness, threshold)};
     for (unsigned int i = 0; i < n; ++i)
       {
         p.g(i) = 1.5 * uniform(engine) - 0.7;
@@ -104,7 +140,7 @@ namespace
     Problem p = {Eigen::MatrixXd::Identity(n, n) * 40.02,
                  dealii::FullMatrix<double>(n, n),
                  Vector(n),
-                 SeparableBonds(Eigen::VectorXd::Constant(n, 500.), 0.007)};
+                 bonds_of(Eigen::VectorXd::Constant(n, 500.), 0.007)};
     for (unsigned int i = 1; i < n; ++i)
       p.S_eigen(i, i - 1) = p.S_eigen(i - 1, i) = -20.;
     for (unsigned int i = 0; i < n; ++i)
@@ -131,7 +167,7 @@ namespace
         Eigen::MatrixXd M = p.S_eigen;
         for (unsigned int i = 0; i < n; ++i)
           if ((state >> i) % 2 == 0)
-            M(i, i) += p.bonds.stiffness(i);
+            M(i, i) += p.stiffness(i);
         const BoundQPResult qp =
           solve_bound_qp(M, g, Eigen::VectorXd::Zero(n), active);
         Vector s(n);
@@ -219,15 +255,17 @@ namespace
         const Eigen::MatrixXd inverse = p.S_eigen.inverse();
         const Eigen::VectorXd g =
           Eigen::Map<const Eigen::VectorXd>(p.g.begin(), n);
-        const Eigen::VectorXd minimum = inverse * g;
-        const double          value   = -0.5 * g.dot(minimum);
-        const SeparableBonds  no_bonds(Eigen::VectorXd::Zero(n), 1.);
-        const double          more = uniform(engine);
+        const Eigen::VectorXd   minimum = inverse * g;
+        const double            value   = -0.5 * g.dot(minimum);
+        const BranchMinimum     zero({{0., 0., 0.L, ""}});
+        const SeparableBranches no_bonds(std::vector<BranchMinimum>(n, zero));
+        const double            more = uniform(engine);
         const auto root = NodeBound(p.S, p.g, no_bonds).root(value + more);
 
         const BoxProblem problem = {p.S_eigen,
                                     g,
-                                    std::vector<BondEnergy>(n, {0., 0., 1.}),
+                                    std::vector<BranchEnergy>(n,
+                                                              {0., {zero[0]}}),
                                     Eigen::VectorXd::Constant(n, -1e3),
                                     Eigen::VectorXd::Constant(n, 1e3)};
         const LowerBound lower_bound(problem, minimum);
@@ -239,7 +277,7 @@ namespace
               minimum + d / inverse(i, i) * inverse.col(i);
             const double s_value = s.dot(0.5 * p.S_eigen * s - g);
             const double claimed =
-              lower_bound.growth_if_bonded(i, inverse(i, i)).value(s(i));
+              lower_bound.growth(i, 0, inverse(i, i)).value(s(i));
             growth_holds = growth_holds && claimed <= s_value;
             close        = close && claimed > s_value - 1e-5 * more;
             box_holds    = box_holds && root->lower(i) <= std::min(s(i), 0.);
@@ -322,11 +360,12 @@ namespace
     double                                 worst = 0., worst_least = 0.;
     for (unsigned int k = 0; k < 300; ++k)
       {
-        const BondEnergy f = {k % 3 == 0 ? 0. : uniform(engine),
-                              10. * uniform(engine),
-                              0.3 + uniform(engine)};
-        const double lower = -4. * uniform(engine);
-        const double upper =
+        const double        convexity = k % 3 == 0 ? 0. : uniform(engine);
+        const double        stiffness = 10. * uniform(engine);
+        const BranchMinimum branches  = bond(stiffness, 0.3 + uniform(engine));
+        const BranchEnergy  f         = {convexity, {branches[0], branches[1]}};
+        const double        lower     = -4. * uniform(engine);
+        const double        upper =
           k % 2 == 0 ? 0. : lower + uniform(engine) * (0. - lower);
         const ConvexEnvelope   envelope(f, lower, upper);
         constexpr unsigned int n_points = 60;
@@ -352,8 +391,7 @@ namespace
         double       least = std::numeric_limits<double>::infinity();
         for (unsigned int i = 0; i <= n_points; ++i)
           least = std::min(least, r * point(i) + f.value(point(i)));
-        const double found = std::min(f.least_bonded(r, lower, upper),
-                                      f.least_broken(r, lower, upper));
+        const double found = f.least(r, lower, upper);
         worst_least =
           std::max(worst_least,
                    std::max(found - least, least - found - 20. * h * h));
@@ -400,10 +438,10 @@ namespace
         ProofNode       node = *node_bound.root(minimum + tolerance);
         const auto result    = node_bound.bound(node, minimum + tolerance, 0.);
         for (unsigned int i = 0; i < n; ++i)
-          lost += result.bond && (minimiser(i) < node.lower(i) - 1e-9 ||
-                                  minimiser(i) > node.upper(i) + 1e-9);
-        lost +=
-          node.bound > minimum || (!result.bond && result.least < node.bound);
+          lost += result.unknown && (minimiser(i) < node.lower(i) - 1e-9 ||
+                                     minimiser(i) > node.upper(i) + 1e-9);
+        lost += node.bound > minimum ||
+                (!result.unknown && result.least < node.bound);
 
         parameters.maximum_nodes = 1;
         const auto stopped =
@@ -416,7 +454,7 @@ namespace
         CondensedProblem problem(p.S, p.g, p.bonds, s);
         method.minimize(problem);
         const auto search = search_bonds(
-          p.S, p.g, p.bonds, p.bonds.threshold, chain(n), method, {}, s);
+          p.S, p.g, p.bonds, p.threshold(0), chain(n), method, {}, s);
         incomplete += !search.complete ||
                       std::abs(search.functional - p.value(s)) > tolerance;
         n_chains += k % 2;
@@ -555,7 +593,7 @@ namespace
     Problem p         = {Eigen::MatrixXd::Identity(1, 1),
                          dealii::FullMatrix<double>(1, 1),
                          Vector(1),
-                         SeparableBonds(Eigen::VectorXd::Constant(1, 2.), 0.5)};
+                         bonds_of(Eigen::VectorXd::Constant(1, 2.), 0.5)};
     p.S(0, 0)         = 1.;
     p.g(0)            = -1.;
     const auto search = [&](Vector &s) {
@@ -563,7 +601,7 @@ namespace
       CondensedProblem       problem(p.S, p.g, p.bonds, s);
       method.minimize(problem);
       return search_bonds(
-        p.S, p.g, p.bonds, p.bonds.threshold, chain(s.size()), method, {}, s);
+        p.S, p.g, p.bonds, p.threshold(0), chain(s.size()), method, {}, s);
     };
     Vector     s(1);
     const auto found = search(s);
@@ -593,8 +631,10 @@ namespace
         const unsigned int n    = 2 + k % 6;
         Problem            p    = random_problem(engine, n, k % 2 == 0);
         const double       unit = 1e-10;
-        p.bonds = SeparableBonds(p.bonds.stiffness / (unit * unit),
-                                 unit * p.bonds.threshold);
+        Eigen::VectorXd    stiffness(n);
+        for (unsigned int i = 0; i < n; ++i)
+          stiffness(i) = p.stiffness(i) / (unit * unit);
+        p.bonds = bonds_of(stiffness, unit * p.threshold(0));
         Vector                   minimiser;
         const double             minimum = enumerated_minimum(p, minimiser);
         BranchAndBoundParameters parameters;

@@ -8,6 +8,8 @@
 #include <debond/base/atomic_file.h>
 #include <debond/base/directory_lock.h>
 #include <debond/check/largest_values.h>
+#include <debond/contact/laws/none.h>
+#include <debond/contact/laws/winkler.h>
 #include <debond/mesh/crossed_mesh.h>
 #include <debond/output/summary.h>
 #include <debond/output/tables.h>
@@ -306,13 +308,14 @@ namespace
               const double                  M,
               const std::string            &rule = "nodal") const
     {
-      const auto                   law = make_law({name, a, M});
+      const AdhesiveLaw law(
+        (name == "none" ? no_adhesion() : winkler_law(a, M)).branches);
       const ContactQuadrature<dim> quadrature(
-        ContactQuadratureParameters::parse(rule), law->kinks());
+        ContactQuadratureParameters::parse(rule), law.kinks());
       const AdhesionIntegral<dim> adhesion(problem->contact_boundary(),
-                                           *law,
+                                           law,
                                            quadrature);
-      return verify(*problem, adhesion, *law, u);
+      return verify(*problem, adhesion, law, u);
     }
   };
 

@@ -124,12 +124,12 @@ namespace
     const Real               nu      = parameters.material.poisson_ratio;
     const bool               plane_stress =
       parameters.material.hypothesis == Material::Hypothesis::plane_stress;
-    const Real mu     = E / (2 * (1 + nu));
-    const Real lambda = plane_stress ? E * nu / (1 - nu * nu) :
-                                       E * nu / ((1 + nu) * (1 - 2 * nu));
-    const Real a =
-      parameters.law.name == "none" ? 0 : parameters.law.bond_stiffness;
-    const Real M = parameters.law.bond_threshold;
+    const Real        mu     = E / (2 * (1 + nu));
+    const Real        lambda = plane_stress ? E * nu / (1 - nu * nu) :
+                                              E * nu / ((1 + nu) * (1 - 2 * nu));
+    const AdhesiveLaw law(parameters.law.branches);
+    const Real        a = law.curvature(0.);
+    const Real        M = law.bond_threshold();
 
     // The unknowns' frame at a contact node has u_nu = -u_y first and the
     // tangential displacement second.
@@ -151,7 +151,7 @@ namespace
         component[node.dof + 1] = 0;
         if (u(node.dof) == 0.)
           fixed[node.dof] = 1;
-        else if (u(node.dof) < -parameters.law.bond_threshold)
+        else if (u(node.dof) < -law.bond_threshold())
           broken_energy += a * M * M / 2 * node.measure;
         else
           spring[node.dof] = a * node.measure;

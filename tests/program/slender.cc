@@ -135,14 +135,14 @@ namespace
     const unsigned int n = problem.n_dofs();
     std::vector<char>  fixed(n, 0);
     std::vector<Real>  spring(n, 0);
+    const AdhesiveLaw  law(parameters.law.branches);
     for (unsigned int i = 0; i < n; ++i)
       fixed[i] = problem.is_constrained(i);
     for (const auto &node : problem.contact_boundary().nodes)
       if (u(node.dof) == 0.)
         fixed[node.dof] = 1;
-      else if (parameters.law.name != "none" &&
-               u(node.dof) >= -parameters.law.bond_threshold)
-        spring[node.dof] = parameters.law.bond_stiffness * node.measure;
+      else
+        spring[node.dof] = law.curvature(u(node.dof)) * node.measure;
     std::vector<int> place(n, -1);
     int              n_unknowns = 0;
     for (unsigned int i = 0; i < n; ++i)

@@ -4,7 +4,6 @@
 // scenes with many patches against branch and bound. Takes the numbers of small
 // scenes and of scenes with many patches, and prints each miss with its gap.
 
-#include <debond/contact/laws/winkler.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/input/parameters.h>
 #include <debond/optimization/global/guided_search.h>
@@ -273,8 +272,11 @@ namespace
       const Eigen::Map<const Eigen::VectorXd> g(condensed.load().begin(), n);
       largest   = -S.llt().solve(g).minCoeff();
       stiffness = S.diagonal().mean() /
-                  lumped_bonds(scene.adhesion(), n, 1.).stiffness.mean() *
-                  parameters.law.bond_stiffness;
+                  scene.adhesion()
+                    .curvature(dealii::Vector<double>(n))
+                    .diagonal()
+                    .mean() *
+                  scene.law().curvature(0.);
     }
     if (!(largest > 0.))
       return;
@@ -303,8 +305,8 @@ namespace
     dealii::Vector<double> s(n);
     for (unsigned int i = 0; i < n; ++i)
       s(i) = result.u(nodes[i].dof);
-    const SeparableBonds bonds =
-      lumped_bonds(scene.adhesion(), n, scene.law().bond_threshold());
+    const SeparableBranches bonds =
+      lumped_branches(scene.adhesion(), n, scene.law().branches());
     const double found =
       0.5 * condensed.schur_complement().matrix_norm_square(s) -
       condensed.load() * s + bonds.value(s);
@@ -330,10 +332,10 @@ namespace
             for (unsigned int j = 0; j < n; ++j)
               S(i, j) = condensed.schur_complement()(i, j);
           }
-        minimum = enumerated_minimum(S,
-                                     g,
-                                     bonds.stiffness.cast<long double>(),
-                                     bonds.threshold);
+        LongVector k(n);
+        for (unsigned int i = 0; i < n; ++i)
+          k(i) = bonds.f[i][0].curvature;
+        minimum = enumerated_minimum(S, g, k, scene.law().bond_threshold());
       }
     // The minimum is 0 where all is pressed.
     const double gap =
@@ -390,29 +392,15 @@ namespace
 
 
 
-  /// A law that says nothing of its shape.
-  class Unknown : public WinklerLaw
-  {
-  public:
-    using WinklerLaw::WinklerLaw;
-
-    LawShape
-    shape() const override
-    {
-      return AdhesiveLaw::shape();
-    }
-  };
-
-
-
-  /// Search and proof refuse it; by default there is a note and no word.
+  /// Search and proof refuse a law without a curvature at 0; by default there
+  /// is a note and no word.
   void
   test_other_law()
   {
     const std::vector<std::string> entries = {
       "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)"};
-    const Unknown law(69., 0.002);
-    unsigned int  refused = 0, noted = 0;
+    const AdhesiveLaw law({{0., -0.1, 0.L, "sliding"}, {0., 0., 1e-4L, "off"}});
+    unsigned int      refused = 0, noted = 0;
     for (const std::string entry :
          {"Solver/Search=full", "Solver/Prove=true", "Solver/Search=automatic"})
       {

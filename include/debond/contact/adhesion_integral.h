@@ -33,13 +33,13 @@ namespace Debond
     double
     value(const dealii::Vector<double> &s) const override;
 
-    /// One element of the Clarke subdifferential of Phi at s (the upper end of
-    /// the law's interval at each kink), a force for each node.
+    /// One element of the Clarke subdifferential of Phi at s (at a kink the
+    /// derivative of the branch on the side of 0), a force for each node.
     void
     subgradient(const dealii::Vector<double> &s,
                 dealii::Vector<double>       &xi) const override;
 
-    /// The second derivative of the law's branches at s, a matrix that
+    /// The second derivative of the same branches, a matrix that
     /// couples the nodes of a face (diagonal for nodal quadrature).
     Eigen::SparseMatrix<double>
     curvature(const dealii::Vector<double> &s) const override;

@@ -2,91 +2,120 @@
 #ifndef debond_contact_law_h
 #define debond_contact_law_h
 
+#include <debond/optimization/branch_minimum.h>
 #include <debond/optimization/interval.h>
 
-#include <memory>
 #include <string>
 #include <vector>
 
 namespace Debond
 {
-  /// What search and proof need to know of a law.
-  enum class LawShape
-  {
-    convex,       ///< there is one minimum
-    two_branches, ///< a/2 min(s^2, M^2) for s <= 0
-    other
-  };
+  class ParameterTable;
 
 
 
   /**
    * An adhesive law: the superpotential j_1 of the normal displacement s =
-   * u_nu (Section 3 of the paper, eq. (10)), a function that is quadratic
-   * between its kinks. The unilateral constraint s <= 0 is not part of it.
+   * u_nu (Section 3 of the paper, eq. (10)), which is the least of convex
+   * branches for s <= 0 and zero for s > 0. The unilateral constraint s <= 0
+   * is not part of it.
    *
    * Units: s in length, j_1 in energy per area, its derivatives accordingly.
    */
   class AdhesiveLaw
   {
   public:
-    virtual ~AdhesiveLaw() = default;
+    /// @p branches in any order, with the names of bonds on them. Throws
+    /// std::invalid_argument as BranchMinimum does.
+    explicit AdhesiveLaw(const std::vector<ConvexBranch> &branches);
 
     /// j_1(s).
-    virtual double
-    value(const double s) const = 0;
+    double
+    value(const double s) const;
 
     /// The Clarke subdifferential of j_1 at s: a point away from the kinks.
-    virtual Interval
-    clarke_interval(const double s) const = 0;
+    Interval
+    clarke_interval(const double s) const;
 
-    /// The second derivative of the branch that holds s (at a kink: of the
-    /// branch on the side of the bonded state).
-    virtual double
-    curvature(const double s) const = 0;
+    /// The first and the second derivative of the branch that holds at s (at a
+    /// kink: of the one on the side of 0).
+    double
+    derivative(const double s) const;
 
-    /// `other` unless the law says more: nothing is proved of it then.
-    virtual LawShape
-    shape() const;
-
-    /// Where j_1 is not twice differentiable, in ascending order.
-    virtual std::vector<double>
-    kinks() const = 0;
-
-    /// The displacement below which all bonds are broken, as a positive
-    /// length (the paper's M); zero if there is no adhesion.
-    virtual double
-    bond_threshold() const = 0;
-
-    /// The largest adhesive traction, in force per area (the paper's a M);
-    /// zero if there is no adhesion.
-    virtual double
-    bond_strength() const = 0;
+    double
+    curvature(const double s) const;
 
     /// The union of the Clarke intervals over [s - delta, s + delta]
     /// (Goldstein's subdifferential), its hull as an interval.
     Interval
     goldstein_interval(const double s, const double delta) const;
+
+    /// Where j_1 is not twice differentiable, in ascending order.
+    std::vector<double>
+    kinks() const;
+
+    /// j_1 on s <= 0.
+    const BranchMinimum &
+    branches() const;
+
+    /// The name of bonds on a piece of branches().
+    const std::string &
+    name(const unsigned int piece) const;
+
+    /// Whether bonds on a piece of branches() do not pull at all.
+    bool
+    is_loose(const unsigned int piece) const;
+
+    /// The displacement below which bonds are on the last branch, as a positive
+    /// length (the paper's M); zero if there is no other.
+    double
+    bond_threshold() const;
+
+    /// The largest adhesive traction before the last kink, in force per area
+    /// (the paper's a M); zero if there is no adhesion.
+    double
+    bond_strength() const;
+
+  private:
+    BranchMinimum            minimum;
+    std::vector<std::string> names;
   };
 
 
 
-  /// What a law may be built from, in the user's units.
+  /// A law by the numbers of its branches.
   struct ContactLawParameters
   {
-    std::string name           = "winkler";
-    double      bond_stiffness = 69.;   ///< a, force per volume
-    double      bond_threshold = 0.002; ///< M, length
+    std::string               name; ///< one of law_names()
+    std::vector<ConvexBranch> branches;
+    std::string               data; ///< in words, empty if there is none
   };
 
-  /// The names that make_law() knows, for input patterns and error messages.
+  /// A kind of law that scenes can have: one for each file in laws/.
+  struct LawKind
+  {
+    std::string name;
+    std::string description; ///< a part of a sentence, the name in front of it
+
+    /// Declares its own entries.
+    void (*declare)(ParameterTable &table);
+
+    /// Reads them. What is wrong with them is added to the table's errors, and
+    /// then the result does not matter.
+    ContactLawParameters (*read)(ParameterTable &table);
+  };
+
+  /// The names of all kinds, for messages.
   std::vector<std::string>
   law_names();
 
-  /// The law of the given name. Throws std::invalid_argument if the name is
-  /// not one of law_names().
-  std::unique_ptr<AdhesiveLaw>
-  make_law(const ContactLawParameters &parameters);
+  /// Declares the entry Contact law/Law and those of all kinds.
+  void
+  declare_laws(ParameterTable &table);
+
+  /// The law of a scene.
+  ContactLawParameters
+  read_law(ParameterTable &table);
 } // namespace Debond
 
 #endif

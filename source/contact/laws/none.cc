@@ -3,57 +3,20 @@
 
 namespace Debond
 {
-  double
-  NoAdhesion::value(const double /*s*/) const
+  ContactLawParameters
+  no_adhesion()
   {
-    return 0.;
+    return {"none", {{0., 0., 0.L, "free"}}, ""};
   }
 
 
 
-  Interval
-  NoAdhesion::clarke_interval(const double /*s*/) const
+  LawKind
+  no_adhesion_kind()
   {
-    return {0., 0.};
-  }
-
-
-
-  double
-  NoAdhesion::curvature(const double /*s*/) const
-  {
-    return 0.;
-  }
-
-
-
-  LawShape
-  NoAdhesion::shape() const
-  {
-    return LawShape::convex;
-  }
-
-
-
-  std::vector<double>
-  NoAdhesion::kinks() const
-  {
-    return {};
-  }
-
-
-
-  double
-  NoAdhesion::bond_threshold() const
-  {
-    return 0.;
-  }
-
-
-
-  double
-  NoAdhesion::bond_strength() const
-  {
-    return 0.;
+    return {"none",
+            "has no adhesion",
+            [](ParameterTable &) {},
+            [](ParameterTable &) { return no_adhesion(); }};
   }
 } // namespace Debond

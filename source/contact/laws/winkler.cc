@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/parameter_table.h>
 #include <debond/contact/laws/winkler.h>
 
 #include <cmath>
@@ -10,10 +11,10 @@ namespace Debond
   namespace
   {
     void
-    require(const bool         condition,
-            const std::string &parameter,
-            const double       value,
-            const std::string &range)
+    require_in_range(const bool         condition,
+                     const std::string &parameter,
+                     const double       value,
+                     const std::string &range)
     {
       if (condition && std::isfinite(value))
         return;
@@ -27,76 +28,46 @@ namespace Debond
 
 
 
-  WinklerLaw::WinklerLaw(const double bond_stiffness,
-                         const double bond_threshold)
-    : a(bond_stiffness)
-    , M(bond_threshold)
+  ContactLawParameters
+  winkler_law(const double bond_stiffness, const double bond_threshold)
   {
-    require(a >= 0., "Bond stiffness", a, ">= 0");
-    require(M > 0., "Bond threshold", M, "> 0");
+    const double a = bond_stiffness, M = bond_threshold;
+    require_in_range(a >= 0., "Bond stiffness", a, ">= 0");
+    require_in_range(M > 0., "Bond threshold", M, "> 0");
+
+    std::ostringstream data;
+    data << "a = " << a << ", M = " << M;
+    if (a == 0.)
+      return {"winkler", {{0., 0., 0.L, "free"}}, data.str()};
+    return {"winkler",
+            {{a, 0., 0.L, "bonded"}, {0., 0., 0.5L * a * M * M, "broken"}},
+            data.str()};
   }
 
 
 
-  double
-  WinklerLaw::value(const double s) const
+  LawKind
+  winkler_kind()
   {
-    if (s < -M)
-      return a * M * M / 2.;
-    if (s <= 0.)
-      return a * s * s / 2.;
-    return 0.;
-  }
-
-
-
-  Interval
-  WinklerLaw::clarke_interval(const double s) const
-  {
-    if (s < -M || s >= 0.)
-      return {0., 0.};
-    if (s == -M)
-      return {-a * M, 0.};
-    return {a * s, a * s};
-  }
-
-
-
-  double
-  WinklerLaw::curvature(const double s) const
-  {
-    return (s < -M || s > 0.) ? 0. : a;
-  }
-
-
-
-  LawShape
-  WinklerLaw::shape() const
-  {
-    return a > 0. ? LawShape::two_branches : LawShape::convex;
-  }
-
-
-
-  std::vector<double>
-  WinklerLaw::kinks() const
-  {
-    return {-M, 0.};
-  }
-
-
-
-  double
-  WinklerLaw::bond_threshold() const
-  {
-    return a > 0. ? M : 0.;
-  }
-
-
-
-  double
-  WinklerLaw::bond_strength() const
-  {
-    return a * M;
+    return {"winkler",
+            "is the paper's, with bonds that pull in proportion to the "
+            "displacement and break at the threshold",
+            [](ParameterTable &table) {
+              table.declare("Contact law/Bond stiffness",
+                            "69",
+                            quantity(true),
+                            "a",
+                            "force per volume");
+              table.declare("Contact law/Bond threshold",
+                            "0.002",
+                            quantity(),
+                            "M, the displacement at which bonds break",
+                            "length");
+            },
+            [](ParameterTable &table) {
+              return winkler_law(table.get_double("Contact law/Bond stiffness"),
+                                 table.get_double(
+                                   "Contact law/Bond threshold"));
+            }};
   }
 } // namespace Debond

@@ -25,6 +25,11 @@ namespace Debond
 
 
 
+    /// The piece that holds at each unknown.
+    using BranchState = std::vector<unsigned int>;
+
+
+
     /// A node, and what came out of it.
     struct Job
     {
@@ -33,7 +38,7 @@ namespace Debond
 
       /// From the node's relaxation by majorise-minimise, unless its state had
       /// been tried.
-      std::vector<bool>      broken;
+      BranchState            state;
       dealii::Vector<double> s;
       double                 value = std::numeric_limits<double>::infinity();
     };
@@ -46,7 +51,7 @@ namespace Debond
       ProofTree(const BranchAndBoundParameters   &parameters,
                 const dealii::FullMatrix<double> &S,
                 const dealii::Vector<double>     &g,
-                const SeparableBonds             &bonds,
+                const SeparableBranches          &phi,
                 const dealii::Vector<double>     &start);
 
       BranchAndBoundResult
@@ -56,16 +61,16 @@ namespace Debond
       const BranchAndBoundParameters   &parameters;
       const dealii::FullMatrix<double> &S;
       const dealii::Vector<double>     &g;
-      const SeparableBonds             &bonds;
+      const SeparableBranches          &phi;
       const unsigned int                n;
       const NodeBound                   node_bound;
 
-      dealii::Timer               timer;
-      BranchAndBoundResult        result;
-      std::set<ProofNode>         open;
-      std::set<std::vector<bool>> tried; ///< states that were minimised
-      double                      least_left_out;
-      unsigned int                n_created = 0;
+      dealii::Timer         timer;
+      BranchAndBoundResult  result;
+      std::set<ProofNode>   open;
+      std::set<BranchState> tried; ///< states that were minimised
+      double                least_left_out;
+      unsigned int          n_created = 0;
 
       void
       minimise_from(const Eigen::VectorXd &x, Job &job) const;
@@ -94,14 +99,14 @@ namespace Debond
     ProofTree::ProofTree(const BranchAndBoundParameters   &parameters,
                          const dealii::FullMatrix<double> &S,
                          const dealii::Vector<double>     &g,
-                         const SeparableBonds             &bonds,
+                         const SeparableBranches          &phi,
                          const dealii::Vector<double>     &start)
       : parameters(parameters)
       , S(S)
       , g(g)
-      , bonds(bonds)
+      , phi(phi)
       , n(g.size())
-      , node_bound(S, g, bonds)
+      , node_bound(S, g, phi)
       , least_left_out(std::numeric_limits<double>::infinity())
     {
       result.upper = std::numeric_limits<double>::infinity();
@@ -116,15 +121,15 @@ namespace Debond
     void
     ProofTree::minimise_from(const Eigen::VectorXd &x, Job &job) const
     {
-      job.broken.resize(n);
+      job.state.resize(n);
       for (unsigned int i = 0; i < n; ++i)
-        job.broken[i] = x(i) < -bonds.threshold;
-      if (tried.count(job.broken) > 0)
+        job.state[i] = phi.f[i].index(x(i));
+      if (tried.count(job.state) > 0)
         return;
       job.s.reinit(n);
       for (unsigned int i = 0; i < n; ++i)
         job.s(i) = std::min(x(i), 0.);
-      CondensedProblem problem(S, g, bonds, job.s);
+      CondensedProblem problem(S, g, phi, job.s);
       MajoriseMinimise({}).minimize(problem);
       job.value = problem.evaluate().functional;
     }
@@ -134,7 +139,7 @@ namespace Debond
     void
     ProofTree::take_if_better(const Job &job)
     {
-      tried.insert(job.broken);
+      tried.insert(job.state);
       if (job.value < result.upper)
         {
           result.upper = job.value;
@@ -210,21 +215,22 @@ namespace Debond
     void
     ProofTree::branch(const Job &job)
     {
-      if (!job.result.bond)
+      if (!job.result.unknown)
         {
           least_left_out = std::min(least_left_out, job.result.least);
           return;
         }
-      const unsigned int i      = *job.result.bond;
-      ProofNode          bonded = job.node, broken = job.node;
-      bonded.number   = ++n_created;
-      broken.number   = ++n_created;
-      bonded.lower(i) = -bonds.threshold;
-      broken.upper(i) = -bonds.threshold;
-      bonded.bound    = std::max(job.node.bound, job.result.half_bounds[0]);
-      broken.bound    = std::max(job.node.bound, job.result.half_bounds[1]);
-      open.insert(bonded);
-      open.insert(broken);
+      const unsigned int i     = *job.result.unknown;
+      const double       kink  = phi.f[i][job.result.piece].upper;
+      ProofNode          upper = job.node, lower = job.node;
+      upper.number   = ++n_created;
+      lower.number   = ++n_created;
+      upper.lower(i) = kink;
+      lower.upper(i) = kink;
+      upper.bound    = std::max(job.node.bound, job.result.half_bounds[0]);
+      lower.bound    = std::max(job.node.bound, job.result.half_bounds[1]);
+      open.insert(upper);
+      open.insert(lower);
     }
 
 
@@ -339,10 +345,10 @@ namespace Debond
   BranchAndBoundResult
   BranchAndBound::minimize(const dealii::FullMatrix<double> &S,
                            const dealii::Vector<double>     &g,
-                           const SeparableBonds             &bonds,
+                           const SeparableBranches          &phi,
                            const dealii::Vector<double>     &start,
                            const Monitor                    &monitor) const
   {
-    return ProofTree(parameters, S, g, bonds, start).run(monitor);
+    return ProofTree(parameters, S, g, phi, start).run(monitor);
   }
 } // namespace Debond

@@ -9,123 +9,232 @@ namespace Debond
 {
   namespace
   {
-    /// min r s + c/2 s^2 on [lower, upper].
+    using Piece = BranchMinimum::Piece;
+
+    /// c/2 s^2 + b s + h.
+    struct Parabola
+    {
+      long double c, b, h;
+
+      Parabola(const Piece &piece, const double convexity)
+        : c(static_cast<long double>(piece.curvature) + convexity)
+        , b(piece.slope)
+        , h(piece.constant)
+      {}
+
+      long double
+      operator()(const long double s) const
+      {
+        return h + s * (b + 0.5L * c * s);
+      }
+    };
+
+
+
+    /// Where a line from the point (s, value) touches a parabola above it, to
+    /// the right or to the left of s. Infinite for a line.
     long double
+    touch(const long double s, const long double value, const Parabola &p)
+    {
+      const long double above = std::max(0.L, p(s) - value);
+      return p.c > 0.L ? std::sqrt(2.L * above / p.c) :
+                         std::numeric_limits<long double>::infinity();
+    }
+
+
+
+    struct CommonTangent
+    {
+      double first, second; ///< where it touches the parabolas
+    };
+
+    /// Of two parabolas, of which @p left is below the other one to the left of
+    /// their crossing @p kink, on [lower, upper].
+    CommonTangent
+    common_tangent(const Parabola   &left,
+                   const Parabola   &right,
+                   const long double kink,
+                   const double      lower,
+                   const double      upper)
+    {
+      const long double jump = (left.c - right.c) * kink + (left.b - right.b);
+      const long double root_left  = std::sqrt(left.c);
+      const long double root_right = std::sqrt(right.c);
+      if (!(jump > 0.L))
+        return {static_cast<double>(kink), static_cast<double>(kink)};
+      const long double d     = jump / (root_left + root_right);
+      long double       first = left.c > 0.L ?
+                                  std::max<long double>(lower, kink - d / root_left) :
+                                  lower;
+      long double       second =
+        right.c > 0.L ? std::min<long double>(upper, kink + d / root_right) :
+                              upper;
+      if (first == lower)
+        second =
+          std::min<long double>(upper,
+                                lower + touch(lower, left(lower), right));
+      if (second == upper && left.c > 0.L)
+        first = std::max<long double>(lower,
+                                      upper - touch(upper, right(upper), left));
+      return {static_cast<double>(first), static_cast<double>(second)};
+    }
+
+
+
+    /// Where @p left gets above @p right as s grows.
+    long double
+    crossing(const Parabola &left, const Parabola &right)
+    {
+      const long double A = right.c - left.c, B = right.b - left.b,
+                        C    = right.h - left.h;
+      const long double root = std::sqrt(std::max(0.L, B * B - 2.L * A * C));
+      return A != 0.L && B >= 0.L ? -(B + root) / A : -2.L * C / (B - root);
+    }
+
+
+
+    /// min r s + c/2 s^2 on [lower, upper], and where it is.
+    struct LeastPoint
+    {
+      long double s, value;
+    };
+
+    LeastPoint
     least_on_parabola(const long double r,
                       const long double c,
                       const long double lower,
                       const long double upper)
     {
-      if (lower > upper)
-        return std::numeric_limits<long double>::infinity();
       const long double s = c > 0. ? std::min(std::max(-r / c, lower), upper) :
                                      (r > 0. ? lower : upper);
-      return r * s + 0.5L * c * s * s;
+      if (!std::isfinite(s))
+        return {s, -std::numeric_limits<long double>::infinity()};
+      return {s, r * s + 0.5L * c * s * s};
     }
   } // namespace
 
 
 
   double
-  BondEnergy::value(const double s) const
+  BranchEnergy::value(const double s) const
   {
-    const double bond = std::min(std::abs(s), threshold);
-    return 0.5 * convexity * s * s + 0.5 * stiffness * bond * bond;
+    unsigned int k = 0;
+    while (k + 1 < pieces.size() && s < pieces[k].lower)
+      ++k;
+    return 0.5 * convexity * s * s + pieces[k].value(s);
   }
 
 
 
   long double
-  BondEnergy::energy_if_broken() const
-  {
-    return 0.5L * stiffness * threshold * threshold;
-  }
-
-
-
-  long double
-  BondEnergy::least_bonded(const long double r,
-                           const double      lower,
-                           const double      upper) const
-  {
-    return least_on_parabola(r,
-                             static_cast<long double>(convexity) + stiffness,
-                             std::max(lower, -threshold),
-                             upper);
-  }
-
-
-
-  long double
-  BondEnergy::least_broken(const long double r,
-                           const double      lower,
-                           const double      upper) const
-  {
-    return least_on_parabola(r, convexity, lower, std::min(upper, -threshold)) +
-           energy_if_broken();
-  }
-
-
-
-  long double
-  BondEnergy::least(const long double r,
-                    const double      lower,
-                    const double      upper) const
+  BranchEnergy::least(const long double  r,
+                      const double       lower,
+                      const double       upper,
+                      const unsigned int piece) const
   {
     constexpr long double epsilon = std::numeric_limits<long double>::epsilon();
-    return std::min(least_bonded(r, lower, upper),
-                    least_broken(r, lower, upper) -
-                      16.L * epsilon * energy_if_broken());
+
+    const Piece &p     = pieces[piece];
+    const double left  = std::max(lower, p.lower);
+    const double right = std::min(upper, p.upper);
+    if (left > right)
+      return std::numeric_limits<long double>::infinity();
+    const LeastPoint least =
+      least_on_parabola(r + p.slope,
+                        static_cast<long double>(convexity) + p.curvature,
+                        left,
+                        right);
+    const long double line = p.slope == 0. ? 0.L : p.slope * least.s;
+    return least.value + p.constant -
+           16.L * epsilon * (std::abs(p.constant) + std::abs(line));
   }
 
 
 
-  ConvexEnvelope::ConvexEnvelope(const BondEnergy &energy,
-                                 const double      lower,
-                                 const double      upper)
+  long double
+  BranchEnergy::least(const long double r,
+                      const double      lower,
+                      const double      upper) const
+  {
+    long double result = std::numeric_limits<long double>::infinity();
+    for (unsigned int k = 0; k < pieces.size(); ++k)
+      result = std::min(result, least(r, lower, upper, k));
+    return result;
+  }
+
+
+
+  ConvexEnvelope::ConvexEnvelope(const BranchEnergy &energy,
+                                 const double        lower,
+                                 const double        upper)
     : f(energy)
   {
-    const double M  = f.threshold;
-    const double c0 = f.convexity;               // of the broken parabola
-    const double c1 = f.convexity + f.stiffness; // of the bonded one
-    const double h  = static_cast<double>(f.energy_if_broken());
-
-    double first = lower, second = upper;
-    if (f.stiffness == 0. || lower >= -M)
-      second = lower;
-    else if (upper <= -M)
-      first = upper;
-    else
+    // A parabola on the envelope, from where the line before it touches it.
+    struct Arc
+    {
+      const Piece *piece;
+      double       line_from, lower;
+    };
+    std::vector<Arc> arcs;
+    for (auto piece = f.pieces.rbegin(); piece != f.pieces.rend(); ++piece)
       {
-        // The line that touches both parabolas, as far as they reach.
-        if (c0 > 0.)
+        if (piece->upper <= lower && piece + 1 != f.pieces.rend())
+          continue;
+        if (piece->lower >= upper && !arcs.empty())
+          break;
+        const Parabola right(*piece, f.convexity);
+        Arc            arc = {&*piece, lower, lower};
+        while (!arcs.empty())
           {
-            const double slope = -std::sqrt(2. * h * c0 * c1 / f.stiffness);
-            first              = std::max(lower, slope / c0);
-            second             = std::min(upper, slope / c1);
+            // Neighbours meet where the pieces say, to the last digit.
+            const Parabola left(*arcs.back().piece, f.convexity);
+            const bool     are_neighbours = arcs.back().piece == &*piece + 1;
+            const CommonTangent tangent =
+              common_tangent(left,
+                             right,
+                             are_neighbours ? piece->lower :
+                                              crossing(left, right),
+                             lower,
+                             upper);
+            arc.line_from = tangent.first;
+            arc.lower     = tangent.second;
+            // The line before passes below this parabola.
+            if (arcs.size() == 1 || tangent.first > arcs.back().lower)
+              break;
+            arcs.pop_back();
           }
-        if (first == lower)
-          {
-            const double value = 0.5 * c0 * lower * lower + h;
-            second             = std::min(
-              upper,
-              lower + std::sqrt(std::max(0., lower * lower - 2. * value / c1)));
-          }
-        if (second == upper && c0 > 0.)
-          {
-            const double value = 0.5 * c1 * upper * upper;
-            first              = std::max(
-              lower,
-              upper -
-                std::sqrt(std::max(0., upper * upper + 2. * (h - value) / c0)));
-          }
+        arcs.push_back(arc);
       }
-    const double slope =
-      second > first ? (f.value(second) - f.value(first)) / (second - first) :
-                       0.;
-    pieces[0] = {lower, first, 0., c0};
-    pieces[1] = {first, second, slope, 0.};
-    pieces[2] = {second, upper, 0., c1};
+
+    for (unsigned int k = 0; k < arcs.size(); ++k)
+      {
+        const Arc   &arc = arcs[k];
+        const double end = k + 1 < arcs.size() ? arcs[k + 1].line_from : upper;
+        if (arc.lower > arc.line_from)
+          parts.push_back({arc.line_from,
+                           arc.lower,
+                           (f.value(arc.lower) - f.value(arc.line_from)) /
+                             (arc.lower - arc.line_from),
+                           0.,
+                           true});
+        if (end > arc.lower)
+          parts.push_back({arc.lower,
+                           end,
+                           arc.piece->slope,
+                           f.convexity + arc.piece->curvature,
+                           false});
+      }
+  }
+
+
+
+  const ConvexEnvelope::Part *
+  ConvexEnvelope::line_at(const double s) const
+  {
+    for (const Part &part : parts)
+      if (part.is_line && s > part.lower && s < part.upper)
+        return &part;
+    return nullptr;
   }
 
 
@@ -133,9 +242,10 @@ namespace Debond
   double
   ConvexEnvelope::value(const double s) const
   {
-    if (s <= pieces[1].lower || s >= pieces[1].upper)
-      return f.value(s);
-    return f.value(pieces[1].lower) + pieces[1].slope * (s - pieces[1].lower);
+    const Part *const line = line_at(s);
+    return line == nullptr ?
+             f.value(s) :
+             f.value(line->lower) + line->slope * (s - line->lower);
   }
 
 
@@ -143,7 +253,7 @@ namespace Debond
   double
   ConvexEnvelope::spread(const double s) const
   {
-    return std::max(0., s - pieces[1].lower) *
-           std::max(0., pieces[1].upper - s);
+    const Part *const line = line_at(s);
+    return line == nullptr ? 0. : (s - line->lower) * (line->upper - s);
   }
 } // namespace Debond

@@ -23,11 +23,11 @@ namespace Debond
     /// Covers the rounding of a diagonal entry of an inverse.
     constexpr double inverse_rounding = 1. + 1e-6;
 
+    /// Other places are numbers of parts of the envelope.
     enum Place
     {
-      at_lower,
-      on_piece, ///< the first of three
-      at_upper = on_piece + 3
+      at_lower = -2,
+      at_upper = -1
     };
 
 
@@ -38,22 +38,18 @@ namespace Debond
                      const double          weight,
                      const double          z)
     {
-      bool first = true;
-      for (int p = 0; p < 3; ++p)
+      for (unsigned int p = 0; p < e.parts.size(); ++p)
         {
-          const ConvexEnvelope::Piece &piece = e.pieces[p];
-          if (piece.lower >= piece.upper)
-            continue;
-          const auto image = [&](const double s) {
-            return s + (piece.slope + piece.curvature * s) / weight;
+          const ConvexEnvelope::Part &part  = e.parts[p];
+          const auto                  image = [&](const double s) {
+            return s + (part.slope + part.curvature * s) / weight;
           };
-          if (first && z <= image(piece.lower))
+          if (p == 0 && z <= image(part.lower))
             return at_lower;
-          first = false;
-          if (z < image(piece.upper))
-            return on_piece + p;
+          if (z < image(part.upper))
+            return static_cast<int>(p);
         }
-      return first ? at_lower : at_upper;
+      return e.parts.empty() ? at_lower : at_upper;
     }
 
 
@@ -75,8 +71,8 @@ namespace Debond
             s(i) = problem.upper(i);
           else
             {
-              const auto &piece = envelopes[i].pieces[place - on_piece];
-              s(i) = (weight * z - piece.slope) / (weight + piece.curvature);
+              const auto &part = envelopes[i].parts[place];
+              s(i) = (weight * z - part.slope) / (weight + part.curvature);
             }
         }
     }
@@ -108,12 +104,12 @@ namespace Debond
       Eigen::VectorXd       r(free.size());
       for (unsigned int k = 0; k < free.size(); ++k)
         {
-          const int   i     = free[k];
-          const auto &piece = envelopes[i].pieces[places[i] - on_piece];
+          const int   i    = free[k];
+          const auto &part = envelopes[i].parts[places[i]];
           for (unsigned int l = k; l < free.size(); ++l)
             K(l, k) = problem.A(free[l], i);
-          K(k, k) += piece.curvature;
-          r(k) = load(i) - piece.slope;
+          K(k, k) += part.curvature;
+          r(k) = load(i) - part.slope;
         }
       const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(K);
       factor.solveInPlace(r);
@@ -207,9 +203,9 @@ namespace Debond
             product += term;
             terms += std::abs(term);
           }
-        const BondEnergy &f = problem.f[i];
-        r[i]                = product - problem.g(i);
-        least[i]            = f.least(r[i], problem.lower(i), problem.upper(i));
+        const BranchEnergy &f = problem.f[i];
+        r[i]                  = product - problem.g(i);
+        least[i] = f.least(r[i], problem.lower(i), problem.upper(i));
         sum += least[i] - 0.5L * x(i) * product;
 
         const double s = largest(i);
@@ -231,48 +227,42 @@ namespace Debond
 
 
 
-  // The parabola of the bonded half is steep, and is written about s = 0, where
-  // its terms are no larger than the energies of a bond.
   Growth
-  LowerBound::growth_if_bonded(const unsigned int i,
-                               const double       inverse_diagonal) const
+  LowerBound::growth(const unsigned int i,
+                     const unsigned int piece,
+                     const double       inverse_diagonal) const
   {
-    const double quadratic = 1. / (inverse_rounding * inverse_diagonal);
-    const double c         = problem.f[i].convexity + problem.f[i].stiffness;
-    const double r_i       = static_cast<double>(r[i]);
-    const double least_i   = static_cast<double>(least[i]);
-    const double offset    = 0.5 * quadratic * x(i) * x(i);
-    const double s         = std::min(largest(i), problem.f[i].threshold);
+    const BranchMinimum::Piece &p = problem.f[i].pieces[piece];
+    const double quadratic        = 1. / (inverse_rounding * inverse_diagonal);
+    const double c                = problem.f[i].convexity + p.curvature;
+    const double r_i              = static_cast<double>(r[i]);
+    const double least_i          = static_cast<double>(least[i]);
+    const double constant         = static_cast<double>(p.constant);
+    const double size             = std::abs(x(i));
+
+    // A piece between kinks can be steep. It is written about s = 0, where its
+    // terms are no larger than the energy of the kinks.
+    const bool   is_bounded = std::isfinite(p.lower);
+    const double s =
+      is_bounded ? std::min(largest(i), std::abs(p.lower)) : largest(i) + size;
+    const double offset = is_bounded ? 0.5 * quadratic * size * size : 0.;
     const double rounding =
       8. * std::numeric_limits<double>::epsilon() *
-      (std::abs(value) + std::abs(least_i) + offset +
-       (std::abs(r_i) + quadratic * std::abs(x(i)) + (c + quadratic) * s) * s);
-    return {0.,
-            value + (offset - least_i) - rounding,
-            r_i - quadratic * x(i),
-            c + quadratic};
-  }
-
-
-
-  Growth
-  LowerBound::growth_if_broken(const unsigned int i,
-                               const double       inverse_diagonal) const
-  {
-    const double quadratic = 1. / (inverse_rounding * inverse_diagonal);
-    const double c         = problem.f[i].convexity;
-    const double r_i       = static_cast<double>(r[i]);
-    const double least_i   = static_cast<double>(least[i]);
-    const double energy = static_cast<double>(problem.f[i].energy_if_broken());
-    const double size   = std::abs(x(i));
-    const double s      = largest(i) + size;
-    const double rounding = 8. * std::numeric_limits<double>::epsilon() *
-                            (std::abs(value) + std::abs(least_i) + energy +
-                             (std::abs(r_i) + (c + quadratic) * s) * s);
+      (std::abs(value) + std::abs(least_i) + std::abs(constant) + offset +
+       (std::abs(r_i) + std::abs(p.slope) +
+        (is_bounded ? quadratic * size : 0.) + (c + quadratic) * s) *
+         s);
+    if (is_bounded)
+      return {0.,
+              value + (constant + offset - least_i) - rounding,
+              r_i + p.slope - quadratic * x(i),
+              c + quadratic};
+    const double slope = r_i + p.slope;
     return {x(i),
-            value + (r_i * x(i) + 0.5 * c * x(i) * x(i) + energy - least_i) -
+            value +
+              (slope * x(i) + 0.5 * c * x(i) * x(i) + constant - least_i) -
               rounding,
-            r_i + c * x(i),
+            slope + c * x(i),
             c + quadratic};
   }
 } // namespace Debond

@@ -23,7 +23,7 @@ namespace Debond
       GuidedSearch(const dealii::FullMatrix<double> &S,
                    const dealii::Vector<double>     &g,
                    const PiecewiseQuadratic         &phi,
-                   const SeparableBonds             &lumped,
+                   const SeparableBranches          &lumped,
                    const bool                        is_separable,
                    const NeighbourGraph             &neighbours,
                    const MajoriseMinimise           &method,
@@ -32,7 +32,7 @@ namespace Debond
         : S(S)
         , g(g)
         , phi(phi)
-        , bonds(lumped)
+        , lumped(lumped)
         , is_separable(is_separable)
         , neighbours(neighbours)
         , method(method)
@@ -71,10 +71,16 @@ namespace Debond
       void
       search(const BondSearchParameters &moves, dealii::Vector<double> &s)
       {
-        add(
-          search_bonds(
-            S, g, phi, bonds.threshold, neighbours, method, moves, s, monitor),
-          result.search);
+        add(search_bonds(S,
+                         g,
+                         phi,
+                         -lumped.f[0][1].upper,
+                         neighbours,
+                         method,
+                         moves,
+                         s,
+                         monitor),
+            result.search);
       }
 
       /// Branch and bound, and whether it ends with a proof. What it finds is
@@ -90,7 +96,7 @@ namespace Debond
         limits.maximum_bytes             = parameters.maximum_bytes;
         limits.n_threads                 = parameters.n_threads;
         const BranchAndBoundResult proof = BranchAndBound(limits).minimize(
-          S, g, bonds, s, [this](const ProofProgress &) { return monitor(); });
+          S, g, lumped, s, [this](const ProofProgress &) { return monitor(); });
         if (is_separable)
           result.proof = proof;
         dealii::Vector<double> other = proof.s;
@@ -111,7 +117,7 @@ namespace Debond
       const dealii::FullMatrix<double> &S;
       const dealii::Vector<double>     &g;
       const PiecewiseQuadratic         &phi;
-      const SeparableBonds             &bonds;
+      const SeparableBranches          &lumped;
       const bool                        is_separable;
       const NeighbourGraph             &neighbours;
       const MajoriseMinimise           &method;
@@ -123,13 +129,17 @@ namespace Debond
 
 
 
-  SeparableBonds
-  lumped_bonds(const PiecewiseQuadratic &phi,
-               const unsigned int        n,
-               const double              threshold)
+  SeparableBranches
+  lumped_branches(const PiecewiseQuadratic &phi,
+                  const unsigned int        n,
+                  const BranchMinimum      &branches)
   {
-    return {phi.curvature(dealii::Vector<double>(n)) * Eigen::VectorXd::Ones(n),
-            threshold};
+    const Eigen::VectorXd curvature =
+      phi.curvature(dealii::Vector<double>(n)) * Eigen::VectorXd::Ones(n);
+    std::vector<BranchMinimum> f;
+    for (const double c : curvature)
+      f.push_back(branches.with_first_curvature(c));
+    return SeparableBranches(f);
   }
 
 
@@ -154,7 +164,7 @@ namespace Debond
     const dealii::FullMatrix<double>                          &S,
     const dealii::Vector<double>                              &g,
     const PiecewiseQuadratic                                  &phi,
-    const SeparableBonds                                      &lumped,
+    const SeparableBranches                                   &lumped,
     const bool                                                 is_separable,
     const NeighbourGraph                                      &neighbours,
     const MajoriseMinimise                                    &method,

@@ -4,13 +4,14 @@
 #include <debond/optimization/global/node_bound.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace Debond
 {
   namespace
   {
-    /// The part of the convexity of S that goes to the undecided bonds in the
+    /// The part of the convexity of S that goes to what is undecided in the
     /// first relaxation of a node. What is left has to shrink its box.
     constexpr double first_share = 0.5;
 
@@ -22,33 +23,37 @@ namespace Debond
     constexpr unsigned int n_root_rounds = 30;
 
     /// The parameter mu of raise_bound, as a part of what is left to prove per
-    /// bond. Smaller ones leave too little to shrink the box.
+    /// unknown. Smaller ones leave too little to shrink the box.
     constexpr double barrier = 1.;
 
-    /// How much the gap of a bond's envelope counts when a bond is chosen,
+    /// How much the gap of an envelope counts when its unknown is chosen,
     /// beside the bound of the lower one of its halves.
     constexpr double envelope_weight = 0.3;
 
     /// What a certificate takes more than it needs, relative to that and to the
-    /// stiffness of bond or body: a residual d of s then costs d^2 / (2 D).
+    /// curvature of branch or body: a residual d of s then costs d^2 / (2 D).
     constexpr double certificate_excess = 1e-2;
     constexpr double certificate_floor  = 1e-8;
 
 
 
-    enum class Bond
+    /// Pieces of an unknown's term, first and last.
+    struct Pieces
     {
-      bonded,
-      broken,
-      undecided
+      unsigned int first, last;
     };
 
-    Bond
-    state(const ProofNode &node, const unsigned int i, const double threshold)
+    /// Those that the box has a part of.
+    Pieces
+    pieces_in_box(const ProofNode     &node,
+                  const unsigned int   i,
+                  const BranchMinimum &f)
     {
-      return node.lower(i) >= -threshold ? Bond::bonded :
-             node.upper(i) <= -threshold ? Bond::broken :
-                                           Bond::undecided;
+      const unsigned int last  = f.index(node.lower(i));
+      unsigned int       first = 0;
+      while (first < last && node.upper(i) <= f[first].lower)
+        ++first;
+      return {first, last};
     }
 
 
@@ -57,12 +62,12 @@ namespace Debond
     class Relaxations
     {
     public:
-      Relaxations(const Eigen::MatrixXd &S,
-                  const Eigen::VectorXd &g,
-                  const SeparableBonds  &bonds,
-                  ProofNode             &node)
+      Relaxations(const Eigen::MatrixXd   &S,
+                  const Eigen::VectorXd   &g,
+                  const SeparableBranches &phi,
+                  ProofNode               &node)
         : S(S)
-        , bonds(bonds)
+        , phi(phi)
         , n(static_cast<unsigned int>(g.size()))
         , node(node)
       {
@@ -75,10 +80,10 @@ namespace Debond
           const unsigned int maximum_rounds);
 
     private:
-      const Eigen::MatrixXd &S;
-      const SeparableBonds  &bonds;
-      const unsigned int     n;
-      ProofNode             &node;
+      const Eigen::MatrixXd   &S;
+      const SeparableBranches &phi;
+      const unsigned int       n;
+      ProofNode               &node;
 
       BoxProblem                  problem;
       std::vector<ConvexEnvelope> envelopes;
@@ -102,12 +107,7 @@ namespace Debond
       choose(const LowerBound &lower_bound, NodeResult &result) const;
 
       Interval
-      box(const unsigned int i, const Bond half) const;
-
-      Growth
-      growth(const LowerBound  &lower_bound,
-             const unsigned int i,
-             const Bond         half) const;
+      box(const unsigned int i, const BranchMinimum::Piece &piece) const;
     };
 
 
@@ -117,8 +117,11 @@ namespace Debond
     {
       std::vector<unsigned int> result;
       for (unsigned int i = 0; i < n; ++i)
-        if (state(node, i, bonds.threshold) == Bond::undecided)
-          result.push_back(i);
+        {
+          const Pieces pieces = pieces_in_box(node, i, phi.f[i]);
+          if (pieces.first < pieces.last)
+            result.push_back(i);
+        }
       return result;
     }
 
@@ -136,18 +139,27 @@ namespace Debond
       Eigen::VectorXd weights = Eigen::VectorXd::Zero(n);
       for (unsigned int i = 0; i < n; ++i)
         {
-          const Bond bond = state(node, i, bonds.threshold);
-          // Rounded down, A gives a bound all the same.
-          if (bond == Bond::bonded)
-            problem.A(i, i) = (problem.A(i, i) + bonds.stiffness(i)) *
-                              (1. - std::numeric_limits<double>::epsilon());
-          problem.f[i] = {0.,
-                          bond == Bond::bonded ? 0. : bonds.stiffness(i),
-                          bonds.threshold};
-          if (bond == Bond::undecided)
+          const Pieces  pieces = pieces_in_box(node, i, phi.f[i]);
+          BranchEnergy &f      = problem.f[i];
+          f                    = {0., {}};
+          double least = phi.f[i][pieces.first].curvature, largest = least;
+          for (unsigned int k = pieces.first; k <= pieces.last; ++k)
+            {
+              f.pieces.push_back(phi.f[i][k]);
+              least   = std::min(least, f.pieces.back().curvature);
+              largest = std::max(largest, f.pieces.back().curvature);
+            }
+          if (pieces.first < pieces.last)
             {
               shift(i)   = node.shift(i);
-              weights(i) = bonds.stiffness(i);
+              weights(i) = largest - least;
+            }
+          else if (double &curvature = f.pieces[0].curvature; curvature > 0.)
+            {
+              // Rounded down, A gives a bound all the same.
+              problem.A(i, i) = (problem.A(i, i) + curvature) *
+                                (1. - std::numeric_limits<double>::epsilon());
+              curvature = 0.;
             }
         }
 
@@ -190,24 +202,11 @@ namespace Debond
 
 
     Interval
-    Relaxations::box(const unsigned int i, const Bond half) const
+    Relaxations::box(const unsigned int          i,
+                     const BranchMinimum::Piece &piece) const
     {
-      return {half == Bond::bonded ? std::max(node.lower(i), -bonds.threshold) :
-                                     node.lower(i),
-              half == Bond::broken ? std::min(node.upper(i), -bonds.threshold) :
-                                     node.upper(i)};
-    }
-
-
-
-    Growth
-    Relaxations::growth(const LowerBound  &lower_bound,
-                        const unsigned int i,
-                        const Bond         half) const
-    {
-      return half == Bond::bonded ?
-               lower_bound.growth_if_bonded(i, inverse(i, i)) :
-               lower_bound.growth_if_broken(i, inverse(i, i));
+      return {std::max(node.lower(i), piece.lower),
+              std::min(node.upper(i), piece.upper)};
     }
 
 
@@ -220,10 +219,11 @@ namespace Debond
       for (unsigned int i = 0; i < n; ++i)
         {
           Interval left = {1., -1.};
-          for (const Bond half : {Bond::bonded, Bond::broken})
+          for (unsigned int k = 0; k < problem.f[i].pieces.size(); ++k)
             left = hull(left,
-                        growth(lower_bound, i, half)
-                          .where_at_most(best_value, box(i, half)));
+                        lower_bound.growth(i, k, inverse(i, i))
+                          .where_at_most(best_value,
+                                         box(i, problem.f[i].pieces[k])));
           if (left.is_empty())
             return false;
           node.lower(i) = left.lower;
@@ -252,10 +252,23 @@ namespace Debond
       double highest = -std::numeric_limits<double>::infinity();
       for (const unsigned int i : undecided())
         {
+          // At the kink that is nearest to the minimum of the relaxation the
+          // gap of the envelope is largest.
+          const auto  &pieces = problem.f[i].pieces;
+          unsigned int split  = 0;
+          for (unsigned int k = 1; k < pieces.size(); ++k)
+            if (node.lower(i) < pieces[k].upper &&
+                pieces[k].upper < node.upper(i) &&
+                (split == 0 || std::abs(node.x(i) - pieces[k].upper) <
+                                 std::abs(node.x(i) - pieces[split].upper)))
+              split = k;
+
           std::array<double, 2> halves;
-          for (const Bond half : {Bond::bonded, Bond::broken})
-            halves[half == Bond::broken] =
-              growth(lower_bound, i, half).least(box(i, half));
+          halves.fill(std::numeric_limits<double>::infinity());
+          for (unsigned int k = 0; k < pieces.size(); ++k)
+            halves[k >= split] = std::min(
+              halves[k >= split],
+              lower_bound.growth(i, k, inverse(i, i)).least(box(i, pieces[k])));
           const double score =
             std::min(halves[0], halves[1]) +
             envelope_weight *
@@ -263,7 +276,8 @@ namespace Debond
           if (score > highest)
             {
               highest            = score;
-              result.bond        = i;
+              result.unknown     = i;
+              result.piece       = phi.f[i].index(pieces[split].upper) + 1;
               result.half_bounds = halves;
             }
         }
@@ -285,7 +299,7 @@ namespace Debond
           minimise_relaxation(problem, envelopes, node.x);
           const LowerBound lower_bound(problem, node.x);
           node.bound = std::max(node.bound, lower_bound.value);
-          // With all bonds decided, rounding is all that is left.
+          // With all decided, rounding is all that is left.
           if (node.bound >= best_value - tolerance || all_decided)
             break;
 
@@ -303,11 +317,33 @@ namespace Debond
             }
           if (round + 1 >= maximum_rounds)
             choose(lower_bound, result);
-          if (result.bond)
+          if (result.unknown)
             return result;
         }
       result.least = node.bound;
       return result;
+    }
+
+
+
+    /// The convexity with which @p other is not below the tangent of @p own at
+    /// s and its parabola there.
+    double
+    needed_convexity(const BranchMinimum::Piece &own,
+                     const BranchMinimum::Piece &other,
+                     const double                s)
+    {
+      const long double c       = own.curvature;
+      const long double slope   = own.slope + c * s;
+      const long double value   = own.constant - 0.5L * c * s * s;
+      const long double b       = other.slope - slope;
+      const long double h       = other.constant - value;
+      const long double above   = h + s * (b + 0.5L * other.curvature * s);
+      const long double squared = b * b - 2.L * other.curvature * h;
+      if (!(squared > 0.L))
+        return 0.;
+      return above > 0.L ? static_cast<double>(squared / (2.L * above)) :
+                           std::numeric_limits<double>::infinity();
     }
   } // namespace
 
@@ -315,8 +351,8 @@ namespace Debond
 
   NodeBound::NodeBound(const dealii::FullMatrix<double> &S_matrix,
                        const dealii::Vector<double>     &g_vector,
-                       const SeparableBonds             &bonds)
-    : bonds(bonds)
+                       const SeparableBranches          &phi)
+    : phi(phi)
     , n(g_vector.size())
     , S(eigen_view(S_matrix))
     , g(eigen_view(g_vector))
@@ -332,27 +368,28 @@ namespace Debond
       return {};
     const Eigen::VectorXd s_0 = *inverse * g;
 
-    BoxProblem no_bonds = {S,
-                           g,
-                           std::vector<BondEnergy>(n,
-                                                   {0., 0., bonds.threshold}),
-                           Eigen::VectorXd(),
-                           Eigen::VectorXd::Zero(n)};
+    // Phi is not negative.
+    const BranchMinimum zero({{0., 0., 0.L, ""}});
+    BoxProblem          without_phi = {S,
+                                       g,
+                                       std::vector<BranchEnergy>(n, {0., {zero[0]}}),
+                                       Eigen::VectorXd(),
+                                       Eigen::VectorXd::Zero(n)};
     // Within this distance of s_0 by the energy, and a little more.
     const double distance = 2. * (best_value + 0.5 * g.dot(s_0));
-    no_bonds.lower =
+    without_phi.lower =
       (s_0 -
        (distance * inverse->diagonal()).cwiseMax(0.).cwiseSqrt() * (1. + 1e-6))
         .cwiseMin(0.);
-    no_bonds.lower -= 1e-6 * no_bonds.lower.cwiseAbs();
+    without_phi.lower -= 1e-6 * without_phi.lower.cwiseAbs();
 
     ProofNode node;
     node.number = 0;
-    node.lower  = no_bonds.lower;
-    node.upper  = no_bonds.upper;
+    node.lower  = without_phi.lower;
+    node.upper  = without_phi.upper;
     node.x      = s_0;
     node.shift  = Eigen::VectorXd::Zero(n);
-    node.bound  = LowerBound(no_bonds, s_0).value;
+    node.bound  = LowerBound(without_phi, s_0).value;
     if (!node.lower.allFinite())
       return {};
     return node;
@@ -364,20 +401,26 @@ namespace Debond
   NodeBound::certificate(const Eigen::VectorXd &s) const
   {
     constexpr double nothing = -std::numeric_limits<double>::infinity();
-    // Where the bonds are as in s, r_i s_i + f_i(s_i) is least at s if f_i has
-    // at least this convexity.
-    Eigen::MatrixXd         A = S;
-    std::vector<BondEnergy> f(n);
+    // With this convexity r_i s_i + f_i(s_i) is least where it is stationary.
+    Eigen::MatrixXd           A = S;
+    std::vector<BranchEnergy> f(n);
     for (unsigned int i = 0; i < n; ++i)
       {
-        const double M_2 = bonds.threshold * bonds.threshold;
-        const double s_2 = s(i) * s(i);
-        const double convexity =
-          bonds.stiffness(i) * std::min(M_2, s_2) / std::abs(M_2 - s_2);
+        const BranchMinimum &f_i       = phi.f[i];
+        const unsigned int   own       = f_i.index(s(i));
+        double               convexity = 0., largest = 0.;
+        for (unsigned int k = 0; k < f_i.size(); ++k)
+          {
+            f[i].pieces.push_back(f_i[k]);
+            largest = std::max(largest, f_i[k].curvature);
+            if (k != own)
+              convexity =
+                std::max(convexity, needed_convexity(f_i[own], f_i[k], s(i)));
+          }
         A(i, i) -= (1. + certificate_excess) * convexity +
-                   certificate_floor * std::min(bonds.stiffness(i), S(i, i));
+                   certificate_floor * std::min(largest, S(i, i));
         // What was taken, without the rounding of the difference.
-        f[i] = {S(i, i) - A(i, i), bonds.stiffness(i), bonds.threshold};
+        f[i].convexity = S(i, i) - A(i, i);
         if (!(A(i, i) > 0.))
           return nothing;
       }
@@ -414,7 +457,7 @@ namespace Debond
                    const double best_value,
                    const double tolerance) const
   {
-    return Relaxations(S, g, bonds, node)
+    return Relaxations(S, g, phi, node)
       .run(best_value, tolerance, node.number == 0 ? n_root_rounds : n_rounds);
   }
 } // namespace Debond

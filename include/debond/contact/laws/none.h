@@ -7,30 +7,11 @@
 namespace Debond
 {
   /// No adhesion, j_1 = 0: with the unilateral constraint, Signorini's law.
-  class NoAdhesion : public AdhesiveLaw
-  {
-  public:
-    double
-    value(const double s) const override;
+  ContactLawParameters
+  no_adhesion();
 
-    Interval
-    clarke_interval(const double s) const override;
-
-    double
-    curvature(const double s) const override;
-
-    LawShape
-    shape() const override;
-
-    std::vector<double>
-    kinks() const override;
-
-    double
-    bond_threshold() const override;
-
-    double
-    bond_strength() const override;
-  };
+  LawKind
+  no_adhesion_kind();
 } // namespace Debond
 
 #endif

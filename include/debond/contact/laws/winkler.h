@@ -14,40 +14,16 @@ namespace Debond
    *              a s^2 / 2  for s in [-M, 0],
    *              0          for s > 0.
    *
-   * The kink at -M is concave; at 0 only the second derivative jumps.
+   * The kink at -M is concave; at 0 only the second derivative jumps. Without
+   * stiffness there is no adhesion.
+   *
+   * Throws std::invalid_argument unless a >= 0 and M > 0, both finite.
    */
-  class WinklerLaw : public AdhesiveLaw
-  {
-  public:
-    /// Throws std::invalid_argument unless a >= 0 and M > 0, both finite.
-    WinklerLaw(const double bond_stiffness, const double bond_threshold);
+  ContactLawParameters
+  winkler_law(const double bond_stiffness, const double bond_threshold);
 
-    double
-    value(const double s) const override;
-
-    Interval
-    clarke_interval(const double s) const override;
-
-    double
-    curvature(const double s) const override;
-
-    LawShape
-    shape() const override;
-
-    std::vector<double>
-    kinks() const override;
-
-    /// M, or zero if a is zero.
-    double
-    bond_threshold() const override;
-
-    double
-    bond_strength() const override;
-
-  private:
-    const double a;
-    const double M;
-  };
+  LawKind
+  winkler_kind();
 } // namespace Debond
 
 #endif

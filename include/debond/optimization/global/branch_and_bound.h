@@ -4,7 +4,7 @@
 
 #include <deal.II/lac/full_matrix.h>
 
-#include <debond/optimization/global/separable_bonds.h>
+#include <debond/optimization/global/separable_branches.h>
 
 #include <functional>
 #include <limits>
@@ -49,7 +49,7 @@ namespace Debond
     time_limit,   ///< the time was used up
     memory_limit, ///< the open nodes take too much
     interrupted,  ///< by the monitor
-    rounding,     ///< all bonds are decided, rounding leaves a larger gap
+    rounding,     ///< all is decided, rounding leaves a larger gap
     no_bound      ///< S is not safely positive definite: there is no bound
   };
 
@@ -74,12 +74,12 @@ namespace Debond
 
   /**
    * The global minimum of 1/2 s'S s - g's + Phi(s), s <= 0, by branch and bound
-   * on which bonds are broken.
+   * on the branches of Phi.
    *
-   * A node decides some bonds, and NodeBound bounds it. The open nodes with the
-   * lowest bounds are next, some at a time, in as many threads as there are.
-   * The order of the nodes does not depend on the number of threads, so that
-   * only a limit of time makes a result depend on the machine.
+   * A node leaves each unknown some branches, and NodeBound bounds it. The open
+   * nodes with the lowest bounds are next, some at a time, in as many threads
+   * as there are. The order of the nodes does not depend on the number of
+   * threads, so that only a limit of time makes a result depend on the machine.
    */
   class BranchAndBound
   {
@@ -93,7 +93,7 @@ namespace Debond
     BranchAndBoundResult
     minimize(const dealii::FullMatrix<double> &S,
              const dealii::Vector<double>     &g,
-             const SeparableBonds             &bonds,
+             const SeparableBranches          &phi,
              const dealii::Vector<double>     &start,
              const Monitor                    &monitor = {}) const;
 

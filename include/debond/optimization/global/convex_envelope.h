@@ -2,36 +2,31 @@
 #ifndef debond_optimization_global_convex_envelope_h
 #define debond_optimization_global_convex_envelope_h
 
+#include <debond/optimization/branch_minimum.h>
+
+#include <vector>
+
 namespace Debond
 {
-  /// f(s) = c/2 s^2 + k/2 min(s^2, M^2), c, k >= 0.
-  struct BondEnergy
+  /// f(s) = c/2 s^2 + the least of some pieces of a BranchMinimum, c >= 0.
+  struct BranchEnergy
   {
-    double convexity; ///< c
-    double stiffness; ///< k
-    double threshold; ///< M
+    double                            convexity; ///< c
+    std::vector<BranchMinimum::Piece> pieces;    ///< from 0 downwards
 
     double
     value(const double s) const;
 
-    long double
-    energy_if_broken() const;
-
-    /// The least value of r s + f(s) on [lower, upper] where the bond is
-    /// bonded (s >= -M) and where it is broken (s <= -M); infinite if there
+    /// The least value of r s + f(s) on [lower, upper] where the piece holds,
+    /// less what rounding can do to its constant and slope; infinite if there
     /// is no such s.
     long double
-    least_bonded(const long double r,
-                 const double      lower,
-                 const double      upper) const;
+    least(const long double  r,
+          const double       lower,
+          const double       upper,
+          const unsigned int piece) const;
 
-    long double
-    least_broken(const long double r,
-                 const double      lower,
-                 const double      upper) const;
-
-    /// The lower one, less what rounding can do to the energy of the broken
-    /// bond.
+    /// On all pieces.
     long double
     least(const long double r, const double lower, const double upper) const;
   };
@@ -39,36 +34,42 @@ namespace Debond
 
 
   /**
-   * The convex envelope of a BondEnergy on [lower, upper], upper <= 0: the
-   * broken parabola up to `first`, a line, and the bonded parabola from
-   * `second` on. Where the bond cannot break or cannot hold, one of the
-   * parabolas is all of it.
+   * The convex envelope of a BranchEnergy on [lower, upper], upper <= 0: parts
+   * of its parabolas, and between them lines that touch the parabolas on both
+   * sides as far as these reach.
    */
   class ConvexEnvelope
   {
   public:
-    ConvexEnvelope(const BondEnergy &f, const double lower, const double upper);
+    ConvexEnvelope(const BranchEnergy &f,
+                   const double        lower,
+                   const double        upper);
 
     double
     value(const double s) const;
 
-    /// (s - first)(second - s) on the line, zero elsewhere: twice the
+    /// (s - a)(b - s) on a line from a to b, zero on the parabolas: twice the
     /// derivative of the envelope less c/2 s^2 with respect to c.
     double
     spread(const double s) const;
 
-    /// The envelope's derivative is slope + curvature s on each piece.
-    struct Piece
+    /// The envelope's derivative is slope + curvature s on each part.
+    struct Part
     {
       double lower, upper;
       double slope, curvature;
+      bool   is_line;
     };
 
-    /// Broken, line, bonded; some may be empty.
-    Piece pieces[3];
+    /// In ascending order, without empty ones.
+    std::vector<Part> parts;
 
   private:
-    BondEnergy f;
+    BranchEnergy f;
+
+    /// The line that has s inside, null if there is none.
+    const Part *
+    line_at(const double s) const;
   };
 } // namespace Debond
 

@@ -15,10 +15,10 @@ namespace Debond
   /// A symmetric and positive definite.
   struct BoxProblem
   {
-    Eigen::MatrixXd         A;
-    Eigen::VectorXd         g;
-    std::vector<BondEnergy> f;
-    Eigen::VectorXd         lower, upper;
+    Eigen::MatrixXd           A;
+    Eigen::VectorXd           g;
+    std::vector<BranchEnergy> f;
+    Eigen::VectorXd           lower, upper;
   };
 
   /**
@@ -50,15 +50,14 @@ namespace Debond
 
     LowerBound(const BoxProblem &problem, const Eigen::VectorXd &x);
 
-    /// How the bound grows with s_i if bond i is bonded, or if it is broken,
-    /// by its own term and the quadratic one, of which
+    /// How the bound grows with s_i on a piece of f_i, by its own term and the
+    /// quadratic one, of which
     ///     1/2 (s - x)'A (s - x) >= 1/2 (s_i - x_i)^2 / (A^{-1})_ii
     /// is left if all others are free.
     Growth
-    growth_if_bonded(const unsigned int i, const double inverse_diagonal) const;
-
-    Growth
-    growth_if_broken(const unsigned int i, const double inverse_diagonal) const;
+    growth(const unsigned int i,
+           const unsigned int piece,
+           const double       inverse_diagonal) const;
 
   private:
     const BoxProblem      &problem;

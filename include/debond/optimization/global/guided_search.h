@@ -4,19 +4,19 @@
 
 #include <debond/optimization/global/bond_search.h>
 #include <debond/optimization/global/branch_and_bound.h>
-#include <debond/optimization/global/separable_bonds.h>
+#include <debond/optimization/global/separable_branches.h>
 
 #include <optional>
 
 namespace Debond
 {
-  /// Phi with its bonds lumped at the unknowns: their stiffnesses are the row
-  /// sums of the second derivative at 0, of @p n unknowns. This is Phi itself
-  /// if each unknown has a bond of its own that breaks at -threshold.
-  SeparableBonds
-  lumped_bonds(const PiecewiseQuadratic &phi,
-               const unsigned int        n,
-               const double              threshold);
+  /// Phi lumped at its @p n unknowns: each has the multiple of @p branches with
+  /// the row sum of the second derivative at 0. This is Phi itself if each
+  /// unknown has a multiple of them for its own.
+  SeparableBranches
+  lumped_branches(const PiecewiseQuadratic &phi,
+                  const unsigned int        n,
+                  const BranchMinimum      &branches);
 
   struct GuidedSearchParameters
   {
@@ -35,7 +35,7 @@ namespace Debond
     /// A bound for the functional, if Phi is separable.
     std::optional<BranchAndBoundResult> proof;
 
-    /// Whether the minimum with the lumped bonds is known, and lies in a state
+    /// Whether the minimum of the lumped problem is known, and lies in a state
     /// that was tried.
     bool is_closed = false;
   };
@@ -59,7 +59,7 @@ namespace Debond
    * first search, with whether that found anything, and may change s; if it
    * returns true the search ends.
    *
-   * If Phi is not separable, the proof is for its lumped bonds and says where
+   * If Phi is not separable, the proof is for the lumped one and says where
    * to look: the minimum that it finds is a start for the true Phi.
    *
    * Arguments as for search_bonds().
@@ -69,7 +69,7 @@ namespace Debond
     const dealii::FullMatrix<double>                          &S,
     const dealii::Vector<double>                              &g,
     const PiecewiseQuadratic                                  &phi,
-    const SeparableBonds                                      &lumped,
+    const SeparableBranches                                   &lumped,
     const bool                                                 is_separable,
     const NeighbourGraph                                      &neighbours,
     const MajoriseMinimise                                    &method,

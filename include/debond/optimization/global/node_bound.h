@@ -6,7 +6,7 @@
 #include <deal.II/lac/vector.h>
 
 #include <debond/optimization/global/envelope_relaxation.h>
-#include <debond/optimization/global/separable_bonds.h>
+#include <debond/optimization/global/separable_branches.h>
 
 #include <array>
 #include <optional>
@@ -21,7 +21,7 @@ namespace Debond
     unsigned int    number;
     Eigen::VectorXd lower, upper;
     Eigen::VectorXd x;     ///< where its relaxation starts
-    Eigen::VectorXd shift; ///< convexity moved to the bonds
+    Eigen::VectorXd shift; ///< convexity moved to the branches
 
     bool
     operator<(const ProofNode &other) const
@@ -35,9 +35,10 @@ namespace Debond
   /// What NodeBound finds out of a node.
   struct NodeResult
   {
-    /// The bond to decide next, and bounds of the halves with it bonded and
-    /// broken.
-    std::optional<unsigned int> bond;
+    /// The unknown to branch on next, the first piece of the lower half of its
+    /// pieces, and bounds of the upper and the lower half.
+    std::optional<unsigned int> unknown;
+    unsigned int                piece = 0;
     std::array<double, 2>       half_bounds;
 
     /// If there is none, the node is done: it has no value below this.
@@ -47,23 +48,25 @@ namespace Debond
 
 
   /**
-   * Bounds nodes of the branch and bound for 1/2 s'S s - g's + Phi(s), s <= 0.
+   * Bounds nodes of the branch and bound for 1/2 s'S s - g's + Phi(s), s <= 0,
+   * Phi with branches.
    *
-   * What is undecided is replaced by its convex envelope on the node's box,
-   * after an amount of convexity was moved from S to the undecided bonds, which
+   * A node's box leaves each unknown some pieces in a row: if it is one, the
+   * unknown is decided. The others' terms are replaced by their convex envelope
+   * on the box, after an amount of convexity was moved from S to them, which
    * makes the envelope tighter (the D.C. splitting of alpha-BB: Androulakis,
-   * Maranas, Floudas, J. Global Optim. 7, 1995): first the same multiple of
-   * all stiffnesses, which leaves enough in S to shrink the box, then what
-   * raises the bound (raise_bound, with which the bound nears that of a
-   * semidefinite program). Each bound shrinks the box to where a point can be
-   * below the best known value, which decides bonds.
+   * Maranas, Floudas, J. Global Optim. 7, 1995): first the same multiple of the
+   * differences of their curvatures, which leaves enough in S to shrink the
+   * box, then what raises the bound (raise_bound, with which the bound nears
+   * that of a semidefinite program). Each bound shrinks the box to where a
+   * point can be below the best known value, which decides unknowns.
    */
   class NodeBound
   {
   public:
     NodeBound(const dealii::FullMatrix<double> &S,
               const dealii::Vector<double>     &g,
-              const SeparableBonds             &bonds);
+              const SeparableBranches          &phi);
 
     /// The box in which points are not above @p best_value; nothing if S is not
     /// safely positive definite.
@@ -71,10 +74,11 @@ namespace Debond
     root(const double best_value) const;
 
     /// A lower bound of the functional that is close to its value at @p s if
-    /// the convexity that the broken and bonded states of s need for this,
-    ///     k_i M^2 / (s_i^2 - M^2) and k_i s_i^2 / (M^2 - s_i^2),
-    /// leaves S positive definite; minus infinity if it does not. Takes one
-    /// factorisation.
+    /// the convexity that the branches at s need to be the least ones with it,
+    ///     p'(s_i)^2 / (2 p(s_i)) - c
+    /// for each other branch with curvature c, p its difference to the tangent
+    /// at s_i, leaves S positive definite; minus infinity if it does not. Takes
+    /// one factorisation.
     double
     certificate(const Eigen::VectorXd &s) const;
 
@@ -85,10 +89,10 @@ namespace Debond
           const double tolerance) const;
 
   private:
-    const SeparableBonds &bonds;
-    const unsigned int    n;
-    Eigen::MatrixXd       S;
-    Eigen::VectorXd       g;
+    const SeparableBranches &phi;
+    const unsigned int       n;
+    Eigen::MatrixXd          S;
+    Eigen::VectorXd          g;
   };
 } // namespace Debond
 

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_global_separable_branches_h
+#define debond_optimization_global_separable_branches_h
+
+#include <debond/optimization/branch_minimum.h>
+#include <debond/optimization/piecewise_quadratic.h>
+
+#include <vector>
+
+namespace Debond
+{
+  /// Phi(s) = sum_i f_i(s_i): each unknown has branches of its own.
+  struct SeparableBranches : public PiecewiseQuadratic
+  {
+    std::vector<BranchMinimum> f;
+
+    explicit SeparableBranches(const std::vector<BranchMinimum> &f);
+
+    double
+    value(const dealii::Vector<double> &s) const override;
+
+    void
+    subgradient(const dealii::Vector<double> &s,
+                dealii::Vector<double>       &xi) const override;
+
+    Eigen::SparseMatrix<double>
+    curvature(const dealii::Vector<double> &s) const override;
+
+    /// The largest value of Phi, infinite if there is none.
+    double
+    largest_value() const;
+  };
+} // namespace Debond
+
+#endif

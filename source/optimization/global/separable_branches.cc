@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/optimization/global/separable_branches.h>
+
+namespace Debond
+{
+  SeparableBranches::SeparableBranches(const std::vector<BranchMinimum> &f)
+    : f(f)
+  {}
+
+
+
+  double
+  SeparableBranches::value(const dealii::Vector<double> &s) const
+  {
+    double sum = 0.;
+    for (unsigned int i = 0; i < s.size(); ++i)
+      sum += f[i].value(s(i));
+    return sum;
+  }
+
+
+
+  void
+  SeparableBranches::subgradient(const dealii::Vector<double> &s,
+                                 dealii::Vector<double>       &xi) const
+  {
+    for (unsigned int i = 0; i < s.size(); ++i)
+      xi(i) = f[i][f[i].index(s(i))].derivative(s(i));
+  }
+
+
+
+  Eigen::SparseMatrix<double>
+  SeparableBranches::curvature(const dealii::Vector<double> &s) const
+  {
+    Eigen::SparseMatrix<double> result(s.size(), s.size());
+    for (unsigned int i = 0; i < s.size(); ++i)
+      if (const double c = f[i][f[i].index(s(i))].curvature; c != 0.)
+        result.insert(i, i) = c;
+    return result;
+  }
+
+
+
+  double
+  SeparableBranches::largest_value() const
+  {
+    double sum = 0.;
+    for (const BranchMinimum &f_i : f)
+      sum += f_i.largest_value();
+    return sum;
+  }
+} // namespace Debond
