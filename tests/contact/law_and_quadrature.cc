@@ -133,10 +133,11 @@ namespace
   {
     const AdhesiveLaw law       = default_law(name, factor);
     const bool        has_bonds = law.bond_threshold() > 0.;
-    const double      a         = has_bonds ? law.curvature(0.) : factor;
-    const double      M         = has_bonds ? law.bond_threshold() : 1.;
-    const double      energy = a * M * M, strength = a * M, h = 1e-4 * M;
-    const auto        kinks = law.kinks();
+    const double      a =
+      has_bonds ? law.bond_strength() / law.bond_threshold() : factor;
+    const double M      = has_bonds ? law.bond_threshold() : 1.;
+    const double energy = a * M * M, strength = a * M, h = 1e-4 * M;
+    const auto   kinks = law.kinks();
 
     // A quadratic by its value, slope and curvature at a point.
     struct Branch
