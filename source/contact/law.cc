@@ -22,7 +22,14 @@ namespace Debond
   double
   AdhesiveLaw::value(const double s) const
   {
-    return s > 0. ? 0. : minimum.value(s);
+    if (s > 0.)
+      return 0.;
+    // A bond that does not pull keeps the energy that the branch before it has
+    // at the kink, to the last digit: the constant is rounded otherwise, which
+    // the bundle method amplifies.
+    const unsigned int k = minimum.index(s);
+    return k > 0 && is_loose(k) ? minimum[k - 1].value(minimum[k].upper) :
+                                  minimum[k].value(s);
   }
 
 
