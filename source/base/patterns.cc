@@ -149,6 +149,23 @@ namespace Debond
 
 
   Pattern
+  list_of(const Pattern &pattern)
+  {
+    return Pattern("a list, each " + pattern.description(),
+                   [pattern](const std::string &value) {
+                     const std::vector<std::string> items =
+                       dealii::Utilities::split_string_list(value, ',');
+                     return std::all_of(items.begin(),
+                                        items.end(),
+                                        [&pattern](const std::string &item) {
+                                          return pattern.match(item);
+                                        });
+                   });
+  }
+
+
+
+  Pattern
   one_for_each_dimension(const Pattern &pattern)
   {
     return Pattern("2 or 3 times " + pattern.description(),

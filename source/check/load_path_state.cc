@@ -2,6 +2,7 @@
 #include <debond/check/load_path_state.h>
 
 #include <algorithm>
+#include <cctype>
 
 namespace Debond
 {
@@ -17,35 +18,57 @@ namespace Debond
     dealii::Vector<double> s(static_cast<unsigned int>(nodes.size()));
     LoadPathState<dim>     state   = {};
     double                 measure = 0.;
+
+    constexpr unsigned int n_known =
+      static_cast<unsigned int>(BondState::held) + 1;
+    for (std::size_t k = n_known; k < verification.state_names.size(); ++k)
+      {
+        std::string name;
+        for (const char c : verification.state_names[k])
+          if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+            name += c;
+          else if (c == ' ')
+            name += '_';
+        state.other_parts.emplace_back(name, 0.);
+      }
+    const auto part = [&](const BondState branch) -> double & {
+      switch (branch)
+        {
+          case BondState::contact:
+            return state.contact_part;
+          case BondState::bonded:
+            return state.bonded_part;
+          case BondState::broken:
+          case BondState::free:
+            return state.broken_part;
+          default:
+            return state
+              .other_parts[static_cast<unsigned int>(branch) - n_known]
+              .second;
+        }
+    };
+
     for (unsigned int i = 0; i < nodes.size(); ++i)
       {
         const ContactNodeState &node = verification.nodes[i];
         s(i)                         = node.u_nu;
         measure += nodes[i].measure;
-        switch (node.state)
-          {
-            case BondState::contact:
-              state.contact_part += nodes[i].measure;
-              break;
-            case BondState::bonded:
-            case BondState::kink:
-              state.bonded_part += nodes[i].measure;
-              break;
-            case BondState::broken:
-            case BondState::free:
-              state.broken_part += nodes[i].measure;
-              break;
-          }
+        part(node.state == BondState::contact ? node.state : node.branch) +=
+          nodes[i].measure;
         state.mean_gap -= nodes[i].measure * node.u_nu;
         state.largest_gap = std::max(state.largest_gap, -node.u_nu);
         state.normal_force += node.normal_force;
       }
     if (measure > 0.)
-      for (double *part : {&state.contact_part,
-                           &state.bonded_part,
-                           &state.broken_part,
-                           &state.mean_gap})
-        *part /= measure;
+      {
+        for (double *number : {&state.contact_part,
+                               &state.bonded_part,
+                               &state.broken_part,
+                               &state.mean_gap})
+          *number /= measure;
+        for (auto &[name, other] : state.other_parts)
+          other /= measure;
+      }
 
     state.elastic_energy  = problem.elastic_functional(u, 0.);
     state.adhesion_energy = adhesion.value(s);

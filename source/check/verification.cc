@@ -8,23 +8,15 @@
 
 namespace Debond
 {
-  std::string
-  to_string(const BondState state)
+  std::vector<std::string>
+  state_names(const AdhesiveLaw &law)
   {
-    switch (state)
-      {
-        case BondState::contact:
-          return "contact";
-        case BondState::bonded:
-          return "bonded";
-        case BondState::kink:
-          return "kink";
-        case BondState::broken:
-          return "broken";
-        case BondState::free:
-          return "free";
-      }
-    throw std::invalid_argument("This is not a bond state");
+    std::vector<std::string> names = {
+      "contact", "bonded", "kink", "broken", "free", "held"};
+    for (unsigned int k = 0; k < law.branches().size(); ++k)
+      if (std::find(names.begin(), names.end(), law.name(k)) == names.end())
+        names.push_back(law.name(k));
+    return names;
   }
 
 
@@ -54,8 +46,27 @@ namespace Debond
 
 
 
+  template <int dim>
+  const std::string &
+  Verification<dim>::name(const BondState state) const
+  {
+    return state_names[static_cast<unsigned int>(state)];
+  }
+
+
+
   namespace
   {
+    /// The displacement at which bonds first change their branch, as a positive
+    /// length; zero if they never do.
+    double
+    first_threshold(const AdhesiveLaw &law)
+    {
+      return law.branches().size() > 1 ? -law.branches()[1].upper : 0.;
+    }
+
+
+
     /// What the displacement and the force of a node are compared with, see
     /// Verification::law_violation.
     struct LawScale
@@ -83,8 +94,8 @@ namespace Debond
       for (const ContactNodeState &node : nodes)
         largest_force = std::max(largest_force, std::abs(node.normal_force));
 
-      const bool has_bonds =
-        law.bond_threshold() > 0. && law.bond_strength() > 0.;
+      const double threshold = first_threshold(law);
+      const bool   has_bonds = threshold > 0. && law.bond_strength() > 0.;
       std::vector<LawScale> scales;
       for (unsigned int i = 0; i < nodes.size(); ++i)
         {
@@ -96,9 +107,9 @@ namespace Debond
           scale.force =
             std::max(scale.force, digits_above_rounding * rounding[i]);
           if (has_bonds)
-            scale.length = std::min(scale.length,
-                                    law.bond_threshold() *
-                                      std::min(1., scale.force / strength));
+            scale.length =
+              std::min(scale.length,
+                       threshold * std::min(1., scale.force / strength));
           scales.push_back(scale);
         }
       return scales;
@@ -107,31 +118,52 @@ namespace Debond
 
 
     BondState
-    bond_state(const ContactNodeState &node,
-               const AdhesiveLaw      &law,
-               const LawScale         &scale,
-               const double            largest_displacement,
-               const double            tolerance)
+    state_of_branch(const AdhesiveLaw              &law,
+                    const std::vector<std::string> &names,
+                    const unsigned int              piece)
     {
-      const bool   has_bonds = law.bond_strength() > 0.;
-      const double M         = law.bond_threshold();
-      if (node.u_nu >= -tolerance * (has_bonds ?
-                                       std::min(M, largest_displacement) :
-                                       largest_displacement))
-        return BondState::contact;
+      return static_cast<BondState>(
+        std::find(names.begin(), names.end(), law.name(piece)) - names.begin());
+    }
 
+
+
+    void
+    set_state(const AdhesiveLaw              &law,
+              const std::vector<std::string> &names,
+              const LawScale                 &scale,
+              const double                    largest_displacement,
+              const double                    tolerance,
+              ContactNodeState               &node)
+    {
+      const BranchMinimum &branches = law.branches();
+      node.branch = state_of_branch(law, names, branches.index(node.u_nu));
+      const double threshold = first_threshold(law);
+      const double no_gap =
+        tolerance * (threshold > 0. ?
+                       std::min(threshold, largest_displacement) :
+                       largest_displacement);
       // A small gap under pressure is contact that an iterative method has not
       // closed yet.
       constexpr double largest_gap = 1e-3;
       const double     gap =
         std::max(tolerance, std::min(largest_gap, 1.01 * node.violation));
-      if (node.normal_force > 0. && node.u_nu >= -gap * scale.length)
-        return BondState::contact;
-      if (!has_bonds)
-        return BondState::free;
-      if (std::abs(node.u_nu + M) <= tolerance * M)
-        return BondState::kink;
-      return node.u_nu < -M ? BondState::broken : BondState::bonded;
+      if (node.u_nu >= -no_gap ||
+          (node.normal_force > 0. && node.u_nu >= -gap * scale.length))
+        {
+          node.state = BondState::contact;
+          return;
+        }
+      node.state = node.branch;
+      for (unsigned int k = 1; k < branches.size(); ++k)
+        {
+          const double kink = branches[k].upper;
+          if (std::abs(node.u_nu - kink) <= tolerance * std::abs(kink))
+            {
+              node.state  = BondState::kink;
+              node.branch = state_of_branch(law, names, k - 1);
+            }
+        }
     }
 
 
@@ -359,6 +391,7 @@ namespace Debond
     const std::vector<Interval> forces = adhesion.force_intervals(s, 0.);
 
     Verification<dim> result;
+    result.state_names = state_names(law);
     result.penetration = 0.;
     for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
       {
@@ -388,8 +421,8 @@ namespace Debond
     for (unsigned int i = 0; i < result.nodes.size(); ++i)
       {
         ContactNodeState &node = result.nodes[i];
-        node.state =
-          bond_state(node, law, scales[i], s.linfty_norm(), tolerance);
+        set_state(
+          law, result.state_names, scales[i], s.linfty_norm(), tolerance, node);
         result.law_violation = std::max(result.law_violation, node.violation);
       }
 

@@ -3,6 +3,7 @@
 #include <debond/base/text.h>
 #include <debond/contact/law.h>
 #include <debond/contact/laws/none.h>
+#include <debond/contact/laws/stepped.h>
 #include <debond/contact/laws/winkler.h>
 
 #include <algorithm>
@@ -153,6 +154,7 @@ namespace Debond
     kinds()
     {
       static const std::vector<LawKind> all = {winkler_kind(),
+                                               stepped_kind(),
                                                no_adhesion_kind()};
       return all;
     }

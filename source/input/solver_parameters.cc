@@ -142,13 +142,13 @@ namespace Debond
 
 
     /// The moves of a full search by name.
-    BondSearchParameters
+    BranchSearchParameters
     search_with(const std::vector<std::string> &moves)
     {
       const auto has = [&moves](const std::string &move) {
         return std::find(moves.begin(), moves.end(), move) != moves.end();
       };
-      BondSearchParameters search;
+      BranchSearchParameters search;
       search.starts = has("starts");
       search.flips  = has("flips");
       search.splits = has("splits");

@@ -10,7 +10,9 @@ namespace Debond
     /// The titles of write_state() with @p prefix.
     template <int dim>
     void
-    write_titles(const std::string &prefix, std::ostream &out)
+    write_titles(const LoadPathState<dim> &state,
+                 const std::string        &prefix,
+                 std::ostream             &out)
     {
       for (const char *title : {"minimum",
                                 "J",
@@ -31,6 +33,8 @@ namespace Debond
       for (const char *title :
            {"law_violation", "equilibrium_residual", "force_imbalance"})
         out << ',' << prefix << title;
+      for (const auto &[name, part] : state.other_parts)
+        out << ',' << prefix << name << "_part";
     }
 
 
@@ -59,6 +63,8 @@ namespace Debond
                                   state.equilibrium_residual,
                                   state.force_imbalance})
         out << ',' << shortest_text(number);
+      for (const auto &[name, part] : state.other_parts)
+        out << ',' << shortest_text(part);
     }
 
 
@@ -79,12 +85,15 @@ namespace Debond
   write_load_path(const std::vector<LoadPathStep<dim>> &steps,
                   const std::string                    &file_name)
   {
-    constexpr unsigned int n_columns_of_state = 14 + 2 * dim;
+    const LoadPathState<dim> first =
+      steps.empty() ? LoadPathState<dim>() : steps[0].state;
+    const std::size_t n_columns_of_state =
+      14 + 2 * dim + first.other_parts.size();
     write_atomically(file_name, [&](std::ostream &out) {
       out << "step,factor,status";
-      write_titles<dim>("", out);
+      write_titles(first, "", out);
       out << ",iterations,change_factor";
-      write_titles<dim>("global_", out);
+      write_titles(first, "global_", out);
       out << ",global_relative_gap\n";
 
       for (const LoadPathStep<dim> &step : steps)

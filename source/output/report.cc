@@ -217,10 +217,12 @@ namespace Debond
       }
 
     std::string states;
-    for (const BondState state : bond_states)
-      if (const unsigned int count = verification.count(state); count > 0)
-        states += (states.empty() ? "" : ", ") + to_string(state) + " " +
-                  std::to_string(count);
+    for (unsigned int k = 0; k < verification.state_names.size(); ++k)
+      if (const unsigned int count =
+            verification.count(static_cast<BondState>(k));
+          count > 0)
+        states += (states.empty() ? "" : ", ") + verification.state_names[k] +
+                  " " + std::to_string(count);
     line(out, "contact nodes") << states << '\n';
     line(out, "largest") << "displacement "
                          << scientific(summary.largest.displacement, 3)

@@ -47,7 +47,8 @@ namespace Debond
           out << state.u_nu << ',' << state.normal_force << ','
               << state.normal_force / node.measure << ','
               << state.allowed_force.lower << ',' << state.allowed_force.upper
-              << ',' << state.violation << ',' << to_string(state.state);
+              << ',' << state.violation << ','
+              << verification.name(state.state);
           for (unsigned int d = 0; d < dim; ++d)
             out << ',' << verification.tangential_forces[i][d];
           out << '\n';

@@ -90,9 +90,6 @@ namespace Debond
 
 
 
-    /// bond_state of a vertex that is held, after those of BondState.
-    constexpr float held = static_cast<float>(bond_states.size());
-
     /// The fields at points of the contact boundary, after two vectors.
     const std::vector<std::string> contact_scalars = {"u_nu",
                                                       "gap",
@@ -319,7 +316,7 @@ namespace Debond
             const unsigned int node = face.nodes[k];
             states.second.push_back(
               node == dealii::numbers::invalid_unsigned_int ?
-                held :
+                static_cast<float>(BondState::held) :
                 static_cast<float>(verification.nodes[node].state));
           }
       }

@@ -140,8 +140,11 @@ namespace Debond
       summary.contact_reaction = components(verification.contact_reaction);
       summary.tangential_reaction =
         components(verification.tangential_reaction);
-      for (const BondState state : bond_states)
-        summary.bond_states[to_string(state)] = verification.count(state);
+      for (unsigned int k = 0; k < verification.state_names.size(); ++k)
+        if (const auto state = static_cast<BondState>(k);
+            state != BondState::held)
+          summary.bond_states[verification.name(state)] =
+            verification.count(state);
     }
 
 

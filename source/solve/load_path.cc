@@ -226,8 +226,12 @@ namespace Debond
                     const dealii::Vector<double> &last,
                     const double                  factor) const
       {
-        const double M = scene.law().bond_threshold();
-        if (M == 0. || last_factor == 0. ||
+        // Without a slope displacements are proportional to the factor.
+        const BranchMinimum &branches  = scene.law().branches();
+        bool                 has_slope = false;
+        for (unsigned int k = 0; k < branches.size(); ++k)
+          has_slope = has_slope || branches[k].slope != 0.;
+        if (branches.size() == 1 || has_slope || last_factor == 0. ||
             parameters.quadrature.rule !=
               ContactQuadratureParameters::Rule::nodal)
           return {};
@@ -236,9 +240,13 @@ namespace Debond
         const bool increases = first > 1.;
         bool       changes   = false;
         for (unsigned int i = 0; i < last.size(); ++i)
-          if (last(i) < 0. && increases == (last(i) >= -M))
+          if (last(i) < 0.)
             {
-              const double reached = -M / last(i);
+              const unsigned int k = branches.index(last(i));
+              if (increases ? k + 1 == branches.size() : k == 0)
+                continue;
+              const double reached =
+                (increases ? branches[k].lower : branches[k].upper) / last(i);
               if (increases ? reached < first : reached > first)
                 {
                   changes = true;

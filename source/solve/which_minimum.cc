@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
-#include <debond/optimization/global/bond_search.h>
+#include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/global/guided_search.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
@@ -32,12 +32,12 @@ namespace Debond
 
 
 
-    BondSearchParameters
+    BranchSearchParameters
     search_parameters(const Parameters &parameters)
     {
       if (parameters.search == BondSearchChoice::full)
         return parameters.full_search;
-      BondSearchParameters quick;
+      BranchSearchParameters quick;
       quick.maximum_shift = 1;
       quick.flips         = false;
       quick.splits        = false;
@@ -67,9 +67,9 @@ namespace Debond
 
 
     void
-    add_search(const BondSearchResult &search,
-               const unsigned int      n_nodes,
-               WhichMinimum           &result)
+    add_search(const BranchSearchResult &search,
+               const unsigned int        n_nodes,
+               WhichMinimum             &result)
     {
       for (const unsigned int trials : search.trials)
         result.search_trials += trials;
@@ -211,16 +211,16 @@ namespace Debond
       {
         if (separable && is_certified())
           return;
-        BondSearchParameters starts;
+        BranchSearchParameters starts;
         starts.maximum_shift = 0;
         starts.flips         = false;
         starts.splits        = false;
         if (!search(starts) && look_on_coarse_mesh(coarse_look))
           return;
         look_on_coarse_mesh(largest_automatic_search);
-        BondSearchParameters edges = starts;
-        edges.starts               = false;
-        edges.maximum_shift        = 1;
+        BranchSearchParameters edges = starts;
+        edges.starts                 = false;
+        edges.maximum_shift          = 1;
         search(edges);
         if (separable)
           is_certified();
@@ -246,19 +246,19 @@ namespace Debond
 
       /// Returns whether it found something.
       bool
-      search(const BondSearchParameters &moves)
+      search(const BranchSearchParameters &moves)
       {
-        const unsigned int     before = result.search_improvements;
-        const BondSearchResult search =
-          search_bonds(condensed.schur_complement(),
-                       condensed.load(),
-                       adhesion,
-                       law.bond_threshold(),
-                       graph,
-                       method,
-                       moves,
-                       s,
-                       may_go_on);
+        const unsigned int       before = result.search_improvements;
+        const BranchSearchResult search =
+          search_branches(condensed.schur_complement(),
+                          condensed.load(),
+                          adhesion,
+                          lumped,
+                          graph,
+                          method,
+                          moves,
+                          s,
+                          may_go_on);
         add_search(search, result.search_nodes, result);
         return result.search_improvements > before;
       }
@@ -471,18 +471,18 @@ namespace Debond
               automatic.search_coarse_nodes();
           }
         else
-          add_search(search_bonds(condensed.schur_complement(),
-                                  condensed.load(),
-                                  adhesion,
-                                  law.bond_threshold(),
-                                  neighbours(boundary),
-                                  MajoriseMinimise(
-                                    parameters.majorise_minimise),
-                                  search_parameters(parameters),
-                                  s,
-                                  may_go_on),
-                     s.size(),
-                     result);
+          add_search(
+            search_branches(condensed.schur_complement(),
+                            condensed.load(),
+                            adhesion,
+                            lumped_branches(adhesion, s.size(), law.branches()),
+                            neighbours(boundary),
+                            MajoriseMinimise(parameters.majorise_minimise),
+                            search_parameters(parameters),
+                            s,
+                            may_go_on),
+            s.size(),
+            result);
         if (result.kind != MinimumKind::best_known &&
             result.kind != MinimumKind::global)
           result.kind = kind_without_search(law, adhesion, s);

@@ -6,6 +6,7 @@
 #include <debond/base/parameter_table.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/contact/laws/none.h>
+#include <debond/contact/laws/stepped.h>
 #include <debond/contact/laws/winkler.h>
 
 #include <algorithm>
@@ -212,6 +213,27 @@ namespace
                        energy);
       }
 
+    // The hull of the slopes nearby, of which differences have no more and, on
+    // a fine grid, hardly less.
+    double goldstein = 0.;
+    for (unsigned int i = 0; i < 60; ++i)
+      {
+        const double   s = (-2.9 + 0.0507 * i) * M, delta = 0.011 * (i % 9) * M;
+        const Interval found  = law.goldstein_interval(s, delta);
+        Interval       slopes = {1e300, -1e300};
+        for (unsigned int k = 0; k < 400; ++k)
+          {
+            const double t = s + delta * (2. * k - 399.) / 400.;
+            const double slope =
+              (law.value(t + 1e-3 * h) - law.value(t - 1e-3 * h)) / (2e-3 * h);
+            slopes.lower = std::min(slopes.lower, slope);
+            slopes.upper = std::max(slopes.upper, slope);
+          }
+        goldstein = std::max({goldstein,
+                              std::abs(slopes.lower - found.lower) / strength,
+                              std::abs(slopes.upper - found.upper) / strength});
+      }
+
     double above_least = 0.;
     for (unsigned int i = 0; i <= 500; ++i)
       {
@@ -234,6 +256,7 @@ namespace
           slope_error,
           1e-8);
     check("Clarke interval at the kinks against differences", at_kinks, 1e-8);
+    check("Goldstein interval against the differences nearby", goldstein, 5e-3);
     check("curvature against differences", curvature_error, 1e-4);
     check("concavity of a branch", -least_curvature, 0.);
     check("distance to one quadratic between kinks", outside, 1e-13);
@@ -241,6 +264,60 @@ namespace
     check("strength and largest force differ by",
           std::abs(largest_force - law.bond_strength()) / strength,
           1e-13);
+  }
+
+
+
+  void
+  test_stepped()
+  {
+    std::cout << "== Stepped law" << std::endl;
+    const AdhesiveLaw law(
+      stepped_law({30., 20., 4.}, {0.1, 0.2, 0.5}).branches);
+    // Areas below the sawteeth.
+    check("energy of three steps is the area below the force",
+          std::abs(law.value(-0.1) / 0.15 - 1.) < 1e-14 &&
+            std::abs(law.value(-0.2) / (0.15 + 0.3) - 1.) < 1e-14 &&
+            std::abs(law.value(-9.) / (0.45 + 0.42) - 1.) < 1e-14);
+    check("kinks at the thresholds",
+          law.kinks() == std::vector<double>({-0.5, -0.2, -0.1, 0.}));
+    check("force jumps from step to step",
+          equal(law.clarke_interval(-0.1), -3., -2., 1.) &&
+            equal(law.clarke_interval(-0.2), -4., -0.8, 1.) &&
+            equal(law.clarke_interval(-0.5), -2., 0., 1.));
+    check("threshold is the last one, strength the largest force",
+          law.bond_threshold() == 0.5 &&
+            std::abs(law.bond_strength() - 4.) < 1e-15);
+    check("branches by name",
+          law.name(0) == "bonded" && law.name(1) == "partly broken (1)" &&
+            law.name(2) == "partly broken (2)" && law.name(3) == "broken" &&
+            law.is_loose(3) && !law.is_loose(2));
+    check("Goldstein interval across two steps",
+          equal(law.goldstein_interval(-0.15, 0.1), -4., -0.8, 1.));
+
+    const AdhesiveLaw one(stepped_law({69.}, {0.002}).branches);
+    const AdhesiveLaw winkler(winkler_law(69., 0.002).branches);
+    bool              same = one.kinks() == winkler.kinks();
+    for (unsigned int i = 0; i < 100; ++i)
+      same &= one.value(-5e-5 * i) == winkler.value(-5e-5 * i);
+    check("one step is Winkler's law", same);
+
+    print_error([] { stepped_law({}, {}); });
+    print_error([] { stepped_law({69., 23.}, {0.002}); });
+    print_error([] { stepped_law({69., 69.}, {0.001, 0.002}); });
+    print_error([] { stepped_law({69., 23.}, {0.002, 0.002}); });
+    print_error([] { stepped_law({69., 0.}, {0.001, 0.002}); });
+    print_error([] { stepped_law({69., 23.}, {0.001, INFINITY}); });
+
+    ParameterTable table;
+    declare_laws(table);
+    for (const std::string entry : {"Law=stepped",
+                                    "Stepped/Stiffnesses=69, 70",
+                                    "Stepped/Thresholds=1, 2"})
+      table.assign("Contact law/" + entry);
+    read_law(table);
+    for (const std::string &line : table.errors())
+      std::cout << line << std::endl;
   }
 
 
@@ -257,6 +334,7 @@ namespace
       for (const double factor : {1., 1e9})
         test_conformance(name, factor);
 
+    test_stepped();
     std::cout << "== Other laws" << std::endl;
     const AdhesiveLaw none(no_adhesion().branches);
     check("without adhesion there is no force",

@@ -5,8 +5,8 @@
 
 #include <deal.II/lac/full_matrix.h>
 
-#include <debond/optimization/global/bond_search.h>
 #include <debond/optimization/global/branch_and_bound.h>
+#include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/global/convex_envelope.h>
 #include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/global/node_bound.h>
@@ -453,8 +453,8 @@ namespace
         MajoriseMinimise method({});
         CondensedProblem problem(p.S, p.g, p.bonds, s);
         method.minimize(problem);
-        const auto search = search_bonds(
-          p.S, p.g, p.bonds, p.threshold(0), chain(n), method, {}, s);
+        const auto search =
+          search_branches(p.S, p.g, p.bonds, p.bonds, chain(n), method, {}, s);
         incomplete += !search.complete ||
                       std::abs(search.functional - p.value(s)) > tolerance;
         n_chains += k % 2;
@@ -600,8 +600,8 @@ namespace
       const MajoriseMinimise method({});
       CondensedProblem       problem(p.S, p.g, p.bonds, s);
       method.minimize(problem);
-      return search_bonds(
-        p.S, p.g, p.bonds, p.threshold(0), chain(s.size()), method, {}, s);
+      return search_branches(
+        p.S, p.g, p.bonds, p.bonds, chain(s.size()), method, {}, s);
     };
     Vector     s(1);
     const auto found = search(s);

@@ -614,7 +614,7 @@ namespace
           same &= std::stod(row[d]) == boundary.nodes[i].position[d];
         for (unsigned int k = 0; k < values.size(); ++k)
           same &= std::stod(row[dim + k]) == values[k];
-        same &= row.at(dim + values.size()) == to_string(node.state);
+        same &= row.at(dim + values.size()) == result.name(node.state);
         for (unsigned int d = 0; d < dim; ++d)
           same &= std::stod(row.at(dim + values.size() + 1 + d)) ==
                   result.tangential_forces[i][d];

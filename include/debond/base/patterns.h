@@ -66,6 +66,11 @@ namespace Debond
   Pattern
   list_of(const std::vector<std::string> &names);
 
+  /// Any number of values that fit @p pattern, separated by commas, described
+  /// as "a list, each " and the words of the pattern.
+  Pattern
+  list_of(const Pattern &pattern);
+
   /// 2 or 3 values, one for each dimension, that fit @p pattern, described as
   /// "2 or 3 times " and the words of the pattern.
   Pattern

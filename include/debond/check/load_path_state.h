@@ -5,6 +5,8 @@
 #include <debond/check/verification.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace Debond
 {
@@ -28,6 +30,9 @@ namespace Debond
     double contact_part;
     double bonded_part;
     double broken_part;
+
+    /// Of the law's other branches, by their names in words with underscores.
+    std::vector<std::pair<std::string, double>> other_parts;
 
     double mean_gap;
     double largest_gap;

@@ -8,31 +8,27 @@
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
 
-#include <array>
 #include <string>
 #include <vector>
 
 namespace Debond
 {
-  /// What the bonds and the foundation do at a contact node.
-  enum class BondState
+  /// What the bonds and the foundation do at a contact node, by its number in
+  /// files. Branches of a law that have other names than these have the numbers
+  /// that follow.
+  enum class BondState : unsigned int
   {
     contact, ///< u_nu = 0
-    bonded,  ///< -M < u_nu < 0
-    kink,    ///< u_nu = -M
-    broken,  ///< u_nu < -M
-    free     ///< u_nu < 0, if the law has no adhesion
+    bonded,
+    kink, ///< between two branches
+    broken,
+    free, ///< u_nu < 0, if the law has no adhesion
+    held  ///< a clamped vertex, which is no contact node
   };
 
-  /// All of them, in the order of their numbers in files.
-  constexpr std::array<BondState, 5> bond_states = {{BondState::contact,
-                                                     BondState::bonded,
-                                                     BondState::kink,
-                                                     BondState::broken,
-                                                     BondState::free}};
-
-  std::string
-  to_string(const BondState state);
+  /// The names of all states that nodes can have with this law, by number.
+  std::vector<std::string>
+  state_names(const AdhesiveLaw &law);
 
 
 
@@ -53,6 +49,10 @@ namespace Debond
     double violation;
 
     BondState state;
+
+    /// That of the branch of the law that holds, whatever contact and kink (at
+    /// a kink: of the one on the side of 0).
+    BondState branch;
   };
 
 
@@ -64,18 +64,22 @@ namespace Debond
     /// In the order of ContactBoundary::nodes.
     std::vector<ContactNodeState> nodes;
 
+    std::vector<std::string> state_names; ///< by BondState
+
     /**
      * Largest distance to the contact law over all contact nodes: the least
      * delta for which the node's force is within delta F_i of what the law
      * allows at displacements within delta L_i of u_nu.
      *
-     * F_i is what a bond of the node can bear, a M times the node's measure,
+     * F_i is what a bond of the node can bear, a M (the largest of all
+     * branches) times the node's measure,
      * but not more than the largest contact force on a node, so that a law
      * with M far above all displacements is checked as well; forces below a
      * thousandth of the largest reaction do not count as the largest one. L_i
      * is the displacement at which bonds pull with F_i, F_i / (a measure) <= M,
-     * but not more than the largest displacement of the body. Without adhesion
-     * F_i is the largest contact force and L_i the largest displacement.
+     * M being the first one at which they change their branch, but not more
+     * than the largest displacement of the body. Without adhesion F_i is the
+     * largest contact force and L_i the largest displacement.
      *
      * What bonds bear can be less than the rounding of A u - f, for which no
      * displacement in double precision is to blame. So F_i is at least 1e4
@@ -115,6 +119,9 @@ namespace Debond
 
     unsigned int
     count(const BondState state) const;
+
+    const std::string &
+    name(const BondState state) const;
   };
 
   /// What is wrong with a result whose Verification::error() is above the
@@ -127,7 +134,7 @@ namespace Debond
   /// @p load_factor: the multiple of the problem's loads that @p u belongs to.
   ///
   /// @p tolerance: displacements within tolerance * M (and tolerance times the
-  /// largest |u_nu|) of 0 and -M count as
+  /// largest |u_nu|) of 0 and the kinks count as
   /// contact and kink for ContactNodeState::state (and for nothing else). So
   /// does a gap under pressure within the node's violation and 1e-3 L_i.
   template <int dim>

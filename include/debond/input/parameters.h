@@ -10,8 +10,8 @@
 #include <debond/input/load_path_parameters.h>
 #include <debond/mesh/crossed_mesh.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
-#include <debond/optimization/global/bond_search.h>
 #include <debond/optimization/global/branch_and_bound.h>
+#include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 
 #include <map>
@@ -116,7 +116,7 @@ namespace Debond
     double                     checkpoint_interval = 0.; ///< s, 0 for none
     bool                       restart = false;          ///< from a checkpoint
     BondSearchChoice           search  = BondSearchChoice::automatic;
-    BondSearchParameters       full_search;
+    BranchSearchParameters     full_search;
     bool                       prove = false;
     BranchAndBoundParameters   proof = proof_defaults();
     OutputParameters           output;

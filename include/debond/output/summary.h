@@ -79,7 +79,7 @@ namespace Debond
     std::vector<double> contact_reaction;
     std::vector<double> tangential_reaction; ///< part of contact_reaction
 
-    /// contact, bonded, kink, broken: number of contact nodes.
+    /// Number of contact nodes in each state that there is with the law.
     std::map<std::string, unsigned int> bond_states;
 
     /// If the scene has a load path; all the rest is of its last step.

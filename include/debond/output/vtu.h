@@ -27,7 +27,7 @@ namespace Debond
    * A face is cut into the shares of its vertices, which are the cells of the
    * file, with bond_state as cell data: 0 contact, 1 bonded, 2 kink, 3 broken,
    * 4 free (no adhesion), 5 held (a vertex that is clamped as well, where
-   * forces and violation are NaN).
+   * forces and violation are NaN), from 6 on the other branches of the law.
    */
   template <int dim>
   void

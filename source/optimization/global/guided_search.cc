@@ -46,7 +46,7 @@ namespace Debond
       {
         if (is_separable && is_proved(s, 0))
           return result;
-        BondSearchParameters quick;
+        BranchSearchParameters quick;
         quick.maximum_shift = 1;
         quick.flips         = false;
         quick.splits        = false;
@@ -69,17 +69,10 @@ namespace Debond
 
     private:
       void
-      search(const BondSearchParameters &moves, dealii::Vector<double> &s)
+      search(const BranchSearchParameters &moves, dealii::Vector<double> &s)
       {
-        add(search_bonds(S,
-                         g,
-                         phi,
-                         -lumped.f[0][1].upper,
-                         neighbours,
-                         method,
-                         moves,
-                         s,
-                         monitor),
+        add(search_branches(
+              S, g, phi, lumped, neighbours, method, moves, s, monitor),
             result.search);
       }
 
@@ -145,7 +138,7 @@ namespace Debond
 
 
   void
-  add(const BondSearchResult &more, BondSearchResult &search)
+  add(const BranchSearchResult &more, BranchSearchResult &search)
   {
     for (unsigned int k = 0; k < more.trials.size(); ++k)
       {

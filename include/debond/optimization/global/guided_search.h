@@ -2,8 +2,8 @@
 #ifndef debond_optimization_global_guided_search_h
 #define debond_optimization_global_guided_search_h
 
-#include <debond/optimization/global/bond_search.h>
 #include <debond/optimization/global/branch_and_bound.h>
+#include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/global/separable_branches.h>
 
 #include <optional>
@@ -30,7 +30,7 @@ namespace Debond
 
   struct GuidedSearchResult
   {
-    BondSearchResult search;
+    BranchSearchResult search;
 
     /// A bound for the functional, if Phi is separable.
     std::optional<BranchAndBoundResult> proof;
@@ -44,7 +44,7 @@ namespace Debond
 
   /// Adds the counts.
   void
-  add(const BondSearchResult &more, BondSearchResult &search);
+  add(const BranchSearchResult &more, BranchSearchResult &search);
 
 
 
@@ -62,7 +62,7 @@ namespace Debond
    * If Phi is not separable, the proof is for the lumped one and says where
    * to look: the minimum that it finds is a start for the true Phi.
    *
-   * Arguments as for search_bonds().
+   * Arguments as for search_branches().
    */
   GuidedSearchResult
   guided_search(

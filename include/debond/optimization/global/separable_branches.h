@@ -9,6 +9,11 @@
 
 namespace Debond
 {
+  /// The piece that holds at each unknown.
+  using BranchState = std::vector<unsigned int>;
+
+
+
   /// Phi(s) = sum_i f_i(s_i): each unknown has branches of its own.
   struct SeparableBranches : public PiecewiseQuadratic
   {

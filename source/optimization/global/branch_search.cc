@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/optimization/global/bond_search.h>
+#include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 
 #include <algorithm>
@@ -15,8 +15,7 @@ namespace Debond
 
 
 
-    using BrokenNodes = std::vector<bool>;
-    using NodeSet     = std::set<unsigned int>;
+    using NodeSet = std::set<unsigned int>;
 
 
 
@@ -94,10 +93,12 @@ namespace Debond
 
 
 
+    /// Nodes that go to a piece or to the one above it.
     struct Trial
     {
-      BondMove move;
-      NodeSet  broken, bonded; ///< nodes that change
+      BranchMove   move;
+      unsigned int piece;
+      NodeSet      down, up;
     };
 
 
@@ -105,70 +106,78 @@ namespace Debond
     class Moves
     {
     public:
-      Moves(const BondSearchParameters &parameters, const NeighbourGraph &graph)
+      Moves(const BranchSearchParameters &parameters,
+            const NeighbourGraph         &graph)
         : parameters(parameters)
         , graph(graph)
       {}
 
+      /// For each kink, between the nodes below it and those above.
       std::vector<Trial>
-      from(const BrokenNodes &is_broken) const
+      from(const BranchState &state, const unsigned int n_pieces) const
       {
-        NodeSet broken, bonded;
-        for (unsigned int i = 0; i < is_broken.size(); ++i)
-          (is_broken[i] ? broken : bonded).insert(i);
-        const std::vector<NodeSet> broken_patches =
-          connected_parts(broken, graph);
-        const std::vector<NodeSet> bonded_patches =
-          connected_parts(bonded, graph);
-
         std::vector<Trial> trials;
-        for (const NodeSet &patch : broken_patches)
-          shift_edges(patch, broken, trials);
-        if (parameters.flips)
+        for (unsigned int piece = 1; piece < n_pieces; ++piece)
           {
-            for (const NodeSet &patch : bonded_patches)
-              trials.push_back({BondMove::flip, patch, {}});
-            for (const NodeSet &patch : broken_patches)
-              trials.push_back({BondMove::flip, {}, patch});
-          }
-        if (parameters.splits)
-          {
-            for (const NodeSet &patch : bonded_patches)
-              trials.push_back({BondMove::split, middle(patch, graph), {}});
-            for (const NodeSet &patch : broken_patches)
-              trials.push_back({BondMove::split, {}, middle(patch, graph)});
+            NodeSet below, above;
+            for (unsigned int i = 0; i < state.size(); ++i)
+              (state[i] >= piece ? below : above).insert(i);
+            const std::vector<NodeSet> lower_patches =
+              connected_parts(below, graph);
+            const std::vector<NodeSet> upper_patches =
+              connected_parts(above, graph);
+
+            for (const NodeSet &patch : lower_patches)
+              shift_edges(patch, piece, below, trials);
+            if (parameters.flips)
+              {
+                for (const NodeSet &patch : upper_patches)
+                  trials.push_back({BranchMove::flip, piece, patch, {}});
+                for (const NodeSet &patch : lower_patches)
+                  trials.push_back({BranchMove::flip, piece, {}, patch});
+              }
+            if (parameters.splits)
+              {
+                for (const NodeSet &patch : upper_patches)
+                  trials.push_back(
+                    {BranchMove::split, piece, middle(patch, graph), {}});
+                for (const NodeSet &patch : lower_patches)
+                  trials.push_back(
+                    {BranchMove::split, piece, {}, middle(patch, graph)});
+              }
           }
         return trials;
       }
 
     private:
-      const BondSearchParameters &parameters;
-      const NeighbourGraph       &graph;
+      const BranchSearchParameters &parameters;
+      const NeighbourGraph         &graph;
 
       void
       shift_edges(const NodeSet      &patch,
-                  const NodeSet      &broken,
+                  const unsigned int  piece,
+                  const NodeSet      &below,
                   std::vector<Trial> &trials) const
       {
         for (const NodeSet &edge :
              connected_parts(neighbours_of(patch, graph), graph))
           {
             NodeSet outer = edge, inner = edge;
-            Trial   out = {BondMove::shift, {}, {}},
-                  in    = {BondMove::shift, {}, {}};
+            Trial   out = {BranchMove::shift, piece, {}, {}},
+                  in    = {BranchMove::shift, piece, {}, {}};
             for (unsigned int k = 0; k < parameters.maximum_shift; ++k)
               {
                 NodeSet next_outer, next_inner;
                 for (const unsigned int i : outer)
-                  if (broken.count(i) == 0)
-                    out.broken.insert(i);
+                  if (below.count(i) == 0)
+                    out.down.insert(i);
                 for (const unsigned int i : neighbours_of(outer, graph))
-                  if (broken.count(i) == 0 && out.broken.count(i) == 0)
+                  if (below.count(i) == 0 && out.down.count(i) == 0)
                     next_outer.insert(i);
                 for (const unsigned int i : neighbours_of(inner, graph))
-                  if (patch.count(i) > 0 && in.bonded.count(i) == 0)
+                  if (patch.count(i) > 0 && in.up.count(i) == 0)
                     next_inner.insert(i);
-                in.bonded.insert(next_inner.begin(), next_inner.end());
+                in.up.insert(next_inner.begin(), next_inner.end());
                 if (!outer.empty())
                   trials.push_back(out);
                 if (!next_inner.empty())
@@ -188,14 +197,14 @@ namespace Debond
       StateSearch(const dealii::FullMatrix<double> &S,
                   const dealii::Vector<double>     &g,
                   const PiecewiseQuadratic         &phi,
-                  const double                      threshold,
+                  const SeparableBranches          &lumped,
                   const MajoriseMinimise           &method,
-                  const BondSearchParameters       &parameters,
+                  const BranchSearchParameters     &parameters,
                   dealii::Vector<double>           &s)
         : S(S)
         , g(g)
         , phi(phi)
-        , threshold(threshold)
+        , lumped(lumped)
         , method(method)
         , parameters(parameters)
         , s(s)
@@ -204,16 +213,16 @@ namespace Debond
         given_functional  = state.functional;
         result.functional = state.functional;
         rounding          = state.functional_rounding;
-        tried.insert(broken_nodes(s));
+        tried.insert(state_of(s));
       }
 
-      BrokenNodes
-      broken_nodes(const dealii::Vector<double> &point) const
+      BranchState
+      state_of(const dealii::Vector<double> &point) const
       {
-        BrokenNodes broken(point.size());
+        BranchState state(point.size());
         for (unsigned int i = 0; i < point.size(); ++i)
-          broken[i] = point(i) < -threshold;
-        return broken;
+          state[i] = lumped.f[i].index(point(i));
+        return state;
       }
 
       /// Minimises from the changed state. Returns whether the functional is
@@ -222,22 +231,26 @@ namespace Debond
       attempt(const Trial &trial, dealii::Vector<double> &point)
       {
         // Beside a clamped side quadrature points move less than the node, so
-        // that bonds hold there beyond -M. Only their branches matter.
-        const bool from_all_broken =
-          trial.move == BondMove::start && !trial.broken.empty();
-        const double           depth = from_all_broken ? 1e3 : 2.;
-        dealii::Vector<double> next  = point;
-        for (const unsigned int i : trial.broken)
-          next(i) = std::min(next(i), -depth * threshold);
-        for (const unsigned int i : trial.bonded)
-          if (next(i) < -threshold)
-            next(i) = -0.5 * threshold;
-        const bool is_known = !tried.insert(broken_nodes(next)).second;
-        if (is_known && !from_all_broken)
+        // that they are on the last branch only if the node is far below its
+        // kink. Only their branches matter.
+        const bool to_the_end = trial.move == BranchMove::start &&
+                                !trial.down.empty() &&
+                                trial.piece + 1 == lumped.f[0].size();
+        dealii::Vector<double> next = point;
+        for (const unsigned int i : trial.down)
+          next(i) =
+            std::min(next(i),
+                     to_the_end ? 1e3 * lumped.f[i][trial.piece].upper :
+                                  lumped.f[i].point_inside(trial.piece));
+        for (const unsigned int i : trial.up)
+          if (lumped.f[i].index(next(i)) >= trial.piece)
+            next(i) = lumped.f[i].point_inside(trial.piece - 1);
+        const bool is_known = !tried.insert(state_of(next)).second;
+        if (is_known && !to_the_end)
           return false;
 
         ++result.trials[static_cast<unsigned int>(trial.move)];
-        const BrokenNodes start = broken_nodes(next);
+        const BranchState start = state_of(next);
         // The nodes in contact will mostly be the same.
         ActiveSet active(point.size());
         for (unsigned int i = 0; i < point.size(); ++i)
@@ -250,9 +263,9 @@ namespace Debond
             return false;
           }
         // What led to another known state leads nowhere new.
-        const BrokenNodes end    = broken_nodes(next);
+        const BranchState end    = state_of(next);
         const bool        is_new = end == start || tried.insert(end).second;
-        if (trial.move == BondMove::start ?
+        if (trial.move == BranchMove::start ?
               !is_new :
               minimum.functional >= functional - rounding)
           return false;
@@ -285,20 +298,20 @@ namespace Debond
         return result.complete;
       }
 
-      BondSearchResult result;
+      BranchSearchResult result;
 
     private:
       const dealii::FullMatrix<double> &S;
       const dealii::Vector<double>     &g;
       const PiecewiseQuadratic         &phi;
-      const double                      threshold;
+      const SeparableBranches          &lumped;
       const MajoriseMinimise           &method;
-      const BondSearchParameters       &parameters;
+      const BranchSearchParameters     &parameters;
       dealii::Vector<double>           &s;
       double                            given_functional;
       double                            functional; ///< where moves start
       double                            rounding;
-      std::set<BrokenNodes>             tried;
+      std::set<BranchState>             tried;
     };
   } // namespace
 
@@ -320,25 +333,27 @@ namespace Debond
 
 
 
-  BondSearchResult
-  search_bonds(const dealii::FullMatrix<double> &S,
-               const dealii::Vector<double>     &g,
-               const PiecewiseQuadratic         &phi,
-               const double                      threshold,
-               const NeighbourGraph             &neighbours,
-               const MajoriseMinimise           &method,
-               const BondSearchParameters       &parameters,
-               dealii::Vector<double>           &s,
-               const std::function<bool()>      &monitor)
+  BranchSearchResult
+  search_branches(const dealii::FullMatrix<double> &S,
+                  const dealii::Vector<double>     &g,
+                  const PiecewiseQuadratic         &phi,
+                  const SeparableBranches          &lumped,
+                  const NeighbourGraph             &neighbours,
+                  const MajoriseMinimise           &method,
+                  const BranchSearchParameters     &parameters,
+                  dealii::Vector<double>           &s,
+                  const std::function<bool()>      &monitor)
   {
-    StateSearch search(S, g, phi, threshold, method, parameters, s);
-    const Moves moves(parameters, neighbours);
-    const auto  descend = [&](dealii::Vector<double> point) {
+    const unsigned int n_pieces = s.size() > 0 ? lumped.f[0].size() : 0;
+    StateSearch        search(S, g, phi, lumped, method, parameters, s);
+    const Moves        moves(parameters, neighbours);
+    const auto         descend = [&](dealii::Vector<double> point) {
       bool fell = true;
       while (fell)
         {
           fell = false;
-          for (const Trial &trial : moves.from(search.broken_nodes(point)))
+          for (const Trial &trial :
+               moves.from(search.state_of(point), n_pieces))
             {
               if (!search.may_go_on(monitor))
                 return;
@@ -355,8 +370,11 @@ namespace Debond
         NodeSet all;
         for (unsigned int i = 0; i < s.size(); ++i)
           all.insert(all.end(), i);
-        for (const Trial &trial :
-             {Trial{BondMove::start, all, {}}, Trial{BondMove::start, {}, all}})
+        std::vector<Trial> starts;
+        for (unsigned int piece = n_pieces; piece-- > 1;)
+          starts.push_back({BranchMove::start, piece, all, {}});
+        starts.push_back({BranchMove::start, 1, {}, all});
+        for (const Trial &trial : starts)
           {
             dealii::Vector<double> point = given;
             if (search.may_go_on(monitor) && search.attempt(trial, point))

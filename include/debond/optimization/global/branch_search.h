@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_global_branch_search_h
+#define debond_optimization_global_branch_search_h
+
+#include <deal.II/lac/full_matrix.h>
+
+#include <debond/optimization/global/separable_branches.h>
+#include <debond/optimization/majorise/majorise_minimise.h>
+#include <debond/optimization/piecewise_quadratic.h>
+
+#include <array>
+#include <functional>
+#include <set>
+#include <vector>
+
+namespace Debond
+{
+  /// Which unknowns are neighbours on the contact boundary.
+  using NeighbourGraph = std::vector<std::set<unsigned int>>;
+
+
+
+  struct BranchSearchParameters
+  {
+    /// Start from rest and from all unknowns on each further branch as well.
+    bool starts = true;
+
+    /// Nodes by which the edge of a patch moves, 0 for no such moves.
+    unsigned int maximum_shift = 4;
+
+    /// Take whole patches to the other side.
+    bool flips = true;
+
+    /// Take the middle of a patch to the other side.
+    bool splits = true;
+
+    /// States that are minimised, at most.
+    unsigned int maximum_trials = 100000;
+  };
+
+
+
+  enum class BranchMove
+  {
+    start,
+    shift,
+    flip,
+    split
+  };
+
+  struct BranchSearchResult
+  {
+    double functional = 0.; ///< of the best point
+
+    /// Whether all moves were tried from there.
+    bool complete = true;
+
+    /// States minimised, and those that lowered the functional, by BranchMove.
+    std::array<unsigned int, 4> trials = {}, improvements = {};
+
+    /// Of the states minimised, those that led to no minimum.
+    unsigned int failures = 0;
+  };
+
+
+
+  /// Minimises from the problem's point. If the method does not end with
+  /// success, it goes on with a larger tolerance.
+  MajoriseMinimiseResult
+  minimise_trial(const MajoriseMinimise          &method,
+                 MajorantProblem                 &problem,
+                 const MajoriseMinimise::Monitor &monitor = {});
+
+
+
+  /**
+   * Improves a minimum of 1/2 s'S s - g's + Phi(s), s <= 0, by moves on
+   * patches. For each kink of the branches of @p lumped, these are the
+   * connected parts of the nodes below it (with the paper's law: the broken
+   * ones) and of those above: starts from rest and from all nodes on each
+   * further branch; the edge of a patch (an end of an interval in 2D, all
+   * around in 3D) moved in or out by some nodes; a patch taken to the other
+   * side of the kink as a whole, which merges its neighbours, or in its middle,
+   * which splits it. Each new state goes through majorise-minimise and is taken
+   * if the functional falls; then the moves begin anew.
+   *
+   * @p lumped says on which branch a node is (lumped_branches()); all its terms
+   * have to have the same number of pieces. @p s has to be <= 0. The monitor
+   * returns false to end.
+   */
+  BranchSearchResult
+  search_branches(const dealii::FullMatrix<double> &S,
+                  const dealii::Vector<double>     &g,
+                  const PiecewiseQuadratic         &phi,
+                  const SeparableBranches          &lumped,
+                  const NeighbourGraph             &neighbours,
+                  const MajoriseMinimise           &method,
+                  const BranchSearchParameters     &parameters,
+                  dealii::Vector<double>           &s,
+                  const std::function<bool()>      &monitor = {});
+} // namespace Debond
+
+#endif

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/parameter_table.h>
+#include <debond/contact/laws/stepped.h>
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace Debond
+{
+  namespace
+  {
+    const std::string stiffnesses_entry = "Contact law/Stepped/Stiffnesses";
+    const std::string thresholds_entry  = "Contact law/Stepped/Thresholds";
+
+
+
+    void
+    require_steps(const bool holds, const std::string &reason)
+    {
+      if (!holds)
+        throw std::invalid_argument("a stepped law needs " + reason);
+    }
+
+
+
+    std::vector<double>
+    read_numbers(const ParameterTable &table, const std::string &entry)
+    {
+      std::vector<double> numbers;
+      for (const std::string &text : table.get_list(entry))
+        read_number(text, numbers.emplace_back());
+      return numbers;
+    }
+  } // namespace
+
+
+
+  ContactLawParameters
+  stepped_law(const std::vector<double> &stiffnesses,
+              const std::vector<double> &thresholds)
+  {
+    const std::size_t n = stiffnesses.size();
+    require_steps(n > 0 && thresholds.size() == n,
+                  "as many stiffnesses as thresholds, at least one");
+    for (std::size_t k = 0; k < n; ++k)
+      {
+        require_steps(std::isfinite(stiffnesses[k]) && stiffnesses[k] > 0. &&
+                        (k == 0 || stiffnesses[k] < stiffnesses[k - 1]),
+                      "stiffnesses > 0 that fall from step to step");
+        require_steps(std::isfinite(thresholds[k]) && thresholds[k] > 0. &&
+                        (k == 0 || thresholds[k] > thresholds[k - 1]),
+                      "thresholds > 0 that rise from step to step");
+      }
+
+    ContactLawParameters law = {"stepped", {}, ""};
+    std::ostringstream   data;
+    long double          energy = 0.L;
+    for (std::size_t k = 0; k < n; ++k)
+      {
+        const double      a = stiffnesses[k];
+        const long double M = thresholds[k];
+        law.branches.push_back(
+          {a,
+           0.,
+           energy,
+           k == 0 ? "bonded" : "partly broken (" + std::to_string(k) + ")"});
+        energy += 0.5L * (a - (k + 1 < n ? stiffnesses[k + 1] : 0.L)) * M * M;
+        data << (k == 0 ? "" : ", then ") << "a = " << a
+             << " up to M = " << thresholds[k];
+      }
+    law.branches.push_back({0., 0., energy, "broken"});
+    law.data = data.str();
+    return law;
+  }
+
+
+
+  LawKind
+  stepped_kind()
+  {
+    return {
+      "stepped",
+      "breaks in steps, from each of the stiffnesses of its section to the next "
+      "one at the thresholds, and holds nothing after the last",
+      [](ParameterTable &table) {
+        table.declare(stiffnesses_entry,
+                      "69, 23",
+                      list_of(quantity()),
+                      "a_1, a_2, ..., which fall from step to step",
+                      "force per volume");
+        table.declare(
+          thresholds_entry,
+          "0.001, 0.003",
+          list_of(quantity()),
+          "M_1, M_2, ..., the displacement at which each step ends, "
+          "which rise",
+          "length");
+      },
+      [](ParameterTable &table) {
+        try
+          {
+            return stepped_law(read_numbers(table, stiffnesses_entry),
+                               read_numbers(table, thresholds_entry));
+          }
+        catch (const std::invalid_argument &error)
+          {
+            table.reject(stiffnesses_entry, error.what(), {thresholds_entry});
+            return ContactLawParameters();
+          }
+      }};
+  }
+} // namespace Debond

@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The search and the proof with any number of branches, against enumeration of
+// all choices of a branch for each unknown, by a solver of its own in long
+// double: for each choice the minimum of the convex problem is above J's, and
+// one of them is it. Takes the number of problems.
+
+#include <deal.II/lac/full_matrix.h>
+
+#include <debond/contact/laws/stepped.h>
+#include <debond/optimization/global/branch_and_bound.h>
+#include <debond/optimization/global/branch_search.h>
+#include <debond/optimization/global/convex_envelope.h>
+#include <debond/optimization/global/node_bound.h>
+#include <debond/optimization/majorise/condensed_problem.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+#include "../check.h"
+#include "enumeration.h"
+
+using namespace Debond;
+
+namespace
+{
+  using Vector = dealii::Vector<double>;
+
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+
+
+
+  class Random
+  {
+  public:
+    double
+    operator()(const double lower, const double upper)
+    {
+      return std::uniform_real_distribution<double>(lower, upper)(engine);
+    }
+
+    unsigned int
+    integer(const unsigned int lower, const unsigned int upper)
+    {
+      return std::uniform_int_distribution<unsigned int>(lower, upper)(engine);
+    }
+
+  private:
+    std::mt19937_64 engine{20261122};
+  };
+
+
+
+  BranchList
+  stepped(Random &random, const unsigned int n_steps)
+  {
+    std::vector<double> stiffnesses, thresholds;
+    double              a = std::pow(10., random(-1., 1.)), M = 0.;
+    for (unsigned int k = 0; k < n_steps; ++k)
+      {
+        stiffnesses.push_back(a);
+        thresholds.push_back(M += random(0.1, 0.9));
+        a *= random(0.1, 0.9);
+      }
+    return stepped_law(stiffnesses, thresholds).branches;
+  }
+
+
+
+  /// Any convex branches whose minimum is one that BranchMinimum takes.
+  BranchList
+  any_branches(Random &random)
+  {
+    while (true)
+      {
+        BranchList branches = {{random(0., 5.), -random(0., 0.5), 0.L, "0"}};
+        for (unsigned int k = random.integer(1, 4); k > 0; --k)
+          branches.push_back({random.integer(0, 2) == 0 ? 0. : random(0., 3.),
+                              random(-0.5, 0.3),
+                              random(0., 1.5),
+                              std::to_string(k)});
+        try
+          {
+            const BranchMinimum minimum(branches);
+            // The search has kinks in common.
+            if (minimum.size() > 1)
+              return branches;
+          }
+        catch (const std::invalid_argument &)
+          {}
+      }
+  }
+
+
+
+  /// f is the least of the branches, the pieces follow each other, multiples
+  /// are multiples.
+  void
+  test_minimum(Random &random)
+  {
+    double       worst = 0., worst_multiple = 0., worst_jump = 0.;
+    unsigned int most_pieces = 0, returns = 0;
+    for (unsigned int k = 0; k < 3000; ++k)
+      {
+        const BranchList    branches = any_branches(random);
+        const BranchMinimum f(branches);
+        most_pieces                = std::max(most_pieces, f.size());
+        const double        factor = random(0.1, 10.);
+        const BranchMinimum more =
+          f.with_first_curvature(factor * f[0].curvature);
+        std::vector<unsigned int> seen(branches.size(), 0);
+        for (unsigned int p = 0; p < f.size(); ++p)
+          {
+            returns += ++seen[f[p].branch] > 1;
+            if (p > 0)
+              {
+                const double above = f[p - 1].value(f[p].upper);
+                const double below = f[p].value(f[p].upper);
+                worst_jump =
+                  std::max(worst_jump, std::abs(below - above) / (1. + above));
+              }
+          }
+        for (unsigned int i = 0; i < 200; ++i)
+          {
+            const double s = -0.02 * i;
+            worst          = std::max(
+              worst, double(std::abs(f.value(s) - least_branch(branches, s))));
+            worst_multiple =
+              std::max(worst_multiple,
+                       std::abs(more.value(s) - factor * f.value(s)) / factor);
+          }
+      }
+    std::cout << "minimum of branches: their least value: "
+              << verdict(worst, 1e-13)
+              << ", its multiples: " << verdict(worst_multiple, 1e-13)
+              << ", no jumps: " << verdict(worst_jump, 1e-13)
+              << ", up to five pieces: " << verdict(most_pieces >= 5)
+              << ", a branch with two pieces: " << verdict(returns > 0) << '\n';
+    if (print_figures)
+      std::cout << "  " << worst << ' ' << worst_multiple << ' ' << worst_jump
+                << ' ' << most_pieces << ' ' << returns << '\n';
+  }
+
+
+
+  /// On a fine grid: not above the least of all chords, which is the envelope,
+  /// and below it by at most the square of the distance.
+  void
+  test_envelope(Random &random)
+  {
+    double       worst = 0., worst_least = 0., worst_spread = 0.;
+    unsigned int most_parts = 0;
+    for (unsigned int k = 0; k < 600; ++k)
+      {
+        const BranchList list =
+          k % 2 == 0 ? any_branches(random) : stepped(random, 1 + k % 4);
+        const BranchMinimum branches(list);
+        BranchEnergy        f = {k % 3 == 0 ? 0. : random(0., 1.), {}};
+        for (unsigned int p = 0; p < branches.size(); ++p)
+          f.pieces.push_back(branches[p]);
+        const double         lower = -random(0., 5.);
+        const double         upper = k % 5 == 0 ? 0. : lower * random(0., 1.);
+        const ConvexEnvelope envelope(f, lower, upper);
+        most_parts = std::max(most_parts,
+                              static_cast<unsigned int>(envelope.parts.size()));
+
+        const auto value = [&](const double s) {
+          return double(least_branch(list, s)) + 0.5 * f.convexity * s * s;
+        };
+        constexpr unsigned int n_points = 50;
+        const double           h        = (upper - lower) / n_points;
+        std::vector<double>    values;
+        for (unsigned int i = 0; i <= n_points; ++i)
+          values.push_back(value(lower + h * i));
+        const double r     = random(-3., 3.);
+        double       least = infinity;
+        for (unsigned int i = 0; i <= n_points; ++i)
+          {
+            const double s     = lower + h * i;
+            double       chord = values[i];
+            for (unsigned int a = 0; a < i; ++a)
+              for (unsigned int b = i + 1; b <= n_points; ++b)
+                chord = std::min(chord,
+                                 (values[a] * (b - i) + values[b] * (i - a)) /
+                                   (b - a));
+            const double below = chord - envelope.value(s);
+            worst              = std::max({worst, -below, below - 20. * h * h});
+            least              = std::min(least, r * s + values[i]);
+
+            if (f.convexity > 0.1)
+              {
+                const double e    = 1e-4;
+                BranchEnergy more = f, less = f;
+                more.convexity += e;
+                less.convexity -= e;
+                const double derivative =
+                  (ConvexEnvelope(more, lower, upper).value(s) -
+                   ConvexEnvelope(less, lower, upper).value(s)) /
+                  (2. * e);
+                worst_spread = std::max(worst_spread,
+                                        std::abs(derivative - 0.5 * s * s -
+                                                 0.5 * envelope.spread(s)));
+              }
+          }
+        const double found = double(f.least(r, lower, upper));
+        worst_least =
+          std::max({worst_least, found - least, least - found - 20. * h * h});
+      }
+    std::cout << "envelope: the least of all chords: " << verdict(worst, 1e-12)
+              << ", least values of r s + f(s): " << verdict(worst_least, 1e-12)
+              << ", spread against differences: " << verdict(worst_spread, 1e-3)
+              << ", up to seven parts: " << verdict(most_parts >= 7) << '\n';
+    if (print_figures)
+      std::cout << "  " << worst << ' ' << worst_least << ' ' << worst_spread
+                << ' ' << most_parts << '\n';
+  }
+
+
+
+  struct Problem
+  {
+    LongMatrix                 S_long;
+    dealii::FullMatrix<double> S;
+    Vector                     g;
+    std::vector<BranchList>    lists;
+    SeparableBranches          phi;
+
+    long double
+    value(const Vector &s) const
+    {
+      long double sum = 0.;
+      for (unsigned int i = 0; i < s.size(); ++i)
+        {
+          long double force = -g(i);
+          for (unsigned int j = 0; j < s.size(); ++j)
+            force += 0.5L * S_long(i, j) * s(j);
+          sum += force * s(i) + least_branch(lists[i], s(i));
+        }
+      return sum;
+    }
+  };
+
+
+
+  Problem
+  random_problem(Random &random, const unsigned int n, const bool is_stepped)
+  {
+    LongMatrix S(n, n);
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j <= i; ++j)
+        S(i, j) = S(j, i) = -std::exp(-double(i - j)) * random(0.7, 1.3);
+    for (unsigned int i = 0; i < n; ++i)
+      S(i, i) = 0.05 - (S.row(i).sum() - S(i, i));
+
+    Problem          p      = {S,
+                               dealii::FullMatrix<double>(n, n),
+                               Vector(n),
+                               {},
+                               SeparableBranches({})};
+    const BranchList common = stepped(random, random.integer(1, 3));
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        // Of a law, each unknown has a multiple.
+        BranchList list = is_stepped ? common : any_branches(random);
+        if (is_stepped)
+          {
+            const double factor = std::pow(2., random.integer(0, 4)) / 4.;
+            for (ConvexBranch &branch : list)
+              {
+                branch.curvature *= factor;
+                branch.constant *= factor;
+              }
+          }
+        p.lists.push_back(list);
+        p.phi.f.emplace_back(list);
+        p.g(i) = random(-2.2, 0.8);
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            p.S(i, j)      = double(S(i, j));
+            p.S_long(i, j) = p.S(i, j);
+          }
+      }
+    return p;
+  }
+
+
+
+  NeighbourGraph
+  chain(const unsigned int n)
+  {
+    NeighbourGraph graph(n);
+    for (unsigned int i = 1; i < n; ++i)
+      {
+        graph[i - 1].insert(i);
+        graph[i].insert(i - 1);
+      }
+    return graph;
+  }
+
+
+
+  void
+  test_bounds(Random &random, const unsigned int n_problems)
+  {
+    unsigned int above = 0, not_proved = 0, wrong = 0, lost = 0,
+                 wrong_search = 0;
+    unsigned int certified = 0, branched = 0, n_stepped = 0, found = 0;
+    unsigned int most_nodes = 0;
+    for (unsigned int k = 0; k < n_problems; ++k)
+      {
+        const bool         is_stepped = k % 2 == 0;
+        const unsigned int n          = 2 + k % 3;
+        const Problem      p          = random_problem(random, n, is_stepped);
+        LongVector         s_min;
+        LongVector         g(n);
+        for (unsigned int i = 0; i < n; ++i)
+          g(i) = p.g(i);
+        const long double minimum =
+          enumerated_minimum(p.S_long, g, p.lists, s_min);
+        const double tolerance =
+          1e-10 * std::max(1., std::abs(double(minimum)));
+        // Constants are kept such that kinks are doubles.
+        const double rounding = 1e-15;
+
+        BranchAndBoundParameters parameters;
+        parameters.tolerance = tolerance;
+        const auto proof =
+          BranchAndBound(parameters).minimize(p.S, p.g, p.phi, Vector(n));
+        not_proved += proof.status != ProofStatus::proved;
+        above += proof.lower > minimum + rounding;
+        wrong += std::abs(proof.upper - minimum) > tolerance ||
+                 std::abs(p.value(proof.s) - minimum) > tolerance;
+        branched += proof.nodes > 1;
+        most_nodes = std::max(most_nodes, proof.nodes);
+
+        // The box must not lose the minimum.
+        const NodeBound node_bound(p.S, p.g, p.phi);
+        const double    best   = double(minimum) + tolerance;
+        ProofNode       node   = *node_bound.root(best);
+        const auto      result = node_bound.bound(node, best, 0.);
+        for (unsigned int i = 0; i < n; ++i)
+          lost += result.unknown && (s_min(i) < node.lower(i) - 1e-9 ||
+                                     s_min(i) > node.upper(i) + 1e-9);
+        above += node.bound > minimum + rounding;
+        const Eigen::VectorXd at_minimum  = s_min.cast<double>();
+        const double          certificate = node_bound.certificate(at_minimum);
+        above += certificate > minimum + rounding;
+        certified += certificate > minimum - tolerance;
+
+        Vector                 s(n);
+        const MajoriseMinimise method({});
+        CondensedProblem       problem(p.S, p.g, p.phi, s);
+        method.minimize(problem);
+        if (is_stepped)
+          {
+            const auto search =
+              search_branches(p.S, p.g, p.phi, p.phi, chain(n), method, {}, s);
+            wrong_search +=
+              !search.complete || search.failures > 0 ||
+              std::abs(search.functional - p.value(s)) > tolerance ||
+              search.functional < minimum - tolerance;
+            ++n_stepped;
+            found += search.functional < minimum + tolerance;
+          }
+      }
+    std::cout << "bounds on " << n_problems
+              << " problems: never above the enumerated minimum: "
+              << verdict(above == 0)
+              << ", the minimum proved: " << verdict(not_proved == 0)
+              << ", and found: " << verdict(wrong == 0)
+              << ", never outside the shrunk box: " << verdict(lost == 0)
+              << "\n  some need more than one node: "
+              << verdict(branched > n_problems / 100)
+              << ", some are certified: "
+              << verdict(certified > n_problems / 10)
+              << "\nsearch with steps: values as points say: "
+              << verdict(wrong_search == 0) << ", the minimum in 49 of 50: "
+              << verdict(found > 0.98 * n_stepped) << '\n';
+    if (print_figures)
+      std::cout << "  above " << above << ", not proved " << not_proved
+                << ", wrong " << wrong << ", lost " << lost << ", branched "
+                << branched << ", most nodes " << most_nodes << ", certified "
+                << certified << ", found by search " << found << " of "
+                << n_stepped << '\n';
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *argv[])
+{
+  print_figures = argc > 1;
+  Random random;
+  test_minimum(random);
+  test_envelope(random);
+  test_bounds(random, argc > 1 ? std::stoul(argv[1]) : 2000);
+}

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Scenes with the stepped law: all methods against enumeration of the branches
+// of all contact nodes, search and proof, the load path with its states.
+
+#include <deal.II/base/mpi.h>
+
+#include <debond/contact/laws/stepped.h>
+#include <debond/elasticity/contact_condensation.h>
+#include <debond/input/parameters.h>
+#include <debond/solve/load_path.h>
+#include <debond/solve/scene.h>
+#include <debond/solve/solve.h>
+
+#include <cmath>
+#include <iostream>
+#include <sstream>
+
+#include "../check.h"
+#include "../optimization/enumeration.h"
+
+using namespace Debond;
+
+namespace
+{
+  constexpr double tolerance = 1e-9;
+
+
+
+  /// 7 contact nodes, which have 3^7 states. At half the load the least J has
+  /// bonds of all kinds.
+  const std::vector<std::string> small = {
+    "Mesh/Cells=8, 1",
+    "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)",
+    "Contact law/Law=stepped",
+    "Contact law/Stepped/Stiffnesses=690, 100",
+    "Contact law/Stepped/Thresholds=0.001, 0.003"};
+
+
+
+  Parameters
+  parameters_of(const std::vector<std::string> &scene,
+                const std::vector<std::string> &others)
+  {
+    ParameterTable table;
+    declare_parameters(table);
+    table.assign("Output/Machine details=false");
+    for (const std::string &assignment : scene)
+      table.assign(assignment);
+    for (const std::string &assignment : others)
+      table.assign(assignment);
+    return to_parameters("scene.prm", table);
+  }
+
+
+
+  /// The least J of a scene with nodal quadrature.
+  template <int dim>
+  double
+  least_functional(const Scene<dim> &scene, const double factor)
+  {
+    Condensation condensed = condense_to_contact(scene.problem());
+    condensed.scale_load(factor);
+    const unsigned int      n = condensed.load().size();
+    LongMatrix              S(n, n);
+    LongVector              g(n), where(n);
+    std::vector<BranchList> branches(n);
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        g(i) = condensed.load()(i);
+        for (unsigned int j = 0; j < n; ++j)
+          S(i, j) = condensed.schur_complement()(i, j);
+        branches[i] = stepped_law({690., 100.}, {0.001, 0.003}).branches;
+        const double measure =
+          scene.problem().contact_boundary().nodes[i].measure;
+        for (ConvexBranch &branch : branches[i])
+          {
+            branch.curvature *= measure;
+            branch.constant *= measure;
+          }
+      }
+    return static_cast<double>(enumerated_minimum(S, g, branches, where)) +
+           condensed.energy_at_zero();
+  }
+
+
+
+  SolveResult
+  run(const std::vector<std::string> &scene,
+      const std::vector<std::string> &others)
+  {
+    const Parameters   parameters = parameters_of(scene, others);
+    const MethodChoice choice     = choose_method(parameters);
+    const Scene<2>     mesh(parameters, matrix_storage(choice));
+    std::ostringstream log;
+    return solve(choice, parameters, mesh, log, false);
+  }
+
+
+
+  void
+  test_methods()
+  {
+    const Scene<2> scene(parameters_of(small, {}), MatrixStorage::serial);
+    const double   least = least_functional(scene, 1.);
+    for (const std::vector<std::string> &settings :
+         std::vector<std::vector<std::string>>{
+           {"Solver/Method=automatic"},
+           {"Solver/Method=majorise minimise", "Solver/Prove=true"},
+           {"Solver/Method=majorise minimise", "Solver/Search=full"},
+           {"Solver/Method=energy bundle", "Solver/Prove=true"},
+           {"Solver/Method=majorise minimise",
+            "Solver/Linear solver=multigrid"},
+           {"Solver/Method=euclidean bundle",
+            "Solver/Euclidean bundle/Maximum iterations=20000"}})
+      {
+        const SolveResult result = run(small, settings);
+        const double      above  = result.functional / least - 1.;
+        std::cout << settings.back() << ": " << to_string(result.status) << ", "
+                  << to_string(result.minimum.kind) << ", the least J: "
+                  << (std::abs(above) < tolerance ? "yes" :
+                      result.functional > least   ? "no, above" :
+                                                    "NO, BELOW")
+                  << '\n';
+        if (print_figures)
+          std::cout << "  " << result.functional << ' ' << above << '\n';
+      }
+  }
+
+
+
+  /// With other quadratures than nodal there is no proof, but all methods find
+  /// stationary points, and the same one.
+  void
+  test_quadratures()
+  {
+    for (const std::string rule : {"midpoint", "gauss 3", "exact"})
+      {
+        const SolveResult one = run(small, {"Contact law/Quadrature=" + rule});
+        const SolveResult other = run(small,
+                                      {"Contact law/Quadrature=" + rule,
+                                       "Solver/Method=energy bundle",
+                                       "Solver/Search=full"});
+        std::cout << rule << ": two methods with the same J: "
+                  << verdict(std::abs(one.functional / other.functional - 1.),
+                             tolerance)
+                  << '\n';
+      }
+  }
+
+
+
+  void
+  test_one_step()
+  {
+    const std::vector<std::string> scene    = {small[0], small[1]};
+    const SolveResult              one_step = run(scene,
+                                     {"Contact law/Law=stepped",
+                                                   "Contact law/Stepped/Stiffnesses=690",
+                                                   "Contact law/Stepped/Thresholds=0.002"});
+    const SolveResult winkler = run(scene, {"Contact law/Bond stiffness=690"});
+    std::cout << "one step is winkler: "
+              << verdict(one_step.functional == winkler.functional &&
+                         one_step.u == winkler.u)
+              << '\n';
+  }
+
+
+
+  void
+  test_load_path()
+  {
+    const Parameters parameters =
+      parameters_of(small,
+                    {"Load path/Factors=0:0.1:2, 2:-0.1:0.5",
+                     "Load path/Global branch=prove"});
+    const MethodChoice           choice = choose_method(parameters);
+    const Scene<2>               scene(parameters, matrix_storage(choice));
+    std::ostringstream           log;
+    std::vector<LoadPathStep<2>> steps;
+    const SolveResult            result = follow_load_path<2>(
+      parameters, scene, [](const auto &...) {}, log, steps);
+
+    double       gap = 0., sum = 0.;
+    bool         all_global = true, partly_broken = false, named = true;
+    unsigned int with_change = 0;
+    for (const LoadPathStep<2> &step : steps)
+      {
+        if (step.factor > 0.)
+          {
+            const double least = least_functional(scene, step.factor);
+            gap = std::max(gap, std::abs(step.global->functional / least - 1.));
+            all_global = all_global && step.global->minimum == "global";
+          }
+        for (const auto &state : {step.state, *step.global})
+          {
+            named = named && state.other_parts.size() == 1 &&
+                    state.other_parts[0].first == "partly_broken_1";
+            const double other = state.other_parts[0].second;
+            sum                = std::max(sum,
+                           std::abs(state.contact_part + state.bonded_part +
+                                    state.broken_part + other - 1.));
+            partly_broken      = partly_broken || other > 0.;
+          }
+        with_change += step.change_factor.has_value();
+      }
+    std::cout << "load path: " << to_string(result.status)
+              << ", the least J on the global branch: "
+              << verdict(gap, tolerance)
+              << ", called global: " << verdict(all_global)
+              << "\n  parts by name: " << verdict(named)
+              << ", of all nodes: " << verdict(sum, 1e-12)
+              << ", partly broken ones among them: " << verdict(partly_broken)
+              << ", changes of bonds: " << verdict(with_change > 1) << '\n';
+    if (print_figures)
+      for (const LoadPathStep<2> &step : steps)
+        std::cout << "  " << step.factor << ' ' << step.state.functional << ' '
+                  << step.global->functional << ' ' << step.state.bonded_part
+                  << ' ' << step.state.other_parts[0].second << ' '
+                  << step.state.broken_part << '\n';
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *argv[])
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  print_figures = argc > 1;
+  test_methods();
+  test_quadratures();
+  test_one_step();
+  test_load_path();
+}
