@@ -21,8 +21,8 @@ namespace Debond
   {
     constexpr auto pause_between_polls = std::chrono::milliseconds(10);
 
-    /// After an interruption the cases write what they have; who takes longer
-    /// is killed.
+    /// After an interruption the running cases have this long to write their
+    /// results before they are killed.
     constexpr double seconds_to_end = 10.;
 
 

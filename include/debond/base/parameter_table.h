@@ -66,14 +66,16 @@ namespace Debond
     std::string
     location(const std::string &path) const;
 
-    /// Adds an error that concerns the entry @p path, and others; nothing if
-    /// one of them was rejected before.
+    /// Adds @p message to errors(), with the file and line of the entry @p
+    /// path, unless the value of it, or of one of @p others, of which the
+    /// message speaks too, was not allowed in the first place.
     void
     add_error(const std::string              &path,
               const std::string              &message,
               const std::vector<std::string> &others = {});
 
-    /// An error that says the value of @p path and why it cannot be.
+    /// As add_error(), with a message made of the name and value of @p path and
+    /// the @p reason why this value is not allowed.
     void
     reject(const std::string              &path,
            const std::string              &reason,

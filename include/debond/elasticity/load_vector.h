@@ -48,10 +48,10 @@ namespace Debond
    * Throws std::invalid_argument, naming the boundary or the body force, the
    * point and the component, if a load cannot be evaluated, is not finite or is
    * not piecewise smooth; if it grows without bound such that a 1e-10th of a
-   * face (of a cell) has more than a thousandth of its load: 1/x on a face
-   * (also 1/r around a point of it in 3D, which is refused although it has an
-   * integral), 1/x^2 in a body, but not 1/sqrt(x);
-   * and if it has not dim components or acts on a boundary the mesh has not.
+   * face (of a cell) has more than a thousandth of its load (1/x on a face or
+   * in a body, but not 1/sqrt(x); 1/r around a point of a face in 3D is refused
+   * as well, although it has an integral); if the number of its components is
+   * not dim; and if the mesh has no boundary of that number.
    */
   template <int dim>
   dealii::Vector<double>

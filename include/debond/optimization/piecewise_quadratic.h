@@ -11,7 +11,8 @@ namespace Debond
   /**
    * A function Phi that is the least of several convex quadratics (at each of
    * its quadrature points): the branch that is the least one at s lies above
-   * Phi everywhere and touches it at s.
+   * Phi everywhere and touches it at s. s are the normal displacements of the
+   * contact nodes in their order, s <= 0, a length.
    */
   class PiecewiseQuadratic
   {

@@ -11,7 +11,8 @@
 
 namespace Debond
 {
-  /// A case and what is known about it.
+  /// A case, its result and what was computed from it: what a column
+  /// takes its cell from.
   struct StudyRow
   {
     const Case                    *one;
@@ -22,15 +23,18 @@ namespace Debond
 
 
 
-  /// What a table has for each case.
+  /// A column of a study's table: what to read or compute for a case, its
+  /// title and the digits to print.
   class Column
   {
   public:
-    /// Throws std::invalid_argument, naming the columns that there are.
+    /// The column of the name @p name in `Study/Columns`: a fixed one, such as
+    /// "error at 1400", or "TITLE = /key/in/summary.json". Throws
+    /// std::invalid_argument, naming the fixed ones, if it is neither.
     static Column
     parse(const std::string &name);
 
-    /// The columns that there are, in words.
+    /// The names of the fixed columns, for documentation and messages.
     static std::string
     documentation();
 
@@ -52,7 +56,8 @@ namespace Debond
     bool
     needs_minimum() const;
 
-    /// Of the number in summary.json; empty if the column is none.
+    /// The JSON pointer of the number in summary.json that the column shows;
+    /// empty for a fixed column.
     const std::string &
     json_pointer() const;
 

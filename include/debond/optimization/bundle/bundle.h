@@ -8,8 +8,13 @@
 
 namespace Debond
 {
-  /// The subgradients, which the direction problem holds, with their
-  /// linearisation errors and distances at x_k.
+  /**
+   * The bundle of the paper's Section 4: up to @p capacity subgradients eta_j,
+   * which the direction problem holds, with their linearisation errors alpha_j
+   * (energy) and the lengths s_j of the way from y_j to x_k (in the norm of the
+   * direction problem). Keeps a reference to the direction problem, which has
+   * to outlive it and is cleared at the start.
+   */
   template <typename VectorType>
   class Bundle
   {
@@ -43,6 +48,8 @@ namespace Debond
       problem.clear();
     }
 
+    /// Adds the subgradient eta with its alpha_j and s_j at x_k. There has to
+    /// be room: !full().
     void
     add(const VectorType &eta,
         const double      new_alpha,
@@ -53,6 +60,8 @@ namespace Debond
       problem.add(eta);
     }
 
+    /// The direction at @p x = x_k, from beta_j = max(|alpha_j|, gamma s_j^2).
+    /// The result is valid until the next call.
     const Solution &
     solve(const VectorType &x, const double gamma)
     {
@@ -62,7 +71,9 @@ namespace Debond
                              gamma * distance.head(m).cwiseAbs2()));
     }
 
-    /// Accounts for x_{k+1} = x_k + t_L d.
+    /// Changes alpha_j and s_j of all subgradients from x_k to x_{k+1} = x_k +
+    /// t_L d, where d is the direction of @p solution and @p d_length its
+    /// length.
     void
     move(const Solution         &solution,
          const LineSearchResult &step,

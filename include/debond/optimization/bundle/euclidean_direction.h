@@ -10,8 +10,10 @@
 
 namespace Debond
 {
-  /// The paper's direction problem, M = u I, on any deal.II vector. Keeps a
-  /// reference to the bounds.
+  /// The paper's direction problem, M = u I (u > 0, energy per squared length),
+  /// on any deal.II vector. Only the components with bounds are handed to the
+  /// QP; of all others it knows the Gram matrix. Keeps a reference to the
+  /// bounds.
   template <typename VectorType>
   class EuclideanDirection : public DirectionProblem<VectorType>
   {

@@ -18,15 +18,15 @@ namespace Debond
   std::optional<Eigen::MatrixXd>
   safe_inverse(const Eigen::MatrixXd &A);
 
-  /// Whether there is one, at a third of the price.
+  /// Whether safe_inverse() has a result, at a third of its cost.
   bool
   is_safely_positive_definite(const Eigen::MatrixXd &A);
 
 
 
-  /// The largest t for which A - t diag(weights) is positive semidefinite,
-  /// about (never much below); infinite if all weights are zero. Weights are >=
-  /// 0.
+  /// Approximately the largest t for which A - t diag(weights) is positive
+  /// semidefinite (never much below it); infinite if all weights, which are not
+  /// negative, are zero.
   double
   largest_multiple(const Eigen::MatrixXd &inverse_of_A,
                    const Eigen::VectorXd &weights);

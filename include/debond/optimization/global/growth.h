@@ -6,7 +6,8 @@
 
 namespace Debond
 {
-  /// The least interval with both.
+  /// The smallest interval that contains both @p a and @p b, either of which
+  /// may be empty.
   Interval
   hull(const Interval &a, const Interval &b);
 
