@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
+#include <fstream>
 
 namespace Debond
 {
@@ -102,11 +104,48 @@ namespace Debond
 
 
   void
+  ParameterTable::declare_family(const std::string &path,
+                                 const Pattern     &pattern,
+                                 const std::string &documentation,
+                                 const std::string &units)
+  {
+    families.emplace(path, Family{pattern, documentation, units});
+  }
+
+
+
+  bool
+  ParameterTable::declare_member(const std::string &path)
+  {
+    for (const auto &[start, family] : families)
+      if (starts_with(path, start + " "))
+        {
+          declare(path, "", family.pattern, family.documentation, family.units);
+          return true;
+        }
+    return false;
+  }
+
+
+
+  std::vector<std::string>
+  ParameterTable::family(const std::string &path) const
+  {
+    std::vector<std::string> members;
+    for (const auto &[candidate, unused] : expected)
+      if (starts_with(candidate, path + " "))
+        members.push_back(candidate.substr(path.size() + 1));
+    return members;
+  }
+
+
+
+  void
   ParameterTable::set(const std::string &path,
                       const std::string &value,
                       const std::string &location)
   {
-    if (expected.find(path) == expected.end())
+    if (expected.find(path) == expected.end() && !declare_member(path))
       {
         std::vector<std::string> known;
         for (const auto &entry : expected)
@@ -141,6 +180,7 @@ namespace Debond
   ParameterTable::read(std::istream &input, const std::string &file)
   {
     file_name = file;
+    reading.push_back(file);
 
     std::vector<std::string> known;
     for (const auto &entry : expected)
@@ -152,6 +192,8 @@ namespace Debond
     std::vector<std::string> open;
     std::vector<std::string> opened_at;
     std::size_t              known_depth = 0;
+
+    std::map<std::string, std::string> set_here;
 
     std::string  logical_line;
     unsigned int line_number       = 0;
@@ -223,17 +265,21 @@ namespace Debond
             const std::string name   = trim(rest.substr(0, equals));
             const std::string path =
               (open.empty() ? "" : join(open, "/") + "/") + name;
-            const auto earlier = locations.find(path);
-            if (earlier != locations.end())
+            const auto [earlier, is_first] = set_here.emplace(path, location);
+            if (is_first)
+              set(path, trim(rest.substr(equals + 1)), location);
+            else
               lines.push_back(location + ": " + path + " is set already, at " +
                               earlier->second);
-            else
-              set(path, trim(rest.substr(equals + 1)), location);
           }
+        else if (keyword == "include" && !rest.empty() && open.empty())
+          read_included(rest, file, location);
         else
-          lines.push_back(location + ": cannot read '" + text +
-                          "': expected 'subsection NAME', "
-                          "'set NAME = VALUE' or 'end'");
+          lines.push_back(
+            location + ": cannot read '" + text +
+            "': expected 'subsection NAME', "
+            "'set NAME = VALUE', 'end' or, outside of subsections, "
+            "'include FILE'");
       }
 
     if (!logical_line.empty())
@@ -242,6 +288,34 @@ namespace Debond
     for (std::size_t i = 0; i < open.size(); ++i)
       lines.push_back(opened_at[i] + ": subsection " + open[i] +
                       " is not closed by 'end'");
+    reading.pop_back();
+  }
+
+
+
+  void
+  ParameterTable::read_included(const std::string &name,
+                                const std::string &file,
+                                const std::string &location)
+  {
+    const std::filesystem::path path =
+      std::filesystem::path(file).parent_path() / name;
+    const auto is_this_file = [&path](const std::string &other) {
+      std::error_code unreadable;
+      return std::filesystem::equivalent(path, other, unreadable);
+    };
+
+    std::error_code error;
+    std::ifstream   input(path);
+    if (!std::filesystem::is_regular_file(path, error) || !input)
+      lines.push_back(location + ": include " + name +
+                      ": there is no such file, or it cannot be read");
+    else if (std::any_of(reading.begin(), reading.end(), is_this_file))
+      lines.push_back(location + ": include " + name +
+                      ": the file includes itself");
+    else
+      read(input, path.string());
+    file_name = file;
   }
 
 

@@ -166,6 +166,15 @@ namespace Debond
 
 
   Pattern
+  list_of_names()
+  {
+    return Pattern("a list of names",
+                   [](const std::string & /*value*/) { return true; });
+  }
+
+
+
+  Pattern
   one_for_each_dimension(const Pattern &pattern)
   {
     return Pattern("2 or 3 times " + pattern.description(),

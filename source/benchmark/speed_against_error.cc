@@ -248,7 +248,7 @@ namespace Debond
       const auto run      = [&] {
         const Vector u = find_minimum(reference_parameters, reference).u;
         Vector       difference =
-          interpolate_displacement(parameters.box,
+          interpolate_displacement(scene.body(),
                                    scene.problem(),
                                    find_minimum(parameters, scene).u,
                                    reference.problem());
@@ -280,7 +280,7 @@ namespace Debond
       result.unknowns = scene.problem().n_free_dofs();
       result.methods  = measure_alternating(jobs, mesh.repetitions);
       result.J_min    = result.methods.front().front().facts["J_min"];
-      if (parameters.box.cells != reference_parameters.box.cells)
+      if (scene.n_cells() != reference.n_cells())
         result.energy_discretisation_error = distance_to_reference(
           parameters, scene, reference_parameters, reference);
       return result;

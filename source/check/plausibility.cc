@@ -28,7 +28,7 @@ namespace Debond
 
 
   std::vector<std::string>
-  plausibility_notes(const BoxParameters &box,
+  plausibility_notes(const BodyShape     &shape,
                      const unsigned int   dim,
                      const bool           has_load,
                      const LargestValues &largest)
@@ -56,16 +56,16 @@ namespace Debond
       }
 
     const double thickness =
-      *std::min_element(box.lengths.begin(), box.lengths.begin() + dim);
+      *std::min_element(shape.lengths.begin(), shape.lengths.begin() + dim);
     double shortest = std::numeric_limits<double>::max();
     double longest  = 0.;
     double bending  = 0.; // of cells that bend
     bool   slender  = false;
     for (unsigned int d = 0; d < dim; ++d)
       {
-        const double edge  = box.lengths[d] / box.cells[d];
-        const bool   thin  = box.lengths[d] <= thickness;
-        const bool   along = box.lengths[d] >= slender_ratio * thickness;
+        const double edge  = shape.lengths[d] / shape.cells[d];
+        const bool   thin  = shape.lengths[d] <= thickness;
+        const bool   along = shape.lengths[d] >= slender_ratio * thickness;
         shortest           = std::min(shortest, edge);
         longest            = std::max(longest, edge);
         slender |= along;

@@ -59,7 +59,8 @@ namespace Debond
     template <int dim>
     std::vector<BoundaryFace<dim>>
     boundary_faces(const dealii::DoFHandler<dim>              &dofs,
-                   const std::set<dealii::types::boundary_id> &boundaries)
+                   const std::set<dealii::types::boundary_id> &boundaries,
+                   const BoundaryNames                        &names)
     {
       std::vector<BoundaryFace<dim>>       faces;
       std::set<dealii::types::boundary_id> missing = boundaries;
@@ -73,7 +74,7 @@ namespace Debond
             }
       if (!missing.empty())
         throw std::invalid_argument(
-          "Boundary conditions: " + boundary_name<dim>(*missing.begin()) +
+          "Boundary conditions: " + boundary_name(names, *missing.begin()) +
           " is clamped or a contact boundary, but the mesh has no such "
           "boundary.");
       return faces;
@@ -133,7 +134,7 @@ namespace Debond
     for (const dealii::types::boundary_id id : conditions.contact)
       if (conditions.clamped.count(id) > 0)
         throw std::invalid_argument(
-          "Boundary conditions: " + boundary_name<dim>(id) +
+          "Boundary conditions: " + boundary_name(conditions.names, id) +
           " is both clamped and a contact boundary.");
 
     dofs.distribute_dofs(fe);
@@ -145,7 +146,7 @@ namespace Debond
     }();
 
     std::vector<Support<dim>> supports;
-    clamp(conditions.clamped, supports);
+    clamp(conditions, supports);
     make_contact_boundary(conditions, diameter, supports);
 
     const std::vector<std::string> motions =
@@ -167,11 +168,11 @@ namespace Debond
 
   template <int dim>
   void
-  ElasticProblem<dim>::clamp(
-    const std::set<dealii::types::boundary_id> &boundaries,
-    std::vector<Support<dim>>                  &supports)
+  ElasticProblem<dim>::clamp(const BoundaryConditions  &conditions,
+                             std::vector<Support<dim>> &supports)
   {
-    for (const BoundaryFace<dim> &face : boundary_faces(dofs, boundaries))
+    for (const BoundaryFace<dim> &face :
+         boundary_faces(dofs, conditions.clamped, conditions.names))
       for (unsigned int v = 0; v < dim; ++v)
         clamp_vertex(face.dofs[v], face.vertices[v], supports);
   }
@@ -206,7 +207,7 @@ namespace Debond
     constexpr unsigned int none = dealii::numbers::invalid_unsigned_int;
 
     const std::vector<BoundaryFace<dim>> faces =
-      boundary_faces(dofs, conditions.contact);
+      boundary_faces(dofs, conditions.contact, conditions.names);
 
     // By vertex index; clamped vertices are left out. For each face, the group
     // of normals that it belongs to at each of its vertices.

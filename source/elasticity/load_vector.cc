@@ -553,11 +553,11 @@ namespace Debond
     void
     add_traction(const dealii::DoFHandler<dim>   &dof_handler,
                  const dealii::types::boundary_id id,
+                 const std::string               &name,
                  const dealii::Function<dim>     &function,
                  dealii::Vector<double>          &forces)
     {
-      const std::string name    = boundary_name<dim>(id);
-      unsigned int      n_faces = 0;
+      unsigned int n_faces = 0;
       for (const auto &cell : dof_handler.active_cell_iterators())
         for (const auto &face : cell->face_iterators())
           n_faces += face->at_boundary() && face->boundary_id() == id;
@@ -586,16 +586,42 @@ namespace Debond
 
 
 
+  LoadError::LoadError(
+    const std::string                               &message,
+    const std::optional<dealii::types::boundary_id> &boundary)
+    : std::invalid_argument(message)
+    , boundary(boundary)
+  {}
+
+
+
   template <int dim>
   dealii::Vector<double>
   load_vector(const dealii::DoFHandler<dim> &dof_handler,
               const Loads<dim>              &loads)
   {
     dealii::Vector<double> forces(dof_handler.n_dofs());
-    if (loads.body_force)
-      add_body_force(dof_handler, *loads.body_force, forces);
-    for (const auto &[id, traction] : loads.tractions)
-      add_traction(dof_handler, id, *traction, forces);
+
+    // The load that is being integrated, for errors.
+    std::optional<dealii::types::boundary_id> boundary;
+    try
+      {
+        if (loads.body_force)
+          add_body_force(dof_handler, *loads.body_force, forces);
+        for (const auto &[id, traction] : loads.tractions)
+          {
+            boundary = id;
+            add_traction(dof_handler,
+                         id,
+                         boundary_name(loads.boundary_names, id),
+                         *traction,
+                         forces);
+          }
+      }
+    catch (const std::invalid_argument &error)
+      {
+        throw LoadError(error.what(), boundary);
+      }
     return forces;
   }
 

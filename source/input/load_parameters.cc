@@ -83,13 +83,18 @@ namespace Debond
       expression,
       "The body force f_0 in global coordinates: expressions in x, y (and z in 3D) as muParser reads them; none if empty",
       "force per volume");
-    for (const std::string &side : box_sides)
+    const std::string traction = "The traction f_2 on the ";
+    for (const std::string side :
+         {"left", "right", "bottom", "top", "front", "back"})
       table.declare("Loads/Traction " + side,
                     "",
                     expression,
-                    "The traction f_2 on the side " + side +
-                      ", as the body force",
+                    traction + "side " + side + ", as the body force",
                     "force per area");
+    table.declare_family("Loads/Traction",
+                         expression,
+                         traction + "boundary of this name",
+                         "force per area");
     table.declare(
       "Loads/Constants",
       "",
@@ -146,17 +151,11 @@ namespace Debond
       return read_expression(table, path, dimension, loads.constants);
     };
     loads.body_force = read("Loads/Body force");
-    for (const std::string &side : box_sides)
+    for (const std::string &boundary : table.family("Loads/Traction"))
       {
-        const std::string path     = "Loads/Traction " + side;
-        const std::string traction = read(path);
-        if (traction.empty())
-          continue;
-        loads.tractions[side] = traction;
-        if (dimension == 2 && (side == "front" || side == "back"))
-          table.reject(path,
-                       "there is no side " + side + " in 2D",
-                       {"Dimension"});
+        const std::string traction = read("Loads/Traction " + boundary);
+        if (!traction.empty())
+          loads.tractions[boundary] = traction;
       }
     return loads;
   }

@@ -49,19 +49,19 @@ namespace Debond
 
     table.declare(
       "Mesh/Lengths",
-      to_text(defaults.box.lengths, defaults.dimension),
+      to_text(defaults.body.box.lengths, defaults.dimension),
       one_for_each_dimension(quantity()),
       "Edge lengths of the box (0, L_1) x (0, L_2) [x (0, L_3)], one for each dimension",
       "length");
     table.declare(
       "Mesh/Cells",
-      to_text(defaults.box.cells, defaults.dimension),
+      to_text(defaults.body.box.cells, defaults.dimension),
       one_for_each_dimension(whole_number(1, 1000000)),
       "Cells along each edge, before each is cut into 4 triangles (24 tetrahedra)",
       "none");
     table.declare(
       "Mesh/Rotation",
-      shortest_text(defaults.box.rotation),
+      shortest_text(defaults.body.box.rotation),
       number("in [-360, 360]", [](double x) { return std::abs(x) <= 360.; }),
       "Turns the box about the origin in the x-y plane. The sides keep their names; loads are not turned",
       "degrees");
@@ -83,18 +83,17 @@ namespace Debond
                   "How the plane body represents a solid one; not used in 3D",
                   "none");
 
-    const Pattern side_list = list_of(box_sides);
     table.declare(
       "Boundary conditions/Clamped boundaries",
       "left, right",
-      side_list,
-      "Sides that form Gamma_D, where the displacement is zero. Sides: left and right have the smallest and largest x, bottom and top y, back and front z (3D only)",
+      list_of_names(),
+      "Boundaries that form Gamma_D, where the displacement is zero. Of a box: left and right have the smallest and largest x, bottom and top y, back and front z (3D only)",
       "none");
     table.declare(
       "Boundary conditions/Contact boundary",
       "bottom",
-      side_list,
-      "Sides that form Gamma_C, where the body rests on the foundation",
+      list_of_names(),
+      "Boundaries that form Gamma_C, where the body rests on the foundation",
       "none");
 
     declare_loads(table);
@@ -214,18 +213,21 @@ namespace Debond
 
 
 
-    std::set<std::string>
-    read_sides(ParameterTable    &table,
-               const std::string &path,
-               const unsigned int dimension)
+    /// Checks that the body has boundaries of these names.
+    void
+    check_boundaries(ParameterTable              &table,
+                     const std::string           &path,
+                     const std::set<std::string> &names,
+                     const BoundaryNames         &boundaries)
     {
-      const std::vector<std::string> names = table.get_list(path);
+      std::vector<std::string> known;
+      for (const auto &[name, unused] : boundaries)
+        known.push_back(name);
       for (const std::string &name : names)
-        if (dimension == 2 && (name == "front" || name == "back"))
+        if (boundaries.count(name) == 0)
           table.reject(path,
-                       "there is no side " + name + " in 2D",
-                       {"Dimension"});
-      return {names.begin(), names.end()};
+                       "the body has no boundary " + name + ", but " +
+                         join(known, ", "));
     }
 
 
@@ -236,6 +238,20 @@ namespace Debond
       const unsigned int dimension = parameters.dimension;
       check_length(table, "Mesh/Lengths", dimension);
       check_length(table, "Mesh/Cells", dimension);
+
+      const BoundaryNames boundaries =
+        dimension == 2 ? make_body<2>(parameters.body)->boundaries() :
+                         make_body<3>(parameters.body)->boundaries();
+      check_boundaries(table,
+                       "Boundary conditions/Clamped boundaries",
+                       parameters.clamped_boundaries,
+                       boundaries);
+      check_boundaries(table,
+                       "Boundary conditions/Contact boundary",
+                       parameters.contact_boundaries,
+                       boundaries);
+      for (const auto &[name, unused] : parameters.loads.tractions)
+        check_boundaries(table, "Loads/Traction " + name, {name}, boundaries);
 
       try
         {
@@ -294,11 +310,11 @@ namespace Debond
 
     const std::vector<std::string> lengths = table.get_list("Mesh/Lengths");
     for (std::size_t d = 0; d < lengths.size(); ++d)
-      read_number(lengths[d], p.box.lengths[d]);
+      read_number(lengths[d], p.body.box.lengths[d]);
     const std::vector<std::string> cells = table.get_list("Mesh/Cells");
     for (std::size_t d = 0; d < cells.size(); ++d)
-      p.box.cells[d] = static_cast<unsigned int>(std::stoul(cells[d]));
-    p.box.rotation = table.get_double("Mesh/Rotation");
+      p.body.box.cells[d] = static_cast<unsigned int>(std::stoul(cells[d]));
+    p.body.box.rotation = table.get_double("Mesh/Rotation");
 
     p.material.young_modulus = table.get_double("Material/Young modulus");
     p.material.poisson_ratio = table.get_double("Material/Poisson ratio");
@@ -306,10 +322,12 @@ namespace Debond
                               Material::Hypothesis::plane_stress :
                               Material::Hypothesis::plane_strain;
 
-    p.clamped_boundaries =
-      read_sides(table, "Boundary conditions/Clamped boundaries", p.dimension);
-    p.contact_boundaries =
-      read_sides(table, "Boundary conditions/Contact boundary", p.dimension);
+    const auto names = [&table](const std::string &path) {
+      const std::vector<std::string> list = table.get_list(path);
+      return std::set<std::string>(list.begin(), list.end());
+    };
+    p.clamped_boundaries = names("Boundary conditions/Clamped boundaries");
+    p.contact_boundaries = names("Boundary conditions/Contact boundary");
     p.tangential_displacement_fixed =
       table.get("Contact law/Tangential displacement") == "fixed";
 

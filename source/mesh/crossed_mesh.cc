@@ -171,94 +171,10 @@ namespace Debond
 
 
 
-  template <int dim>
-  void
-  make_box(const BoxParameters &parameters, dealii::Triangulation<dim> &crossed)
-  {
-    dealii::Point<dim>        corner;
-    std::vector<unsigned int> cells(dim);
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        if (!(parameters.lengths[d] > 0.))
-          throw std::invalid_argument(
-            "Box: length " + std::to_string(parameters.lengths[d]) +
-            " in direction " + std::to_string(d) + " must be positive.");
-        if (parameters.cells[d] == 0)
-          throw std::invalid_argument("Box: the number of cells in direction " +
-                                      std::to_string(d) +
-                                      " is 0, it must be at least 1.");
-        corner[d] = parameters.lengths[d];
-        cells[d]  = parameters.cells[d];
-      }
-
-    dealii::Triangulation<dim> coarse;
-    dealii::GridGenerator::subdivided_hyper_rectangle(
-      coarse, cells, dealii::Point<dim>(), corner, /*colorize=*/true);
-    crossed_subdivision(coarse, crossed);
-
-    if (parameters.rotation != 0.)
-      {
-        const double angle = parameters.rotation * dealii::numbers::PI / 180.;
-        if constexpr (dim == 2)
-          dealii::GridTools::rotate(angle, crossed);
-        else
-          dealii::GridTools::rotate(dealii::Tensor<1, 3>({0., 0., 1.}),
-                                    angle,
-                                    crossed);
-      }
-  }
-
-
-
-  template <int dim>
-  const std::map<std::string, dealii::types::boundary_id> &
-  boundary_names()
-  {
-    static const std::map<std::string, dealii::types::boundary_id> names = [] {
-      std::map<std::string, dealii::types::boundary_id> sides = {{"left", 0},
-                                                                 {"right", 1},
-                                                                 {"bottom", 2},
-                                                                 {"top", 3}};
-      if (dim == 3)
-        {
-          sides["back"]  = 4;
-          sides["front"] = 5;
-        }
-      return sides;
-    }();
-    return names;
-  }
-
-
-
-  template <int dim>
-  std::string
-  boundary_name(const dealii::types::boundary_id id)
-  {
-    for (const auto &[name, named_id] : boundary_names<dim>())
-      if (named_id == id)
-        return name;
-    return "boundary " + std::to_string(id);
-  }
-
-
-
   template void
   crossed_subdivision(const dealii::Triangulation<2> &,
                       dealii::Triangulation<2> &);
   template void
   crossed_subdivision(const dealii::Triangulation<3> &,
                       dealii::Triangulation<3> &);
-  template void
-  make_box(const BoxParameters &, dealii::Triangulation<2> &);
-  template void
-  make_box(const BoxParameters &, dealii::Triangulation<3> &);
-  template const std::map<std::string, dealii::types::boundary_id> &
-  boundary_names<2>();
-  template const std::map<std::string, dealii::types::boundary_id> &
-  boundary_names<3>();
-  template std::string
-  boundary_name<2>(const dealii::types::boundary_id);
-  template std::string
-  boundary_name<3>(const dealii::types::boundary_id);
 } // namespace Debond

@@ -384,7 +384,7 @@ namespace Debond
     add_verification(verification, summary);
     summary.largest = largest_values(scene.problem(), result.u);
     for (const std::string &note : plausibility_notes(
-           parameters.box,
+           scene.body().shape(),
            dim,
            scene.problem().applied_nodal_forces().linfty_norm() > 0.,
            summary.largest))

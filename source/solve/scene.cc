@@ -11,15 +11,16 @@ namespace Debond
   {
     using Vector = dealii::Vector<double>;
 
-    template <int dim>
     BoundaryConditions
-    boundary_conditions(const Parameters &parameters)
+    boundary_conditions(const Parameters    &parameters,
+                        const BoundaryNames &boundaries)
     {
       BoundaryConditions conditions;
-      for (const std::string &side : parameters.clamped_boundaries)
-        conditions.clamped.insert(boundary_names<dim>().at(side));
-      for (const std::string &side : parameters.contact_boundaries)
-        conditions.contact.insert(boundary_names<dim>().at(side));
+      for (const std::string &name : parameters.clamped_boundaries)
+        conditions.clamped.insert(boundaries.at(name));
+      for (const std::string &name : parameters.contact_boundaries)
+        conditions.contact.insert(boundaries.at(name));
+      conditions.names = boundaries;
       conditions.tangential_displacement_fixed =
         parameters.tangential_displacement_fixed;
       return conditions;
@@ -29,14 +30,16 @@ namespace Debond
 
     template <int dim>
     Loads<dim>
-    make_loads(const LoadParameters &parameters)
+    make_loads(const LoadParameters &parameters,
+               const BoundaryNames  &boundaries)
     {
       Loads<dim> loads;
+      loads.boundary_names = boundaries;
       if (!parameters.body_force.empty())
         loads.body_force =
           make_function<dim>(parameters.body_force, parameters.constants);
-      for (const auto &[side, expression] : parameters.tractions)
-        loads.tractions[boundary_names<dim>().at(side)] =
+      for (const auto &[name, expression] : parameters.tractions)
+        loads.tractions[boundaries.at(name)] =
           make_function<dim>(expression, parameters.constants);
       return loads;
     }
@@ -61,39 +64,38 @@ namespace Debond
           file_name + " does not satisfy the scene's boundary conditions");
       return u;
     }
-
-
-
-    /// The load that a message of the assembly speaks of.
-    std::string
-    load_entry(const LoadParameters &loads, const std::string &message)
-    {
-      for (const auto &[side, unused] : loads.tractions)
-        if (message.find("traction on " + side + " ") != std::string::npos)
-          return "Loads/Traction " + side;
-      return "Loads/Body force";
-    }
   } // namespace
 
 
 
   template <int dim>
   Scene<dim>::Scene(const Parameters &parameters, const MatrixStorage storage)
+    : Scene(parameters, make_body<dim>(parameters.body), storage)
+  {}
+
+
+
+  template <int dim>
+  Scene<dim>::Scene(const Parameters                &parameters,
+                    std::unique_ptr<const Body<dim>> body,
+                    const MatrixStorage              storage)
+    : elastic_body(std::move(body))
   {
-    dealii::Timer timer;
-    std::string   entry = "Mesh/Lengths"; // that errors belong to
+    const BoundaryNames &boundaries = elastic_body->boundaries();
+    dealii::Timer        timer;
+    std::string          entry = "Mesh/Lengths"; // that errors belong to
     try
       {
-        make_box<dim>(parameters.box, triangulation);
+        elastic_body->make_mesh(triangulation);
         seconds_for_mesh = timer.wall_time();
 
         timer.restart();
         entry           = "Boundary conditions/Clamped boundaries";
         elastic_problem = std::make_unique<ElasticProblem<dim>>(
-          triangulation, boundary_conditions<dim>(parameters));
-        entry.clear(); // one of the loads
+          triangulation, boundary_conditions(parameters, boundaries));
+        entry = "Material/Poisson ratio";
         elastic_problem->assemble(parameters.material,
-                                  make_loads<dim>(parameters.loads),
+                                  make_loads<dim>(parameters.loads, boundaries),
                                   storage);
         entry = "Contact law/Quadrature";
         add_contact(parameters, storage);
@@ -106,8 +108,11 @@ namespace Debond
       }
     catch (const std::invalid_argument &error)
       {
-        if (entry.empty())
-          entry = load_entry(parameters.loads, error.what());
+        if (const auto *load = dynamic_cast<const LoadError *>(&error))
+          entry =
+            load->boundary ?
+              "Loads/Traction " + boundary_name(boundaries, *load->boundary) :
+              "Loads/Body force";
         throw BadInput({parameters.locations.at(entry) + ": " + entry + ": " +
                         error.what()});
       }
@@ -139,6 +144,15 @@ namespace Debond
       make_functional(elastic_problem->matrix());
     else
       make_functional(elastic_problem->trilinos_matrix());
+  }
+
+
+
+  template <int dim>
+  const Body<dim> &
+  Scene<dim>::body() const
+  {
+    return *elastic_body;
   }
 
 

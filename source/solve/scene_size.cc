@@ -20,17 +20,6 @@ namespace Debond
     /// Of a factorisation on one core.
     constexpr double seconds_per_operation = 1e-10;
 
-    /// The direction that a side of the box is normal to.
-    unsigned int
-    normal_direction(const std::string &side)
-    {
-      if (side == "left" || side == "right")
-        return 0;
-      return side == "bottom" || side == "top" ? 1 : 2;
-    }
-
-
-
     /// The number that the first word after @p label in a file is, infinity
     /// if there is no such file or number.
     double
@@ -47,44 +36,31 @@ namespace Debond
 
 
 
+  template <int dim>
+  SceneSize
+  scene_size(const Body<dim>             &body,
+             const std::set<std::string> &contact_boundaries)
+  {
+    SceneSize size;
+    size.cells         = body.n_cells();
+    size.unknowns      = dim * body.n_vertices();
+    size.contact_nodes = 0.;
+    for (const std::string &name : contact_boundaries)
+      size.contact_nodes += body.n_vertices_on(body.boundaries().at(name));
+    size.shape = body.shape();
+    return size;
+  }
+
+
+
   SceneSize
   scene_size(const Parameters &parameters)
   {
-    const unsigned int          dim = parameters.dimension;
-    const std::array<double, 3> n   = {
-        {1. * parameters.box.cells[0],
-         1. * parameters.box.cells[1],
-       dim == 3 ? 1. * parameters.box.cells[2] : 0.}};
-
-    SceneSize size;
-    if (dim == 2)
-      {
-        size.cells    = 4. * n[0] * n[1];
-        size.unknowns = 2. * ((n[0] + 1.) * (n[1] + 1.) + n[0] * n[1]);
-      }
-    else
-      {
-        size.cells         = 24. * n[0] * n[1] * n[2];
-        const double faces = (n[0] + 1.) * n[1] * n[2] +
-                             n[0] * (n[1] + 1.) * n[2] +
-                             n[0] * n[1] * (n[2] + 1.);
-        size.unknowns = 3. * ((n[0] + 1.) * (n[1] + 1.) * (n[2] + 1.) + faces +
-                              n[0] * n[1] * n[2]);
-      }
-
-    size.contact_nodes = 0.;
-    for (const std::string &side : parameters.contact_boundaries)
-      {
-        double corners = 1., faces = 1.;
-        for (unsigned int d = 0; d < dim; ++d)
-          if (d != normal_direction(side))
-            {
-              corners *= n[d] + 1.;
-              faces *= n[d];
-            }
-        size.contact_nodes += dim == 2 ? corners : corners + faces;
-      }
-    return size;
+    if (parameters.dimension == 2)
+      return scene_size(*make_body<2>(parameters.body),
+                        parameters.contact_boundaries);
+    return scene_size(*make_body<3>(parameters.body),
+                      parameters.contact_boundaries);
   }
 
 
@@ -125,9 +101,9 @@ namespace Debond
   double
   seconds_with_factorisation(const Parameters &parameters)
   {
-    const SceneSize             size = scene_size(parameters);
-    std::array<unsigned int, 3> n    = parameters.box.cells;
-    const double                N    = size.unknowns;
+    const SceneSize       size = scene_size(parameters);
+    std::array<double, 3> n    = size.shape.cells;
+    const double          N    = size.unknowns;
     // In 2D what was measured on the benchmark, up to 2560x256.
     if (parameters.dimension == 2)
       return 3e-9 * std::pow(N, 1.5);
@@ -147,13 +123,14 @@ namespace Debond
   double
   seconds_with_multigrid(const Parameters &parameters)
   {
-    const double N = scene_size(parameters).unknowns;
+    const SceneSize size = scene_size(parameters);
+    const double    N    = size.unknowns;
     if (parameters.dimension == 2)
       return 5e-6 * N;
 
     // The cycle has no grip on the bending of thin bodies unless their contact
     // side is held.
-    const auto  &lengths = parameters.box.lengths;
+    const auto  &lengths = size.shape.lengths;
     const double slenderness =
       *std::max_element(lengths.begin(), lengths.end()) /
       *std::min_element(lengths.begin(), lengths.end());
@@ -180,4 +157,11 @@ namespace Debond
         std::min(available, static_cast<double>(address_space.rlim_cur));
     return available;
   }
+
+
+
+  template SceneSize
+  scene_size(const Body<2> &, const std::set<std::string> &);
+  template SceneSize
+  scene_size(const Body<3> &, const std::set<std::string> &);
 } // namespace Debond

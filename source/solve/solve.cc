@@ -377,17 +377,18 @@ namespace Debond
                              std::vector<std::string> &notes,
                              WhichMinimum             &search)
     {
+      std::unique_ptr<const Body<dim>> coarse_body = scene.body().coarser();
+      if (!coarse_body)
+        return Vector(scene.problem().n_dofs());
       Parameters coarse = parameters;
       coarse.start.clear(); // belongs to the finest mesh
       coarse.prove = false;
-      for (unsigned int d = 0; d < dim; ++d)
-        coarse.box.cells[d] = (coarse.box.cells[d] + 1) / 2;
-      if (coarse.box.cells == parameters.box.cells)
-        return Vector(scene.problem().n_dofs());
 
       const bool factorised =
-        scene_size(coarse).unknowns <= largest_coarse_factorisation;
+        scene_size(*coarse_body, coarse.contact_boundaries).unknowns <=
+        largest_coarse_factorisation;
       const Scene<dim> coarse_scene(coarse,
+                                    std::move(coarse_body),
                                     factorised ? MatrixStorage::serial :
                                                  MatrixStorage::trilinos);
       Watch            watch(guard, fine_watch);
@@ -408,7 +409,7 @@ namespace Debond
         notes.push_back(
           "start on the mesh of " + std::to_string(coarse_scene.n_cells()) +
           (dim == 2 ? " triangles: " : " tetrahedra: ") + result.message);
-      return interpolate_displacement(coarse.box,
+      return interpolate_displacement(coarse_scene.body(),
                                       coarse_scene.problem(),
                                       result.u,
                                       scene.problem());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/text.h>
 #include <debond/input/parameters.h>
+#include <debond/solve/scene_size.h>
 #include <debond/study/cases.h>
 #include <debond/study/columns.h>
 #include <debond/study/plots.h>
@@ -73,7 +74,8 @@ namespace Debond
           const Parameters parameters = to_parameters(study.scene, table);
           one.effective_scene         = parameters.effective_scene;
           one.law                     = parameters.law;
-          one.cell_edge = parameters.box.lengths[0] / parameters.box.cells[0];
+          const BodyShape shape       = scene_size(parameters).shape;
+          one.cell_edge               = shape.lengths[0] / shape.cells[0];
         }
       catch (const BadInput &error)
         {

@@ -5,7 +5,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <debond/benchmark/linear_baselines.h>
-#include <debond/mesh/crossed_mesh.h>
+#include <debond/mesh/box.h>
 
 #include <iostream>
 #include <memory>
@@ -37,15 +37,15 @@ namespace
     dealii::Triangulation<dim> mesh;
     make_box(box, mesh);
     BoundaryConditions conditions;
-    conditions.clamped = {boundary_names<dim>().at("left")};
-    conditions.contact = {boundary_names<dim>().at("bottom")};
+    conditions.clamped                       = {box_sides<dim>().at("left")};
+    conditions.contact                       = {box_sides<dim>().at("bottom")};
     conditions.tangential_displacement_fixed = tangential_displacement_fixed;
     ElasticProblem<dim> problem(mesh, conditions);
     Material            material;
     material.young_modulus = 69.;
     material.hypothesis    = Material::Hypothesis::plane_strain;
     Loads<dim> loads;
-    loads.tractions[boundary_names<dim>().at("top")] =
+    loads.tractions[box_sides<dim>().at("top")] =
       std::make_shared<dealii::Functions::ConstantFunction<dim>>(0.69, dim);
     problem.assemble(material, loads, MatrixStorage::trilinos);
     const LinearSolve iterative = solve_by_multigrid(problem);

@@ -9,7 +9,7 @@
 #include <debond/check/displacement_error.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/condensation.h>
-#include <debond/mesh/crossed_mesh.h>
+#include <debond/mesh/box.h>
 
 #include <cmath>
 #include <iostream>

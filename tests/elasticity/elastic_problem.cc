@@ -12,6 +12,7 @@
 
 #include <debond/elasticity/contact_frame.h>
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/mesh/box.h>
 #include <debond/mesh/crossed_mesh.h>
 
 #include <cmath>
@@ -60,6 +61,15 @@ load(const typename Load<dim>::Expression &expression)
 
 
 
+template <int dim>
+Loads<dim>
+no_loads()
+{
+  Loads<dim> loads;
+  loads.boundary_names = box_sides<dim>();
+  return loads;
+}
+
 /// The paper's tractions on the top, for a bar turned by an angle in degrees.
 template <int dim>
 Loads<dim>
@@ -68,7 +78,7 @@ paper_loads(const double angle = 0.)
   const double c = std::cos(angle * numbers::PI / 180.);
   const double s = std::sin(angle * numbers::PI / 180.);
 
-  Loads<dim> loads;
+  Loads<dim> loads     = no_loads<dim>();
   loads.tractions[top] = load<dim>([c, s](const Point<dim> &p) {
     const double   force = c * p[0] + s * p[1] < 0.2 ? 0.69 : -0.345;
     Tensor<1, dim> result;
@@ -226,7 +236,7 @@ test_loads()
 
     // Quadratic body force times linear displacement is beyond the rule,
     // linear times linear is not: the integral of x^2 over the bar.
-    Loads<2> weight;
+    Loads<2> weight   = no_loads<2>();
     weight.body_force = load<2>([](const Point<2> &p) {
       return Tensor<1, 2>({p[0], -3.});
     });
@@ -246,8 +256,8 @@ test_loads()
     make_box<3>({{{0.4, 0.04, 0.04}}, {{7, 1, 3}}, 0.}, mesh);
     ElasticProblem<3> problem(mesh, {{left, right}, {}, true});
     unsigned int      evaluations = 0;
-    Loads<3>          loads;
-    loads.tractions[top] = load<3>([&](const Point<3> &p) {
+    Loads<3>          loads       = no_loads<3>();
+    loads.tractions[top]          = load<3>([&](const Point<3> &p) {
       ++evaluations;
       return Tensor<1, 3>({0., p[0] + 0.7 * p[2] < 0.2 ? 0.69 : -0.345, 0.});
     });
@@ -261,7 +271,7 @@ test_loads()
     std::cout << "at most 1e7 evaluations: " << verdict(evaluations, 1e7)
               << std::endl;
 
-    Loads<3> weight;
+    Loads<3> weight   = no_loads<3>();
     weight.body_force = load<3>([](const Point<3> &p) {
       return Tensor<1, 3>({p[2], -3., 0.});
     });
@@ -288,7 +298,7 @@ test_rough_loads()
   make_box<2>({{{0.4, 0.04, 1.}}, {{40, 4, 1}}, 0.}, mesh);
   ElasticProblem<2> problem(mesh, {{left, right}, {}, true});
   const auto        resultant = [&](const std::function<double(double)> &f) {
-    Loads<2> loads;
+    Loads<2> loads       = no_loads<2>();
     loads.tractions[top] = load<2>([&](const Point<2> &p) {
       return Tensor<1, 2>({0., f(p[0])});
     });
@@ -325,7 +335,7 @@ test_rough_loads()
 
   // All points of the side are on the same side of a jump.
   {
-    Loads<2> loads;
+    Loads<2> loads       = no_loads<2>();
     loads.tractions[top] = load<2>([](const Point<2> &p) {
       return Tensor<1, 2>({0., p[1] < 0.04 ? 1. : 2.});
     });
@@ -336,7 +346,7 @@ test_rough_loads()
   }
 
   const auto body = [&](const std::function<double(double)> &f) {
-    Loads<2> loads;
+    Loads<2> loads   = no_loads<2>();
     loads.body_force = load<2>([&](const Point<2> &p) {
       return Tensor<1, 2>({f(p[0]), 0.});
     });
@@ -379,7 +389,7 @@ test_rough_loads()
   make_box<3>({{{0.4, 0.04, 0.04}}, {{4, 1, 1}}, 0.}, solid);
   ElasticProblem<3> bar(solid, {{left, right}, {}, true});
   const auto        on_top = [&](const std::function<double(Point<3>)> &f) {
-    Loads<3> loads;
+    Loads<3> loads       = no_loads<3>();
     loads.tractions[top] = load<3>([&](const Point<3> &p) {
       return Tensor<1, 3>({0., f(p), 0.});
     });
@@ -403,7 +413,7 @@ test_rough_loads()
   });
 
   const auto in_bar = [&](const std::function<double(Point<3>)> &f) {
-    Loads<3> loads;
+    Loads<3> loads   = no_loads<3>();
     loads.body_force = load<3>([&](const Point<3> &p) {
       return Tensor<1, 3>({f(p), 0., 0.});
     });
@@ -533,11 +543,11 @@ test_frames()
         },
         mesh);
       ElasticProblem<2> problem(mesh, {{right}, {left, bottom}, fixed});
-      Loads<2>          loads;
-      loads.tractions[top]  = load<2>([](const Point<2> &p) {
+      Loads<2>          loads = no_loads<2>();
+      loads.tractions[top]    = load<2>([](const Point<2> &p) {
         return Tensor<1, 2>({p[0], 1. + p[0]});
       });
-      loads.tractions[left] = load<2>([](const Point<2> &) {
+      loads.tractions[left]   = load<2>([](const Point<2> &) {
         return Tensor<1, 2>({0.3, 0.2});
       });
       problem.assemble(Material(), loads);
@@ -676,7 +686,7 @@ test_errors()
   print_error([&] { ElasticProblem<3>(body, {{}, {}, true}); });
   print_error([&] { ElasticProblem<2>(mesh, {{left}, {bottom}, false}); });
   print_error([&] {
-    ElasticProblem<2>(mesh, {{left, bottom}, {bottom}, true});
+    ElasticProblem<2>(mesh, {{left, bottom}, {bottom}, true, box_sides<2>()});
   });
   print_error([&] { ElasticProblem<2>(mesh, {{left, 7}, {}, true}); });
   print_error([] {
@@ -696,7 +706,7 @@ test_errors()
   ElasticProblem<2> problem(mesh, paper_conditions());
   const auto        assemble = [&](const types::boundary_id   side,
                             const Load<2>::Expression &traction) {
-    Loads<2> loads;
+    Loads<2> loads        = no_loads<2>();
     loads.tractions[side] = load<2>(traction);
     problem.assemble(Material(), loads);
   };
@@ -713,7 +723,7 @@ test_errors()
   print_error(
     [&] { assemble(9, [](const Point<2> &) { return Tensor<1, 2>(); }); });
   print_error([&] {
-    Loads<2> loads;
+    Loads<2> loads   = no_loads<2>();
     loads.body_force = std::make_shared<Functions::ZeroFunction<2>>(3);
     problem.assemble(Material(), loads);
   });

@@ -14,7 +14,7 @@
 #include <debond/elasticity/multigrid.h>
 #include <debond/elasticity/multigrid_problem.h>
 #include <debond/linear_algebra/condensation.h>
-#include <debond/mesh/crossed_mesh.h>
+#include <debond/mesh/box.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 
@@ -29,15 +29,15 @@ using namespace Debond;
 namespace
 {
   template <int dim>
-  struct Body
+  struct BodyProblem
   {
-    Body(const BoxParameters &box, const MatrixStorage storage)
+    BodyProblem(const BoxParameters &box, const MatrixStorage storage)
     {
       make_box(box, mesh);
       BoundaryConditions conditions;
-      conditions.clamped = {boundary_names<dim>().at("left"),
-                            boundary_names<dim>().at("right")};
-      conditions.contact = {boundary_names<dim>().at("bottom")};
+      conditions.clamped = {box_sides<dim>().at("left"),
+                            box_sides<dim>().at("right")};
+      conditions.contact = {box_sides<dim>().at("bottom")};
       problem = std::make_unique<ElasticProblem<dim>>(mesh, conditions);
 
       // The paper's load, turned with the box.
@@ -51,7 +51,7 @@ namespace
       auto load = std::make_shared<dealii::FunctionParser<dim>>(dim);
       load->initialize(dim == 2 ? "x,y" : "x,y,z", expression, {});
       Loads<dim> loads;
-      loads.tractions[boundary_names<dim>().at("top")] = load;
+      loads.tractions[box_sides<dim>().at("top")] = load;
       Material material;
       material.young_modulus = 69.;
       material.poisson_ratio = 0.33;
@@ -81,16 +81,16 @@ namespace
   void
   test_interpolation(const double rotation)
   {
-    const BoxParameters coarse_box = box_of(1, rotation);
-    const BoxParameters fine_box   = box_of(2, rotation);
-    const Body<dim>     coarse(coarse_box, MatrixStorage::serial);
-    const Body<dim>     fine(fine_box, MatrixStorage::serial);
+    const BoxParameters    coarse_box = box_of(1, rotation);
+    const BoxParameters    fine_box   = box_of(2, rotation);
+    const BodyProblem<dim> coarse(coarse_box, MatrixStorage::serial);
+    const BodyProblem<dim> fine(fine_box, MatrixStorage::serial);
 
     dealii::Vector<double> u(coarse.problem->n_dofs());
     for (unsigned int i = 0; i < u.size(); ++i)
       u(i) = coarse.problem->is_constrained(i) ? 0. : std::sin(1. + i * i);
-    const dealii::Vector<double> v =
-      interpolate_displacement(coarse_box, *coarse.problem, u, *fine.problem);
+    const dealii::Vector<double> v = interpolate_displacement(
+      Box<dim>(coarse_box), *coarse.problem, u, *fine.problem);
     const double energy = coarse.problem->matrix().matrix_norm_square(u);
     check("  difference of the energies",
           std::abs(fine.problem->matrix().matrix_norm_square(v) / energy - 1.),
@@ -100,8 +100,8 @@ namespace
             (coarse.problem->load().l2_norm() * u.l2_norm()),
           1e-11);
 
-    const dealii::Vector<double> back =
-      interpolate_displacement(fine_box, *fine.problem, v, *coarse.problem);
+    const dealii::Vector<double> back = interpolate_displacement(
+      Box<dim>(fine_box), *fine.problem, v, *coarse.problem);
     dealii::Vector<double> difference = back;
     difference -= u;
     check("  difference at the vertices of both",
@@ -115,9 +115,9 @@ namespace
   void
   test_multigrid(const unsigned int n, const double rotation)
   {
-    const BoxParameters box = box_of(n, rotation);
-    const Body<dim>     body(box, MatrixStorage::trilinos);
-    const Body<dim>     serial(box, MatrixStorage::serial);
+    const BoxParameters    box = box_of(n, rotation);
+    const BodyProblem<dim> body(box, MatrixStorage::trilinos);
+    const BodyProblem<dim> serial(box, MatrixStorage::serial);
 
     // Modes are in the null space except next to the supports: the elastic
     // energy of a mode that is cut off there is no larger than that of a

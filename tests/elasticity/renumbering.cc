@@ -8,7 +8,7 @@
 #include <debond/contact/laws/winkler.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/condensation.h>
-#include <debond/mesh/crossed_mesh.h>
+#include <debond/mesh/box.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 
@@ -85,9 +85,9 @@ namespace
            const AdhesiveLaw                &law)
   {
     BoundaryConditions conditions;
-    conditions.clamped = {boundary_names<dim>().at("left"),
-                          boundary_names<dim>().at("right")};
-    conditions.contact = {boundary_names<dim>().at("bottom")};
+    conditions.clamped = {box_sides<dim>().at("left"),
+                          box_sides<dim>().at("right")};
+    conditions.contact = {box_sides<dim>().at("bottom")};
     ElasticProblem<dim> problem(mesh, conditions);
     Loads<dim>          loads;
     const auto          top =
@@ -95,7 +95,7 @@ namespace
     top->initialize(dealii::FunctionParser<dim>::default_variable_names(),
                     traction,
                     {});
-    loads.tractions[boundary_names<dim>().at("top")] = top;
+    loads.tractions[box_sides<dim>().at("top")] = top;
     problem.assemble(Material(), loads);
 
     const ContactQuadrature<dim> quadrature(

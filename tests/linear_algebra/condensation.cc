@@ -6,7 +6,7 @@
 
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/condensation.h>
-#include <debond/mesh/crossed_mesh.h>
+#include <debond/mesh/box.h>
 
 #include <cmath>
 #include <iostream>
@@ -27,8 +27,8 @@ namespace
     dealii::Triangulation<dim> mesh;
     make_box(box, mesh);
     BoundaryConditions conditions;
-    conditions.clamped = {boundary_names<dim>().at(clamped)};
-    conditions.contact = {boundary_names<dim>().at("bottom")};
+    conditions.clamped                       = {box_sides<dim>().at(clamped)};
+    conditions.contact                       = {box_sides<dim>().at("bottom")};
     conditions.tangential_displacement_fixed = dim == 2;
     ElasticProblem<dim> problem(mesh, conditions);
 
@@ -40,7 +40,7 @@ namespace
     const auto   load =
       std::make_shared<dealii::Functions::ConstantFunction<dim>>(q, dim);
     if (clamped == "left")
-      loads.tractions[boundary_names<dim>().at("top")] = load;
+      loads.tractions[box_sides<dim>().at("top")] = load;
     else
       loads.body_force = load;
     problem.assemble(material, loads);

@@ -8,6 +8,7 @@
 #include <deal.II/lac/sparse_direct.h>
 
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/mesh/box.h>
 #include <debond/mesh/crossed_mesh.h>
 
 #include <cmath>
@@ -50,7 +51,7 @@ test_box(const BoxParameters &box)
     expected_volume *= box.lengths[d];
   check("volume", std::abs(volume / expected_volume - 1.), 1e-13);
 
-  for (const auto &[name, id] : boundary_names<dim>())
+  for (const auto &[name, id] : box_sides<dim>())
     {
       // The side normal to direction id / 2.
       std::cout << name << ": " << counts[id] << " faces" << std::endl;

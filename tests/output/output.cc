@@ -10,7 +10,7 @@
 #include <debond/check/largest_values.h>
 #include <debond/contact/laws/none.h>
 #include <debond/contact/laws/winkler.h>
-#include <debond/mesh/crossed_mesh.h>
+#include <debond/mesh/box.h>
 #include <debond/output/summary.h>
 #include <debond/output/tables.h>
 #include <debond/output/vtu.h>
@@ -257,7 +257,7 @@ namespace
     Body(const double young_modulus, const double pressure)
     {
       make_box<dim>({{{2., 1., 1.}}, {{2, 1, 1}}, 0.}, mesh);
-      const auto &names = boundary_names<dim>();
+      const auto &names = box_sides<dim>();
       problem           = std::make_unique<ElasticProblem<dim>>(
         mesh,
         BoundaryConditions{{names.at("left"), names.at("right")},
@@ -662,7 +662,7 @@ namespace
     dealii::Triangulation<2> mesh;
     make_box<2>({{{2., 1., 1.}}, {{2, 1, 1}}, 0.}, mesh);
     ElasticProblem<2> problem(
-      mesh, BoundaryConditions{{boundary_names<2>().at("left")}, {}, true});
+      mesh, BoundaryConditions{{box_sides<2>().at("left")}, {}, true});
     const Material material = {69., 0.3, Material::Hypothesis::plane_strain};
     problem.assemble(material, {});
 

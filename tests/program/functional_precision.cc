@@ -100,7 +100,7 @@ namespace
     for (const auto &cell : problem.dof_handler().active_cell_iterators())
       for (const auto &face : cell->face_iterators())
         if (face->at_boundary() &&
-            face->boundary_id() == boundary_names<2>().at("top"))
+            face->boundary_id() == box_sides<2>().at("top"))
           {
             const Real length = std::abs(static_cast<Real>(face->vertex(1)[0]) -
                                          face->vertex(0)[0]);

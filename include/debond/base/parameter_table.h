@@ -32,9 +32,24 @@ namespace Debond
             const std::string &documentation,
             const std::string &units);
 
+    /// Lets scenes set entries "Section/Name WORDS" beside those declared: what
+    /// @p path, "Section/Name", is to be followed by is not known beforehand.
+    /// Their default is nothing.
+    void
+    declare_family(const std::string &path,
+                   const Pattern     &pattern,
+                   const std::string &documentation,
+                   const std::string &units);
+
+    /// The WORDS of the entries of a family, declared and set ones.
+    std::vector<std::string>
+    family(const std::string &path) const;
+
     /// Reads a scene in ParameterHandler's format ("subsection", "set", "end",
-    /// comments from '#', continuation by '\'), without its "include". Setting
-    /// an entry twice is an error. @p file is used in messages.
+    /// comments from '#', continuation by '\'). "include FILE" outside of
+    /// subsections reads another file first, whose path is relative to this
+    /// one's folder; what it sets can be set again. Setting an entry twice in
+    /// one file is an error. @p file is used in messages.
     void
     read(std::istream &input, const std::string &file);
 
@@ -95,18 +110,36 @@ namespace Debond
     print(std::ostream &out, const bool documentation) const;
 
   private:
+    struct Family
+    {
+      Pattern     pattern;
+      std::string documentation;
+      std::string units;
+    };
+
+    /// Declares @p path if it belongs to a family; otherwise returns false.
+    bool
+    declare_member(const std::string &path);
+
     void
     set(const std::string &path,
         const std::string &value,
         const std::string &location);
 
+    void
+    read_included(const std::string &name,
+                  const std::string &file,
+                  const std::string &location);
+
     dealii::ParameterHandler           handler;
     std::map<std::string, std::string> expected;  ///< by path, in words
+    std::map<std::string, Family>      families;  ///< by path
     std::map<std::string, std::string> locations; ///< by path, where set
     std::set<std::string>              rejected;
     std::set<std::string>              unknown_sections;
     std::vector<std::string>           lines;
     std::string                        file_name;
+    std::vector<std::string>           reading; ///< files that include others
   };
 } // namespace Debond
 

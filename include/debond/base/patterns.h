@@ -71,6 +71,10 @@ namespace Debond
   Pattern
   list_of(const Pattern &pattern);
 
+  /// Any number of any names, separated by commas.
+  Pattern
+  list_of_names();
+
   /// 2 or 3 values, one for each dimension, that fit @p pattern, described as
   /// "2 or 3 times " and the words of the pattern.
   Pattern

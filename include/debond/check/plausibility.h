@@ -3,7 +3,7 @@
 #define debond_check_plausibility_h
 
 #include <debond/check/largest_values.h>
-#include <debond/mesh/crossed_mesh.h>
+#include <debond/mesh/body.h>
 
 #include <string>
 #include <vector>
@@ -15,7 +15,7 @@ namespace Debond
   /// for linear elasticity, or that the mesh is too coarse or too stretched for
   /// a slender body, which P1 elements then make too stiff.
   std::vector<std::string>
-  plausibility_notes(const BoxParameters &box,
+  plausibility_notes(const BodyShape     &shape,
                      const unsigned int   dim,
                      const bool           has_load,
                      const LargestValues &largest);

@@ -18,6 +18,7 @@
 #include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/material.h>
 #include <debond/elasticity/rigid_motions.h>
+#include <debond/mesh/body.h>
 
 #include <array>
 #include <memory>
@@ -35,6 +36,9 @@ namespace Debond
     /// The paper's simplification (7), u_tau = 0 on Gamma_C; otherwise
     /// sigma_tau = 0 there.
     bool tangential_displacement_fixed = true;
+
+    /// For messages.
+    BoundaryNames names = {};
   };
 
 
@@ -217,8 +221,8 @@ namespace Debond
 
   private:
     void
-    clamp(const std::set<dealii::types::boundary_id> &boundaries,
-          std::vector<Support<dim>>                  &supports);
+    clamp(const BoundaryConditions  &conditions,
+          std::vector<Support<dim>> &supports);
 
     void
     clamp_vertex(

@@ -6,8 +6,13 @@
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/lac/vector.h>
 
+#include <debond/mesh/body.h>
+
 #include <map>
 #include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
 
 namespace Debond
 {
@@ -22,6 +27,22 @@ namespace Debond
     std::map<dealii::types::boundary_id,
              std::shared_ptr<const dealii::Function<dim>>>
       tractions;
+
+    /// For messages.
+    BoundaryNames boundary_names = {};
+  };
+
+
+
+  /// A load that cannot be used.
+  class LoadError : public std::invalid_argument
+  {
+  public:
+    LoadError(const std::string                               &message,
+              const std::optional<dealii::types::boundary_id> &boundary);
+
+    /// Of the traction; none for a body force.
+    const std::optional<dealii::types::boundary_id> boundary;
   };
 
 
@@ -45,7 +66,7 @@ namespace Debond
    * of theirs follow the mesh. Where the values in a cell differ by a factor of
    * two, it is bisected towards the largest ones, to see whether they grow.
    *
-   * Throws std::invalid_argument, naming the boundary or the body force, the
+   * Throws LoadError, naming the boundary or the body force, the
    * point and the component, if a load cannot be evaluated, is not finite or is
    * not piecewise smooth; if it grows without bound such that a 1e-10th of a
    * face (of a cell) has more than a thousandth of its load (1/x on a face or

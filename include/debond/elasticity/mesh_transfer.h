@@ -5,22 +5,22 @@
 #include <deal.II/lac/vector.h>
 
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/mesh/crossed_mesh.h>
+#include <debond/mesh/body.h>
 
 namespace Debond
 {
   /**
-   * The P1 displacement u of a problem on the crossed mesh of @p box, at the
+   * The P1 displacement u of a problem on the mesh of @p body, at the
    * vertices of another mesh of the same body: a vector of unknowns of
    * @p target, whose supports and frames may be others. On a mesh whose cells
-   * divide those of @p box the displacement is reproduced exactly (their P1
+   * divide those of @p body the displacement is reproduced exactly (their P1
    * spaces are nested) but for what the target's supports prescribe.
    *
-   * @p box must be the one that the source's triangulation was made from.
+   * @p body must be the one that made the source's triangulation.
    */
   template <int dim>
   dealii::Vector<double>
-  interpolate_displacement(const BoxParameters          &box,
+  interpolate_displacement(const Body<dim>              &body,
                            const ElasticProblem<dim>    &source,
                            const dealii::Vector<double> &u,
                            const ElasticProblem<dim>    &target);

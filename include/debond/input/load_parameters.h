@@ -11,16 +11,12 @@
 
 namespace Debond
 {
-  /// The sides of the box, the last two in 3D only.
-  inline const std::vector<std::string> box_sides =
-    {"left", "right", "bottom", "top", "front", "back"};
-
   /// f_0 and f_2 as expressions in x, y[, z], components separated by ';'.
   struct LoadParameters
   {
     std::string body_force; ///< empty for none
 
-    /// By the name of the side; sides without traction are left out.
+    /// By the name of the boundary; those without traction are left out.
     std::map<std::string, std::string> tractions;
 
     /// Names that the expressions may use.

@@ -8,7 +8,7 @@
 #include <debond/elasticity/material.h>
 #include <debond/input/load_parameters.h>
 #include <debond/input/load_path_parameters.h>
-#include <debond/mesh/crossed_mesh.h>
+#include <debond/mesh/make_body.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/branch_search.h>
@@ -90,7 +90,7 @@ namespace Debond
   {
     std::string                 scene; ///< path of the file
     unsigned int                dimension = 2;
-    BoxParameters               box;
+    BodyParameters              body;
     Material                    material;
     std::set<std::string>       clamped_boundaries;
     std::set<std::string>       contact_boundaries;

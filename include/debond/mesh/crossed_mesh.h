@@ -4,10 +4,6 @@
 
 #include <deal.II/grid/tria.h>
 
-#include <array>
-#include <map>
-#include <string>
-
 namespace Debond
 {
   /**
@@ -29,38 +25,6 @@ namespace Debond
   void
   crossed_subdivision(const dealii::Triangulation<dim> &coarse,
                       dealii::Triangulation<dim>       &crossed);
-
-
-
-  /// The body (0, L_1) x (0, L_2) [x (0, L_3)], turned about the origin.
-  struct BoxParameters
-  {
-    std::array<double, 3>       lengths  = {{0.4, 0.04, 0.04}};
-    std::array<unsigned int, 3> cells    = {{40, 4, 4}};
-    double                      rotation = 0.; ///< degrees, in the x-y plane
-  };
-
-  /// The crossed mesh of a box with the boundary ids of boundary_names().
-  /// Throws std::invalid_argument if a length is not positive or there are no
-  /// cells in a direction.
-  template <int dim>
-  void
-  make_box(const BoxParameters        &parameters,
-           dealii::Triangulation<dim> &crossed);
-
-  /**
-   * The sides of the (unturned) box by name: left and right are the smallest
-   * and largest x, bottom and top y, back and front z (3D only).
-   */
-  template <int dim>
-  const std::map<std::string, dealii::types::boundary_id> &
-  boundary_names();
-
-  /// The name of a boundary for messages: "bottom", or "boundary 7" if that is
-  /// not a side of the box.
-  template <int dim>
-  std::string
-  boundary_name(const dealii::types::boundary_id id);
 } // namespace Debond
 
 #endif

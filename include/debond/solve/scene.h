@@ -26,7 +26,16 @@ namespace Debond
     explicit Scene(const Parameters   &parameters,
                    const MatrixStorage storage = MatrixStorage::serial);
 
+    /// On another mesh: that of @p body, which has the boundaries that the
+    /// parameters name.
+    Scene(const Parameters                &parameters,
+          std::unique_ptr<const Body<dim>> body,
+          const MatrixStorage              storage);
+
     Scene(const Scene &) = delete;
+
+    const Body<dim> &
+    body() const;
 
     const ElasticProblem<dim> &
     problem() const;
@@ -61,6 +70,7 @@ namespace Debond
     void
     add_contact(const Parameters &parameters, const MatrixStorage storage);
 
+    std::unique_ptr<const Body<dim>>                   elastic_body;
     dealii::Triangulation<dim>                         triangulation;
     std::unique_ptr<ElasticProblem<dim>>               elastic_problem;
     std::unique_ptr<AdhesiveLaw>                       adhesive_law;

@@ -6,14 +6,20 @@
 
 namespace Debond
 {
-  /// How large a scene is, from its box alone. Numbers may exceed what an
-  /// integer holds.
+  /// How large a scene is, without its mesh. Numbers may exceed what an integer
+  /// holds.
   struct SceneSize
   {
-    double cells;         ///< triangles or tetrahedra
-    double unknowns;      ///< dim for each vertex
-    double contact_nodes; ///< vertices of the contact sides
+    double    cells;         ///< triangles or tetrahedra
+    double    unknowns;      ///< dim for each vertex
+    double    contact_nodes; ///< vertices of the contact boundaries
+    BodyShape shape;
   };
+
+  template <int dim>
+  SceneSize
+  scene_size(const Body<dim>             &body,
+             const std::set<std::string> &contact_boundaries);
 
   SceneSize
   scene_size(const Parameters &parameters);

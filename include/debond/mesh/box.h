@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_mesh_box_h
+#define debond_mesh_box_h
+
+#include <debond/mesh/body.h>
+
+namespace Debond
+{
+  /// The body (0, L_1) x (0, L_2) [x (0, L_3)], turned about the origin.
+  struct BoxParameters
+  {
+    std::array<double, 3>       lengths  = {{0.4, 0.04, 0.04}};
+    std::array<unsigned int, 3> cells    = {{40, 4, 4}};
+    double                      rotation = 0.; ///< degrees, in the x-y plane
+  };
+
+
+
+  /**
+   * The sides of the (unturned) box by name: left and right are the smallest
+   * and largest x, bottom and top y, back and front z (3D only).
+   */
+  template <int dim>
+  const BoundaryNames &
+  box_sides();
+
+  /// The crossed mesh of a box with the boundary ids of box_sides(). Throws
+  /// std::invalid_argument if a length is not positive or there are no cells in
+  /// a direction.
+  template <int dim>
+  void
+  make_box(const BoxParameters        &parameters,
+           dealii::Triangulation<dim> &crossed);
+
+
+
+  /// A box with its crossed mesh.
+  template <int dim>
+  class Box : public Body<dim>
+  {
+  public:
+    explicit Box(const BoxParameters &parameters);
+
+    const BoundaryNames &
+    boundaries() const override;
+
+    double
+    n_cells() const override;
+
+    double
+    n_vertices() const override;
+
+    double
+    n_vertices_on(const dealii::types::boundary_id boundary) const override;
+
+    BodyShape
+    shape() const override;
+
+    void
+    make_mesh(dealii::Triangulation<dim> &mesh) const override;
+
+    /// Odd numbers of cells are rounded up: a box of one cell is its own
+    /// coarsest.
+    std::unique_ptr<const Body<dim>>
+    coarser() const override;
+
+    std::vector<dealii::Tensor<1, dim>>
+    interpolate(const dealii::Triangulation<dim>          &mesh,
+                const std::vector<dealii::Tensor<1, dim>> &values,
+                const std::vector<dealii::Point<dim>> &points) const override;
+
+  private:
+    const BoxParameters parameters;
+  };
+} // namespace Debond
+
+#endif
