@@ -176,7 +176,7 @@ namespace Debond
     const Operator       restricted(*this);
     const Preconditioner preconditioner(*this);
     ActiveSetRule        rule;
-    Minimisation         result = {};
+    Minimisation         result = {SolverStatus::quadratic_program, 0, 0};
 
     // Between active sets u may be outside K.
     const dealii::Vector<double> previous_u = u;
@@ -228,8 +228,8 @@ namespace Debond
         // A failure before the first step is not told by an exception.
         if (!may_go_on())
           {
-            result.interrupted = true;
-            u                  = previous_u;
+            result.status = SolverStatus::interrupted;
+            u             = previous_u;
             return result;
           }
         if (!solved)
@@ -251,7 +251,7 @@ namespace Debond
           0;
         if (settled && residual <= 2. * required)
           {
-            result.converged = true;
+            result.status = SolverStatus::success;
             return result;
           }
       }

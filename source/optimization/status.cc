@@ -18,11 +18,21 @@ namespace Debond
           return "quadratic program failed";
         case SolverStatus::no_descent:
           return "no descent";
+        case SolverStatus::stagnated:
+          return "stagnated";
         case SolverStatus::not_finite:
           return "not finite";
         case SolverStatus::interrupted:
           return "interrupted";
       }
     return "unknown";
+  }
+
+
+
+  bool
+  can_be_verified(const SolverStatus status)
+  {
+    return status == SolverStatus::success || status == SolverStatus::stagnated;
   }
 } // namespace Debond

@@ -33,9 +33,10 @@ namespace Debond
       "  0  success\n"
       "  1  internal error\n"
       "  2  bad input: command line or scene; nothing is written\n"
-      "  3  not converged: the stop criterion was not met\n"
+      "  3  not converged: the stop criterion or the verification was not met\n"
       "  4  interrupted by SIGINT or SIGTERM; the last iterate is written\n"
-      "  5  the output could not be written\n";
+      "  5  the output could not be written, or another run writes to its "
+      "directory\n";
 
 
 

@@ -198,6 +198,25 @@ namespace Debond
 
 
 
+    /// Where rounding kept the method from its stop criterion, the verification
+    /// decides; what the method left is said in either case.
+    void
+    judge_stagnation(const std::string &failure, SolveResult &result)
+    {
+      if (result.status != SolverStatus::stagnated)
+        return;
+      if (failure.empty())
+        {
+          result.status = SolverStatus::success;
+          result.notes.push_back(result.message);
+          result.message.clear();
+        }
+      else
+        result.message += " " + failure;
+    }
+
+
+
     /// The solver is content, but its result is not a solution.
     void
     reject_result(const std::string &message, Summary &summary)
@@ -362,8 +381,8 @@ namespace Debond
     dealii::Timer       timer;
     LoadPathOutput<dim> path_output(parameters.output, scene.problem());
     std::vector<LoadPathStep<dim>> path;
-    const bool        has_path = !parameters.load_path.factors.empty();
-    const SolveResult result =
+    const bool  has_path = !parameters.load_path.factors.empty();
+    SolveResult result =
       has_path ? follow_load_path<dim>(
                    parameters,
                    scene,
@@ -380,6 +399,9 @@ namespace Debond
                                                   result.u,
                                                   result.load_factor);
     summary.timings_s["verification"]    = timer.wall_time();
+    const std::string failure =
+      verification_message(parameters, verification, path);
+    judge_stagnation(failure, result);
     add_result(result, summary);
     add_verification(verification, summary);
     summary.largest = largest_values(scene.problem(), result.u);
@@ -392,8 +414,6 @@ namespace Debond
     if (!parameters.exact_displacement.empty())
       summary.displacement_error =
         error_of(parameters, scene.problem(), result.u);
-    const std::string failure =
-      verification_message(parameters, verification, path);
     if (result.status == SolverStatus::success && !failure.empty())
       reject_result(failure, summary);
     if (has_path)

@@ -63,7 +63,7 @@ namespace Debond
         const MajoriseMinimiseResult minimum =
           MajoriseMinimise(parameters.majorise_minimise).minimize(problem);
         const double rounding = problem.evaluate().functional_rounding;
-        if (minimum.status != SolverStatus::success ||
+        if (!can_be_verified(minimum.status) ||
             minimum.functional >= point.functional - rounding)
           return false;
         point.s          = s;

@@ -159,15 +159,27 @@ namespace Debond
         step.change_factor = change_factor(last_factor, last, factor);
         step.status        = to_string(minimum.status);
         kinds.push_back(kind_without_search(scene.law(), scene.adhesion(), s));
-        if (minimum.status != SolverStatus::success)
+        if (!can_be_verified(minimum.status))
           step.message = result.message = location(step) + minimum.message;
         else if (!is_verified(verification))
           {
-            step.status  = "not verified";
             step.message = location(step) + failure(verification);
+            if (minimum.status == SolverStatus::success)
+              step.status = "not verified";
+            else
+              result.message = location(step) + minimum.message;
           }
         else
-          step.state.minimum = to_string(kinds.back());
+          {
+            step.state.minimum = to_string(kinds.back());
+            if (minimum.status == SolverStatus::stagnated)
+              {
+                result.status = SolverStatus::success;
+                step.status   = to_string(result.status);
+                if (result.notes.empty())
+                  result.notes.push_back(location(step) + minimum.message);
+              }
+          }
         points.push_back(s);
         steps.push_back(step);
         observer(step, u, verification);

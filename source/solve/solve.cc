@@ -260,7 +260,7 @@ namespace Debond
 
 
 
-    /// Refines a success if rounding has a say in it.
+    /// Refines a result if rounding has a say in it.
     template <int dim>
     void
     refine_result(const Scene<dim> &scene,
@@ -268,7 +268,7 @@ namespace Debond
                   const Watch      &watch,
                   SolveResult      &result)
     {
-      if (result.status != SolverStatus::success)
+      if (!can_be_verified(result.status))
         return;
       const dealii::Timer timer;
       const Vector        before = normal_displacements(scene, result.u);
@@ -322,7 +322,7 @@ namespace Debond
           parameters, scene, condensed, watch, s, result);
       result.parts["contact"] = timer.wall_time();
 
-      if (result.status == SolverStatus::success)
+      if (can_be_verified(result.status))
         {
           timer.restart();
           const Vector followed = s;
@@ -405,7 +405,7 @@ namespace Debond
       notes.insert(notes.end(), result.notes.begin(), result.notes.end());
       search                 = result.minimum;
       search.proof_attempted = false;
-      if (result.status != SolverStatus::success)
+      if (!can_be_verified(result.status))
         notes.push_back(
           "start on the mesh of " + std::to_string(coarse_scene.n_cells()) +
           (dim == 2 ? " triangles: " : " tetrahedra: ") + result.message);

@@ -146,20 +146,20 @@ namespace Debond
 
 
 
-    /// The search of Search = automatic, and how far it can be from the
+    /// The search, and, of Search = automatic, how far it can be from the
     /// minimum.
     template <int dim>
-    class AutomaticSearch
+    class MinimumSearch
     {
     public:
-      AutomaticSearch(const Parameters            &parameters,
-                      const ContactBoundary<dim>  &boundary,
-                      const AdhesiveLaw           &law,
-                      const AdhesionIntegral<dim> &adhesion,
-                      const Condensation          &condensed,
-                      const std::function<bool()> &may_go_on,
-                      dealii::Vector<double>      &s,
-                      WhichMinimum                &result)
+      MinimumSearch(const Parameters            &parameters,
+                    const ContactBoundary<dim>  &boundary,
+                    const AdhesiveLaw           &law,
+                    const AdhesionIntegral<dim> &adhesion,
+                    const Condensation          &condensed,
+                    const std::function<bool()> &may_go_on,
+                    dealii::Vector<double>      &s,
+                    WhichMinimum                &result)
         : parameters(parameters)
         , boundary(boundary)
         , law(law)
@@ -177,8 +177,8 @@ namespace Debond
         result.search_nodes = s.size();
       }
 
-      /// All on the contact nodes themselves, with a look at coarser ones
-      /// before the expensive part.
+      /// Of Search = automatic: all on the contact nodes themselves, with a
+      /// look at coarser ones before the expensive part.
       void
       search_all_nodes()
       {
@@ -205,7 +205,8 @@ namespace Debond
           add_proof(*guided.proof, lumped, condensed, result);
       }
 
-      /// Starts from rest and from all bonds broken, the rest on coarser nodes.
+      /// Of Search = automatic: starts from rest and from all bonds broken, the
+      /// rest on coarser nodes.
       void
       search_coarse_nodes()
       {
@@ -215,15 +216,34 @@ namespace Debond
         starts.maximum_shift = 0;
         starts.flips         = false;
         starts.splits        = false;
-        if (!search(starts) && look_on_coarse_mesh(coarse_look))
+        if (!search_nodes(starts) && look_on_coarse_mesh(coarse_look))
           return;
         look_on_coarse_mesh(largest_automatic_search);
         BranchSearchParameters edges = starts;
         edges.starts                 = false;
         edges.maximum_shift          = 1;
-        search(edges);
+        search_nodes(edges);
         if (separable)
           is_certified();
+      }
+
+      /// With the given moves. Returns whether it found something.
+      bool
+      search_nodes(const BranchSearchParameters &moves)
+      {
+        const unsigned int       before = result.search_improvements;
+        const BranchSearchResult search =
+          search_branches(condensed.schur_complement(),
+                          condensed.load(),
+                          adhesion,
+                          lumped,
+                          graph,
+                          method,
+                          moves,
+                          s,
+                          may_go_on);
+        add_search(search, result.search_nodes, result);
+        return result.search_improvements > before;
       }
 
     private:
@@ -242,25 +262,6 @@ namespace Debond
           return false;
         add_proof(certificate, lumped, condensed, result);
         return true;
-      }
-
-      /// Returns whether it found something.
-      bool
-      search(const BranchSearchParameters &moves)
-      {
-        const unsigned int       before = result.search_improvements;
-        const BranchSearchResult search =
-          search_branches(condensed.schur_complement(),
-                          condensed.load(),
-                          adhesion,
-                          lumped,
-                          graph,
-                          method,
-                          moves,
-                          s,
-                          may_go_on);
-        add_search(search, result.search_nodes, result);
-        return result.search_improvements > before;
       }
 
       /// A search on a coarser contact mesh of at most @p n_nodes. The best of
@@ -455,34 +456,14 @@ namespace Debond
 
     if (wants_search(parameters))
       {
-        if (parameters.search == BondSearchChoice::automatic)
-          {
-            AutomaticSearch<dim> automatic(parameters,
-                                           boundary,
-                                           law,
-                                           adhesion,
-                                           condensed,
-                                           may_go_on,
-                                           s,
-                                           result);
-            if (s.size() <= largest_automatic_search)
-              automatic.search_all_nodes();
-            else
-              automatic.search_coarse_nodes();
-          }
+        MinimumSearch<dim> search(
+          parameters, boundary, law, adhesion, condensed, may_go_on, s, result);
+        if (parameters.search != BondSearchChoice::automatic)
+          search.search_nodes(search_parameters(parameters));
+        else if (s.size() <= largest_automatic_search)
+          search.search_all_nodes();
         else
-          add_search(
-            search_branches(condensed.schur_complement(),
-                            condensed.load(),
-                            adhesion,
-                            lumped_branches(adhesion, s.size(), law.branches()),
-                            neighbours(boundary),
-                            MajoriseMinimise(parameters.majorise_minimise),
-                            search_parameters(parameters),
-                            s,
-                            may_go_on),
-            s.size(),
-            result);
+          search.search_coarse_nodes();
         if (result.kind != MinimumKind::best_known &&
             result.kind != MinimumKind::global)
           result.kind = kind_without_search(law, adhesion, s);

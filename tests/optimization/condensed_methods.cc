@@ -247,7 +247,7 @@ namespace
 
         ActiveSet  active(n, 0);
         const auto result = solve_bound_qp(M, r, b, active);
-        converged         = converged && result.converged;
+        converged         = converged && result.status == SolverStatus::success;
         most_steps        = std::max(most_steps, result.steps);
         worst =
           std::max(worst,
@@ -257,6 +257,62 @@ namespace
     std::cout << "bound QP on 500 problems: converged: " << verdict(converged)
               << ", enumerated minimum to 1e-10: " << verdict(worst, 1e-10)
               << '\n';
+    if (print_figures)
+      std::cout << "  worst " << worst << ", most steps " << most_steps << '\n';
+  }
+
+
+
+  /// A beam of unit length and stiffness on an elastic foundation, clamped at
+  /// one end and pulled off at the other: fourth differences, with which
+  /// exchanges of all wrong indices need not end. The optimality conditions are
+  /// computed in extended precision.
+  void
+  test_beam_qp()
+  {
+    using LongVector        = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
+    bool         converged  = true;
+    double       worst      = 0.;
+    unsigned int most_steps = 0;
+    for (const unsigned int n : {60, 75, 90})
+      for (const double foundation : {1e-3, 1., 1e3})
+        for (const double load : {-1., -10.})
+          for (const bool alternating : {false, true})
+            {
+              const double    h = 1. / n;
+              Eigen::MatrixXd D = Eigen::MatrixXd::Identity(n, n);
+              for (unsigned int i = 1; i < n; ++i)
+                {
+                  D(i, i - 1) = -2.;
+                  if (i > 1)
+                    D(i, i - 2) = 1.;
+                }
+              Eigen::MatrixXd M = D.transpose() * D / (h * h * h);
+              M.diagonal().head(n / 2).array() += foundation * h;
+              Eigen::VectorXd r = Eigen::VectorXd::Zero(n);
+              r(n - 1)          = load;
+
+              ActiveSet active(n);
+              for (unsigned int i = 0; i < n; ++i)
+                active[i] = alternating ? i % 2 : i < 0.4 * n;
+              const BoundQPResult result =
+                solve_bound_qp(M, r, Eigen::VectorXd::Zero(n), active);
+              converged  = converged && result.status == SolverStatus::success;
+              most_steps = std::max(most_steps, result.steps);
+              const LongVector force =
+                r.cast<long double>() -
+                M.cast<long double>() * result.x.cast<long double>();
+              for (unsigned int i = 0; i < n; ++i)
+                worst = std::max(worst,
+                                 static_cast<double>(
+                                   result.x(i) > 0. ? 1.L :
+                                   result.x(i) < 0. ? std::abs(force(i)) :
+                                                      -force(i)) /
+                                   std::abs(load));
+            }
+    std::cout << "bound QP on 36 beams: converged: " << verdict(converged)
+              << ", optimality conditions to 1e-7 of the load: "
+              << verdict(worst, 1e-7) << '\n';
     if (print_figures)
       std::cout << "  worst " << worst << ", most steps " << most_steps << '\n';
   }
@@ -431,6 +487,7 @@ main(int argc, char *[])
 
   std::mt19937_64 engine(20261121);
   test_bound_qp(engine);
+  test_beam_qp();
   test_minimisers(engine);
   test_coarse_start(engine);
 }

@@ -14,6 +14,7 @@ namespace Debond
     line_search,       ///< no point with the required subgradient was found
     quadratic_program, ///< the direction-finding problem could not be solved
     no_descent,        ///< the objective rose by more than rounding
+    stagnated,         ///< rounding keeps it from the stop criterion
     not_finite,        ///< the objective or a subgradient is NaN or infinite
     interrupted        ///< stopped from outside, the last iterate is kept
   };
@@ -21,6 +22,11 @@ namespace Debond
   /// A short name for files ("success", "iteration limit", ...).
   std::string
   to_string(const SolverStatus status);
+
+  /// Whether the end is the best that the solver can do: success, or stagnated,
+  /// where a verification has to decide what the point is worth.
+  bool
+  can_be_verified(const SolverStatus status);
 } // namespace Debond
 
 #endif

@@ -86,6 +86,7 @@ namespace Debond
             text << "proximal bundle method: predicted descent " << v
                  << ", required is at least " << -parameters.epsilon_s << '.';
             break;
+          case SolverStatus::stagnated:  // has no test for it
           case SolverStatus::no_descent: // the line search sees to it
           case SolverStatus::success:
             break;

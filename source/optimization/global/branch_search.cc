@@ -250,12 +250,8 @@ namespace Debond
           return false;
 
         ++result.trials[static_cast<unsigned int>(trial.move)];
-        const BranchState start = state_of(next);
-        // The nodes in contact will mostly be the same.
-        ActiveSet active(point.size());
-        for (unsigned int i = 0; i < point.size(); ++i)
-          active[i] = point(i) == 0.;
-        CondensedProblem             problem(S, g, phi, next, active);
+        const BranchState            start = state_of(next);
+        CondensedProblem             problem(S, g, phi, next);
         const MajoriseMinimiseResult minimum = minimise_trial(method, problem);
         if (minimum.status != SolverStatus::success)
           {

@@ -6,7 +6,6 @@
 #include <debond/optimization/majorise/bound_qp.h>
 
 #include <algorithm>
-#include <set>
 
 namespace Debond
 {
@@ -16,7 +15,9 @@ namespace Debond
     /// benchmark needs at most 12 up to its mesh 640x64.
     constexpr unsigned int maximum_joint_updates = 50;
 
-
+    /// Exchanges in a row that leave no fewer wrong indices, after which
+    /// solve_bound_qp() goes downhill.
+    constexpr unsigned int maximum_idle_exchanges = 10;
 
     /// If that many updates have not found the active set, it may be for
     /// rounding in the solutions: on slender bodies small errors of forces have
@@ -24,6 +25,11 @@ namespace Debond
     constexpr unsigned int updates_before_refinement = 15;
 
     constexpr unsigned int largest_number_of_refinements = 5;
+
+    /// Of a step on the projected path: the part of the first-order descent
+    /// that it has to bring, and how often it is halved.
+    constexpr double       least_descent            = 1e-4;
+    constexpr unsigned int maximum_halvings_of_step = 30;
 
 
 
@@ -73,7 +79,7 @@ namespace Debond
         for (unsigned int k = 0; k < free.size(); ++k)
           x(free[k]) += x_free(k);
       };
-      correct(r - M * x);
+      correct(x.isZero(0.) ? r : Eigen::VectorXd(r - M * x));
       for (unsigned int k = 0; refined && k < largest_number_of_refinements;
            ++k)
         {
@@ -83,6 +89,182 @@ namespace Debond
             break;
         }
     }
+
+
+
+    /// One problem.
+    class BoundQP
+    {
+    public:
+      BoundQP(const Eigen::Ref<const Eigen::MatrixXd> &M,
+              const Eigen::VectorXd                   &r,
+              const Eigen::VectorXd                   &b,
+              ActiveSet                               &active)
+        : M(M)
+        , r(r)
+        , b(b)
+        , active(active)
+        , n(static_cast<unsigned int>(r.size()))
+      {}
+
+      BoundQPResult
+      run()
+      {
+        result.x = b;
+        try
+          {
+            if (!exchange())
+              descend();
+          }
+        catch (const dealii::LACExceptions::ExcSingular &)
+          {
+            result.status = SolverStatus::quadratic_program;
+          }
+        result.x = result.x.cwiseMin(b);
+        return result;
+      }
+
+    private:
+      /// The minimum with the given components free, the others at b.
+      Eigen::VectorXd
+      minimum_on(const std::vector<unsigned int> &free)
+      {
+        const bool      refined = result.steps++ >= updates_before_refinement;
+        Eigen::VectorXd x       = b;
+        for (const unsigned int i : free)
+          x(i) = 0.;
+        solve_on(free, M, r, refined, x);
+        result.mu = refined ? residual(M, r, x) : r - M * x;
+        for (const unsigned int i : free)
+          result.mu(i) = 0.;
+        return x;
+      }
+
+      bool
+      may_go_on() const
+      {
+        return result.steps < std::min(maximum_active_set_steps, 100 + 2 * n);
+      }
+
+      double
+      force_noise(const Eigen::VectorXd &x) const
+      {
+        return active_set_noise *
+               (r.lpNorm<Eigen::Infinity>() +
+                (M.cwiseAbs() * x.cwiseAbs()).lpNorm<Eigen::Infinity>());
+      }
+
+      static double
+      noise(const Eigen::VectorXd &x)
+      {
+        return active_set_noise * x.lpNorm<Eigen::Infinity>();
+      }
+
+      void
+      end(const SolverStatus status)
+      {
+        if (result.x.allFinite())
+          result.status = status;
+      }
+
+      /// All wrong indices at once. Returns false if that does not lead to the
+      /// minimum.
+      bool
+      exchange()
+      {
+        unsigned int fewest = n + 1, idle = 0;
+        while (may_go_on())
+          {
+            std::vector<unsigned int> free, wrong;
+            for (unsigned int i = 0; i < n; ++i)
+              if (active[i] == 0)
+                free.push_back(i);
+            result.x                  = minimum_on(free);
+            const double mu_noise     = force_noise(result.x);
+            const double excess_noise = noise(result.x);
+            for (unsigned int i = 0; i < n; ++i)
+              if (active[i] != 0 ? result.mu(i) < -mu_noise :
+                                   result.x(i) - b(i) > excess_noise)
+                wrong.push_back(i);
+            if (wrong.empty())
+              {
+                end(SolverStatus::success);
+                return true;
+              }
+            if (wrong.size() < fewest)
+              {
+                fewest = static_cast<unsigned int>(wrong.size());
+                idle   = 0;
+              }
+            else if (++idle > maximum_idle_exchanges)
+              return false;
+            for (const unsigned int i : wrong)
+              active[i] = active[i] == 0;
+          }
+        return false;
+      }
+
+      /// From the last point, so that the functional falls with each step.
+      void
+      descend()
+      {
+        Eigen::VectorXd x = result.x.cwiseMin(b);
+        while (may_go_on())
+          {
+            const Eigen::VectorXd     force    = residual(M, r, x);
+            const double              mu_noise = force_noise(x);
+            std::vector<unsigned int> free;
+            for (unsigned int i = 0; i < n; ++i)
+              {
+                active[i] = x(i) >= b(i) && force(i) >= -mu_noise;
+                if (active[i] == 0)
+                  free.push_back(i);
+              }
+            result.x = minimum_on(free);
+            if (((result.x - b).array() <= noise(result.x)).all() &&
+                result.mu.minCoeff() >= -force_noise(result.x))
+              {
+                end(SolverStatus::success);
+                return;
+              }
+            if (!step(result.x - x, force, x))
+              {
+                result.x = x;
+                end(SolverStatus::stagnated);
+                return;
+              }
+          }
+      }
+
+      /// Goes from x along the projection of x + t @p direction, with t = 1 or
+      /// a half, a quarter, ... Returns whether the functional falls.
+      bool
+      step(Eigen::VectorXd        direction,
+           const Eigen::VectorXd &force,
+           Eigen::VectorXd       &x) const
+      {
+        for (unsigned int k = 0; k < maximum_halvings_of_step; ++k)
+          {
+            const Eigen::VectorXd change = (x + direction).cwiseMin(b) - x;
+            const double          slope  = force.dot(change);
+            if (slope > 0. &&
+                0.5 * change.dot(M * change) <= (1. - least_descent) * slope)
+              {
+                x = (x + direction).cwiseMin(b);
+                return true;
+              }
+            direction *= 0.5;
+          }
+        return false;
+      }
+
+      const Eigen::Ref<const Eigen::MatrixXd> &M;
+      const Eigen::VectorXd                   &r;
+      const Eigen::VectorXd                   &b;
+      ActiveSet                               &active;
+      const unsigned int                       n;
+      BoundQPResult                            result;
+    };
   } // namespace
 
 
@@ -118,52 +300,6 @@ namespace Debond
                  const Eigen::VectorXd                   &b,
                  ActiveSet                               &active)
   {
-    const unsigned int n = static_cast<unsigned int>(r.size());
-    BoundQPResult      result;
-    ActiveSetRule      rule;
-    // A set that comes back is one of several between which rounding decides.
-    std::set<ActiveSet> seen;
-    while (result.steps < std::min(maximum_active_set_steps, 100 + 2 * n))
-      {
-        const bool refined = result.steps++ >= updates_before_refinement;
-        std::vector<unsigned int> free;
-        result.x = b;
-        for (unsigned int i = 0; i < n; ++i)
-          if (active[i] == 0)
-            {
-              free.push_back(i);
-              result.x(i) = 0.;
-            }
-
-        try
-          {
-            solve_on(free, M, r, refined, result.x);
-          }
-        catch (const dealii::LACExceptions::ExcSingular &)
-          {
-            return result;
-          }
-
-        result.mu = refined ? residual(M, r, result.x) : r - M * result.x;
-        for (const unsigned int i : free)
-          result.mu(i) = 0.;
-
-        const double largest_force =
-          r.lpNorm<Eigen::Infinity>() +
-          (M.cwiseAbs() * result.x.cwiseAbs()).lpNorm<Eigen::Infinity>();
-        if (rule.update(result.x - b,
-                        result.mu,
-                        active_set_noise * result.x.lpNorm<Eigen::Infinity>(),
-                        active_set_noise * largest_force,
-                        active) == 0 ||
-            (result.steps > maximum_joint_updates &&
-             !seen.insert(active).second))
-          {
-            result.converged = result.x.allFinite();
-            result.x         = result.x.cwiseMin(b);
-            return result;
-          }
-      }
-    return result;
+    return BoundQP(M, r, b, active).run();
   }
 } // namespace Debond

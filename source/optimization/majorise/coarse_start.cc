@@ -108,7 +108,7 @@ namespace Debond
                                                 on_coarsest);
       CondensedProblem             problem(coarse_S, coarse_g, coarse_phi, s);
       const MajoriseMinimiseResult result = method.minimize(problem, monitor);
-      if (result.status != SolverStatus::success)
+      if (!can_be_verified(result.status))
         failures.push_back("start on " + std::to_string(s.size()) +
                            " of the contact nodes: " + result.message);
       if (on_coarsest && level + 1 == end)

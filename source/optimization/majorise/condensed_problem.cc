@@ -23,25 +23,15 @@ namespace Debond
                                      const dealii::Vector<double>     &load,
                                      const PiecewiseQuadratic &nonsmooth,
                                      dealii::Vector<double>   &start)
-    : CondensedProblem(matrix, load, nonsmooth, start, ActiveSet(start.size()))
-  {
-    for (unsigned int i = 0; i < s.size(); ++i)
-      active[i] = s(i) == 0.;
-  }
-
-
-
-  CondensedProblem::CondensedProblem(const dealii::FullMatrix<double> &matrix,
-                                     const dealii::Vector<double>     &load,
-                                     const PiecewiseQuadratic &nonsmooth,
-                                     dealii::Vector<double>   &start,
-                                     const ActiveSet          &first_active)
     : S(matrix)
     , g(load)
     , phi(nonsmooth)
     , s(start)
-    , active(first_active)
-  {}
+    , active(start.size())
+  {
+    for (unsigned int i = 0; i < s.size(); ++i)
+      active[i] = s(i) == 0.;
+  }
 
 
 
@@ -131,6 +121,6 @@ namespace Debond
     const BoundQPResult qp =
       solve_bound_qp(M, r, Eigen::VectorXd::Zero(s.size()), active);
     std::copy(qp.x.begin(), qp.x.end(), s.begin());
-    return {qp.converged, qp.steps, 0};
+    return {qp.status, qp.steps, 0};
   }
 } // namespace Debond

@@ -88,13 +88,13 @@ namespace Debond
               problem.minimise(inner_tolerance);
             iteration.active_set_steps += inner.active_set_steps;
             iteration.linear_iterations += inner.linear_iterations;
-            if (inner.interrupted)
+            if (inner.status == SolverStatus::interrupted)
               {
                 result.status  = SolverStatus::interrupted;
                 result.message = what_is_left(result, parameters.tolerance);
                 return result;
               }
-            if (!inner.converged)
+            if (!can_be_verified(inner.status))
               {
                 std::ostringstream text;
                 text.precision(3);
@@ -112,10 +112,12 @@ namespace Debond
         while (state.functional > upper + state.functional_rounding &&
                inner_tolerance > 0.01 * tolerance);
         // Where the optimality conditions hold, J has no more to fall.
+        const bool has_converged =
+          state.residual <=
+          std::max(parameters.tolerance, state.residual_rounding);
         const bool risen =
           state.functional > upper + state.functional_rounding &&
-          state.residual >
-            std::max(parameters.tolerance, state.residual_rounding);
+          !has_converged;
 
         iteration.functional = result.functional = state.functional;
         iteration.residual = result.residual = state.residual;
@@ -136,9 +138,13 @@ namespace Debond
           }
         // The minimum of the same majorant once more, and no better: this is
         // what rounding leaves.
-        if (!new_majorant && state.residual > 0.5 * previous_residual)
+        if (!new_majorant && !has_converged &&
+            state.residual > 0.5 * previous_residual)
           {
-            result.status = SolverStatus::success;
+            result.status  = SolverStatus::stagnated;
+            result.message = what_is_left(result, parameters.tolerance) +
+                             " To minimise the same majorant again leaves no "
+                             "less.";
             return result;
           }
         interrupted = monitor && !monitor(iteration);

@@ -2,6 +2,8 @@
 #ifndef debond_optimization_majorise_bound_qp_h
 #define debond_optimization_majorise_bound_qp_h
 
+#include <debond/optimization/status.h>
+
 #include <Eigen/Core>
 
 #include <limits>
@@ -50,8 +52,10 @@ namespace Debond
 
   struct BoundQPResult
   {
-    bool            converged = false;
-    unsigned int    steps     = 0; ///< factorisations
+    /// success, stagnated, or quadratic_program if there is no minimum or it
+    /// was not found.
+    SolverStatus    status = SolverStatus::quadratic_program;
+    unsigned int    steps  = 0; ///< factorisations
     Eigen::VectorXd x;
     Eigen::VectorXd mu; ///< multipliers, zero where inactive
   };
@@ -61,8 +65,13 @@ namespace Debond
   /**
    * min 1/2 x'M x - r'x subject to x <= b for a dense symmetric positive
    * definite M, started at @p active, which is updated. Each step solves on
-   * the free components with a Cholesky factorisation. Where rounding makes the
-   * rule go in circles it ends; the caller sees what that leaves.
+   * the free components with a Cholesky factorisation.
+   *
+   * All wrong indices are exchanged at once, as by ActiveSetRule. Matrices of
+   * slender bodies, where fourth derivatives count, can make that wander; when
+   * the number of wrong indices does not fall any more, projected Newton steps
+   * take over (Bertsekas, SIAM J. Control Optim. 20, 1982), with which the
+   * functional falls until rounding hides it. Then the status is stagnated.
    */
   BoundQPResult
   solve_bound_qp(const Eigen::Ref<const Eigen::MatrixXd> &M,

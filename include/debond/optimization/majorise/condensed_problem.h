@@ -16,18 +16,12 @@ namespace Debond
   class CondensedProblem : public MajorantProblem
   {
   public:
-    /// Keeps references; @p s is the current point and has to be <= 0.
+    /// Keeps references; @p s is the current point and has to be <= 0. The
+    /// active set of the first majorant starts where it is zero.
     CondensedProblem(const dealii::FullMatrix<double> &S,
                      const dealii::Vector<double>     &g,
                      const PiecewiseQuadratic         &phi,
                      dealii::Vector<double>           &s);
-
-    /// The active set of the first majorant starts at @p first_active.
-    CondensedProblem(const dealii::FullMatrix<double> &S,
-                     const dealii::Vector<double>     &g,
-                     const PiecewiseQuadratic         &phi,
-                     dealii::Vector<double>           &s,
-                     const ActiveSet                  &first_active);
 
     State
     evaluate() override;

@@ -2,6 +2,8 @@
 #ifndef debond_optimization_majorise_majorant_problem_h
 #define debond_optimization_majorise_majorant_problem_h
 
+#include <debond/optimization/status.h>
+
 namespace Debond
 {
   /**
@@ -42,12 +44,12 @@ namespace Debond
 
     struct Minimisation
     {
-      bool         converged;
+      /// success, stagnated, quadratic_program, or interrupted, with the
+      /// current point as it was before.
+      SolverStatus status;
+
       unsigned int active_set_steps;  ///< linear systems
       unsigned int linear_iterations; ///< for all of them, 0 if factorised
-
-      /// Ended from outside, with the current point as it was before.
-      bool interrupted = false;
     };
 
     /// Moves the current point towards the minimum of the majorant until the
