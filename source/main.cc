@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/benchmark/benchmarks.h>
 #include <debond/program/command_line.h>
 #include <debond/study/command_line.h>
 
@@ -14,14 +13,9 @@ main(int argc, char *argv[])
   std::signal(SIGXFSZ, SIG_IGN);
   try
     {
-      if (Debond::is_study_command_line(argc, argv))
-        return static_cast<int>(Debond::execute_study_command_line(argc, argv));
-      return static_cast<int>(Debond::execute_command_line(
-        argc,
-        argv,
-        {{"benchmarks",
-          "measure what the JSON file lists, see prm/benchmarks/",
-          Debond::run_benchmarks}}));
+      return static_cast<int>(Debond::is_study_command_line(argc, argv) ?
+                                Debond::execute_study_command_line(argc, argv) :
+                                Debond::execute_command_line(argc, argv));
     }
   catch (const std::exception &error)
     {

@@ -48,9 +48,9 @@ namespace Debond
                    const std::string    &output,
                    const unsigned int    repetitions)
   {
-    const std::filesystem::path program =
-      std::filesystem::read_symlink("/proc/self/exe");
-    std::vector<std::string> arguments = {program.string(),
+    const std::filesystem::path folder =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path();
+    std::vector<std::string> arguments = {(folder / "debond").string(),
                                           scene.scene,
                                           "--set",
                                           "Output/Directory=" + output};
@@ -60,9 +60,7 @@ namespace Debond
     const auto results = measure_alternating(
       {{"the program on " + scene.name, [&] { run_program(arguments); }, {}},
        {"the empty program",
-        [&] {
-          run_program({(program.parent_path() / "empty_program").string()});
-        },
+        [&] { run_program({(folder / "empty_program").string()}); },
         {}}},
       repetitions);
 

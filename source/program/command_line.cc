@@ -41,7 +41,7 @@ namespace Debond
 
 
     po::options_description
-    visible_options(const std::vector<FileCommand> &commands)
+    visible_options()
     {
       po::options_description options("Options");
       options.add_options()                              //
@@ -58,10 +58,6 @@ namespace Debond
          po::value<std::vector<std::string>>()->value_name(
            "\"SECTION/PARAMETER=VALUE\""),
          "give a parameter another value than the scene; can be repeated");
-      for (const FileCommand &command : commands)
-        options.add_options()(command.name.c_str(),
-                              po::value<std::string>()->value_name("FILE"),
-                              command.documentation.c_str());
       return options;
     }
 
@@ -118,9 +114,8 @@ namespace Debond
 
 
     ExitCode
-    execute(const po::variables_map        &options,
-            const po::options_description  &visible,
-            const std::vector<FileCommand> &commands)
+    execute(const po::variables_map       &options,
+            const po::options_description &visible)
     {
       if (options.count("help") > 0)
         {
@@ -134,10 +129,6 @@ namespace Debond
                     << "\nbuild type " << build_type() << std::endl;
           return ExitCode::success;
         }
-
-      for (const FileCommand &command : commands)
-        if (options.count(command.name) > 0)
-          return command.execute(options[command.name].as<std::string>());
 
       std::vector<std::string> assignments;
       if (options.count("set") > 0)
@@ -180,9 +171,7 @@ namespace Debond
 
 
   ExitCode
-  execute_command_line(const int                       argc,
-                       const char *const               argv[],
-                       const std::vector<FileCommand> &commands)
+  execute_command_line(const int argc, const char *const argv[])
   {
     // The problem is solved on one core; more threads of deal.II's vector
     // operations would only change rounding.
@@ -190,8 +179,8 @@ namespace Debond
 
     try
       {
-        const po::options_description visible = visible_options(commands);
-        return execute(parse(argc, argv, visible), visible, commands);
+        const po::options_description visible = visible_options();
+        return execute(parse(argc, argv, visible), visible);
       }
     catch (const BadInput &error)
       {

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# check_benchmarks.sh DEBOND PRM_DIRECTORY: the quick benchmarks, what they
+# check_benchmarks.sh BENCHMARK_PROGRAM PRM_DIRECTORY: the quick benchmarks, what they
 # write, and the figures that are the same on all machines.
 . "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 prm=$2
 export OMP_THREAD_LIMIT=1
 
-"$debond" --benchmarks "$prm/benchmarks/quick.json" >log || fail "$(cat log)"
+"$debond" "$prm/benchmarks/quick.json" >log || fail "$(cat log)"
 cd output/benchmarks-quick
 files=(contact_solve growth meshes methods speed_against_error start_up)
 for file in "${files[@]}"; do
@@ -120,7 +120,7 @@ is "$(column contact_solve J 40x4)" "${minima[0]}" 2e-11 "J"
 for text in '{' '{"output": "x", "repetitions": 1}'; do
   echo "$text" >bad.json
   code=0
-  "$debond" --benchmarks bad.json >/dev/null 2>errors || code=$?
+  "$debond" bad.json >/dev/null 2>errors || code=$?
   [ $code -eq 2 ] || fail "exit code $code in place of 2"
   grep -q "bad.json" errors || fail "the file is not named: $(cat errors)"
 done

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/multithread_info.h>
+
+#include <debond/benchmark/benchmarks.h>
+#include <debond/input/parameters.h>
+
+#include <exception>
+#include <iostream>
+#include <string>
+
+int
+main(int argc, char *argv[])
+{
+  using Debond::ExitCode;
+  const std::string name = "debond-benchmark: ";
+  if (argc != 2 || argv[1][0] == '-')
+    {
+      std::cerr << "Usage: debond-benchmark SUITE.json\n\n"
+                   "Measures what the file lists, see prm/benchmarks/.\n";
+      return static_cast<int>(ExitCode::bad_input);
+    }
+
+  // Scenes are solved on one core, as by debond.
+  dealii::MultithreadInfo::set_thread_limit(1);
+  try
+    {
+      return static_cast<int>(Debond::run_benchmarks(argv[1]));
+    }
+  catch (const Debond::BadInput &error)
+    {
+      for (const std::string &line : error.lines)
+        std::cerr << name << line << '\n';
+      return static_cast<int>(ExitCode::bad_input);
+    }
+  catch (const std::exception &error)
+    {
+      std::cerr << name << "internal error: " << error.what() << std::endl;
+      return static_cast<int>(ExitCode::internal_error);
+    }
+}
