@@ -3,7 +3,7 @@
 // is told, unless rounding explains it. One that leaves the same residual again
 // has stagnated, which a search counts as a failure above its second tolerance.
 
-#include <debond/optimization/global/bond_search.h>
+#include <debond/optimization/global/branch_search.h>
 
 #include <iostream>
 
