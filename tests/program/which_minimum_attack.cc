@@ -20,13 +20,12 @@
 #include <random>
 #include <sstream>
 
+#include "../optimization/enumeration.h"
+
 using namespace Debond;
 
 namespace
 {
-  using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
-  using LongVector = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
-
   // Nodes of a small scene: 2^n bond states take their time.
   unsigned int most_nodes = 9;
 
@@ -197,7 +196,7 @@ namespace
   /// The least value over all bond states: for each the minimum for s <= 0 of
   /// a convex quadratic, by principal pivoting.
   long double
-  enumerated_minimum(const LongMatrix &S,
+  minimum_over_bonds(const LongMatrix &S,
                      const LongVector &g,
                      const LongVector &k,
                      const long double M)
@@ -215,29 +214,7 @@ namespace
             A(i, i) += k(i);
           else
             constant += 0.5L * k(i) * M * M;
-        LongVector s(n);
-        for (unsigned int step = 0; step < 10000; ++step)
-          {
-            std::vector<int> free;
-            for (unsigned int i = 0; i < n; ++i)
-              if (active[i] == 0)
-                free.push_back(i);
-            s.setZero();
-            if (!free.empty())
-              {
-                const LongMatrix A_ff = A(free, free);
-                const LongVector g_f  = g(free);
-                const LongVector s_f  = A_ff.llt().solve(g_f);
-                s(free)               = s_f;
-              }
-            const LongVector mu = g - A * s;
-            unsigned int     i  = 0;
-            while (i < n && !(active[i] != 0 ? mu(i) < 0. : s(i) > 0.))
-              ++i;
-            if (i == n)
-              break;
-            active[i] = active[i] == 0;
-          }
+        const LongVector s = pivoted_minimiser(A, g, active);
         least = std::min(least, s.dot(0.5L * (A * s) - g) + constant);
       }
     return least;
@@ -335,7 +312,7 @@ namespace
         LongVector k(n);
         for (unsigned int i = 0; i < n; ++i)
           k(i) = bonds.f[i][0].curvature;
-        minimum = enumerated_minimum(S, g, k, scene.law().bond_threshold());
+        minimum = minimum_over_bonds(S, g, k, scene.law().bond_threshold());
       }
     // The minimum is 0 where all is pressed.
     const double gap =
