@@ -29,6 +29,33 @@ grep -qE '^ +set Proximal weight += 0\.25 ' set.prm || fail "--set has no effect
 "$debond" set.prm --print-parameters >again.prm
 diff set.prm again.prm || fail "The printed parameters read differently."
 
+# An included file, named from the folder of the one that includes it, and what
+# is set again after it; errors name the file they are in.
+mkdir parts
+cat >parts/base.prm <<'SCENE'
+set Dimension = 3
+subsection Material
+  set Young modulus = 7
+  set Poisson ratio = 0.1
+end
+SCENE
+cat >parts/middle.prm <<'SCENE'
+include base.prm
+subsection Material
+  set Poisson ratio = 0.2
+end
+SCENE
+echo 'include parts/middle.prm' >including.prm
+"$debond" including.prm --print-parameters >included.prm
+for line in 'set Dimension += 3' 'set Young modulus += 7' \
+  'set Poisson ratio += 0\.2'; do
+  grep -qE "^ *$line( |$)" included.prm || fail "include: no $line"
+done
+echo 'set Colour = red' >>parts/base.prm
+expect_code 2 "$debond" including.prm
+grep -qE '^debond: parts/base.prm:6: unknown parameter Colour' errors ||
+  fail "an error in an included file: $(cat errors)"
+
 # Every parameter says its units.
 entries=$(grep -cE '^ *set ' defaults.prm)
 units=$(tr -d '\n' <defaults.prm | tr -s '# ' ' ' | grep -o 'Units:' | wc -l)
@@ -57,7 +84,7 @@ grep -qE '^set Dimension += 3 ' log ||
 } >long.prm
 expect_code 2 "$debond" long.prm
 [ "$(wc -c <errors)" -lt 300 ] || fail "a message of $(wc -c <errors) letters"
-rm log errors study.prm mark.prm long.prm
+rm -r log errors study.prm mark.prm long.prm parts including.prm included.prm
 
 [ "$(ls)" = "$(printf '%s\n' again.prm defaults.prm help set.prm version)" ] ||
   fail "Files were written."
