@@ -55,6 +55,10 @@ namespace Debond
         add_note();
       }
 
+    // How long and how thin a body of another shape is, is not known.
+    if (!shape.is_box)
+      return notes;
+
     const double thickness =
       *std::min_element(shape.lengths.begin(), shape.lengths.begin() + dim);
     double shortest = std::numeric_limits<double>::max();

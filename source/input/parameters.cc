@@ -39,7 +39,8 @@ namespace Debond
   void
   declare_parameters(ParameterTable &table)
   {
-    const Parameters defaults;
+    const Parameters     defaults;
+    const BodyParameters body;
 
     table.declare("Dimension",
                   std::to_string(defaults.dimension),
@@ -49,19 +50,19 @@ namespace Debond
 
     table.declare(
       "Mesh/Lengths",
-      to_text(defaults.body.box.lengths, defaults.dimension),
+      to_text(body.box.lengths, defaults.dimension),
       one_for_each_dimension(quantity()),
       "Edge lengths of the box (0, L_1) x (0, L_2) [x (0, L_3)], one for each dimension",
       "length");
     table.declare(
       "Mesh/Cells",
-      to_text(defaults.body.box.cells, defaults.dimension),
+      to_text(body.box.cells, defaults.dimension),
       one_for_each_dimension(whole_number(1, 1000000)),
       "Cells along each edge, before each is cut into 4 triangles (24 tetrahedra)",
       "none");
     table.declare(
       "Mesh/Rotation",
-      shortest_text(defaults.body.box.rotation),
+      shortest_text(body.box.rotation),
       number("in [-360, 360]", [](double x) { return std::abs(x) <= 360.; }),
       "Turns the box about the origin in the x-y plane. The sides keep their names; loads are not turned",
       "degrees");
@@ -218,11 +219,10 @@ namespace Debond
     check_boundaries(ParameterTable              &table,
                      const std::string           &path,
                      const std::set<std::string> &names,
-                     const BoundaryNames         &boundaries)
+                     const std::set<std::string> &boundaries)
     {
-      std::vector<std::string> known;
-      for (const auto &[name, unused] : boundaries)
-        known.push_back(name);
+      const std::vector<std::string> known(boundaries.begin(),
+                                           boundaries.end());
       for (const std::string &name : names)
         if (boundaries.count(name) == 0)
           table.reject(path,
@@ -239,9 +239,7 @@ namespace Debond
       check_length(table, "Mesh/Lengths", dimension);
       check_length(table, "Mesh/Cells", dimension);
 
-      const BoundaryNames boundaries =
-        dimension == 2 ? make_body<2>(parameters.body)->boundaries() :
-                         make_body<3>(parameters.body)->boundaries();
+      const std::set<std::string> boundaries = parameters.body->boundaries();
       check_boundaries(table,
                        "Boundary conditions/Clamped boundaries",
                        parameters.clamped_boundaries,
@@ -308,13 +306,15 @@ namespace Debond
     p.scene     = scene;
     p.dimension = table.get_unsigned("Dimension");
 
+    BodyParameters                 body;
     const std::vector<std::string> lengths = table.get_list("Mesh/Lengths");
     for (std::size_t d = 0; d < lengths.size(); ++d)
-      read_number(lengths[d], p.body.box.lengths[d]);
+      read_number(lengths[d], body.box.lengths[d]);
     const std::vector<std::string> cells = table.get_list("Mesh/Cells");
     for (std::size_t d = 0; d < cells.size(); ++d)
-      p.body.box.cells[d] = static_cast<unsigned int>(std::stoul(cells[d]));
-    p.body.box.rotation = table.get_double("Mesh/Rotation");
+      body.box.cells[d] = static_cast<unsigned int>(std::stoul(cells[d]));
+    body.box.rotation = table.get_double("Mesh/Rotation");
+    p.body            = make_body(p.dimension, body);
 
     p.material.young_modulus = table.get_double("Material/Young modulus");
     p.material.poisson_ratio = table.get_double("Material/Poisson ratio");

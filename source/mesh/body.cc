@@ -6,9 +6,13 @@ namespace Debond
   std::string
   boundary_name(const BoundaryNames &names, const dealii::types::boundary_id id)
   {
-    for (const auto &[name, named_id] : names)
-      if (named_id == id)
-        return name;
-    return "boundary " + std::to_string(id);
+    auto narrowest = names.end();
+    for (auto named = names.begin(); named != names.end(); ++named)
+      if (named->second.count(id) > 0 &&
+          (narrowest == names.end() ||
+           named->second.size() < narrowest->second.size()))
+        narrowest = named;
+    return narrowest != names.end() ? narrowest->first :
+                                      "boundary " + std::to_string(id);
   }
 } // namespace Debond

@@ -132,14 +132,12 @@ namespace Debond
 
 
   template <int dim>
-  const BoundaryNames &
+  const std::map<std::string, dealii::types::boundary_id> &
   box_sides()
   {
-    static const BoundaryNames names = [] {
-      BoundaryNames sides = {{"left", 0},
-                             {"right", 1},
-                             {"bottom", 2},
-                             {"top", 3}};
+    using Sides = std::map<std::string, dealii::types::boundary_id>;
+    static const Sides names = [] {
+      Sides sides = {{"left", 0}, {"right", 1}, {"bottom", 2}, {"top", 3}};
       if (dim == 3)
         {
           sides["back"]  = 4;
@@ -147,6 +145,18 @@ namespace Debond
         }
       return sides;
     }();
+    return names;
+  }
+
+
+
+  template <int dim>
+  BoundaryNames
+  box_boundaries()
+  {
+    BoundaryNames names;
+    for (const auto &[side, id] : box_sides<dim>())
+      names[side] = {id};
     return names;
   }
 
@@ -199,10 +209,22 @@ namespace Debond
 
 
   template <int dim>
-  const BoundaryNames &
+  std::set<std::string>
   Box<dim>::boundaries() const
   {
-    return box_sides<dim>();
+    std::set<std::string> names;
+    for (const auto &[side, unused] : box_sides<dim>())
+      names.insert(side);
+    return names;
+  }
+
+
+
+  template <int dim>
+  std::set<std::string>
+  Box<dim>::regions() const
+  {
+    return {};
   }
 
 
@@ -233,9 +255,10 @@ namespace Debond
 
   template <int dim>
   double
-  Box<dim>::n_vertices_on(const dealii::types::boundary_id boundary) const
+  Box<dim>::n_vertices_on(const std::string &side) const
   {
-    double corners = 1., faces = 1.;
+    const unsigned int boundary = box_sides<dim>().at(side);
+    double             corners = 1., faces = 1.;
     for (unsigned int d = 0; d < dim; ++d)
       if (d != boundary / 2)
         {
@@ -252,6 +275,7 @@ namespace Debond
   Box<dim>::shape() const
   {
     BodyShape shape = {};
+    shape.is_box    = true;
     for (unsigned int d = 0; d < dim; ++d)
       {
         shape.lengths[d] = parameters.lengths[d];
@@ -263,10 +287,11 @@ namespace Debond
 
 
   template <int dim>
-  void
+  PieceNames
   Box<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
   {
     make_box(parameters, mesh);
+    return {box_boundaries<dim>(), {}};
   }
 
 
@@ -305,10 +330,14 @@ namespace Debond
 
 
 
-  template const BoundaryNames &
+  template const std::map<std::string, dealii::types::boundary_id> &
   box_sides<2>();
-  template const BoundaryNames &
+  template const std::map<std::string, dealii::types::boundary_id> &
   box_sides<3>();
+  template BoundaryNames
+  box_boundaries<2>();
+  template BoundaryNames
+  box_boundaries<3>();
   template void
   make_box(const BoxParameters &, dealii::Triangulation<2> &);
   template void

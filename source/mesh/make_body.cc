@@ -3,17 +3,21 @@
 
 namespace Debond
 {
-  template <int dim>
-  std::unique_ptr<const Body<dim>>
-  make_body(const BodyParameters &parameters)
+  namespace
   {
-    return std::make_unique<const Box<dim>>(parameters.box);
+    template <int dim>
+    std::shared_ptr<const BodyDescription>
+    make(const BodyParameters &parameters)
+    {
+      return std::make_shared<const Box<dim>>(parameters.box);
+    }
+  } // namespace
+
+
+
+  std::shared_ptr<const BodyDescription>
+  make_body(const unsigned int dimension, const BodyParameters &parameters)
+  {
+    return dimension == 2 ? make<2>(parameters) : make<3>(parameters);
   }
-
-
-
-  template std::unique_ptr<const Body<2>>
-  make_body(const BodyParameters &);
-  template std::unique_ptr<const Body<3>>
-  make_body(const BodyParameters &);
 } // namespace Debond

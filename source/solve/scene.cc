@@ -11,15 +11,51 @@ namespace Debond
   {
     using Vector = dealii::Vector<double>;
 
+    /// The sum of tractions on faces that have several names.
+    template <int dim>
+    class Sum : public dealii::Function<dim>
+    {
+    public:
+      using Term = std::shared_ptr<const dealii::Function<dim>>;
+
+      Sum(const Term &first, const Term &second)
+        : dealii::Function<dim>(dim)
+        , first(first)
+        , second(second)
+      {}
+
+      double
+      value(const dealii::Point<dim> &point,
+            const unsigned int        component) const override
+      {
+        return first->value(point, component) + second->value(point, component);
+      }
+
+    private:
+      const Term first;
+      const Term second;
+    };
+
+
+
+    template <typename Id>
+    void
+    insert(const std::set<Id> &ids, std::set<Id> &all)
+    {
+      all.insert(ids.begin(), ids.end());
+    }
+
+
+
     BoundaryConditions
     boundary_conditions(const Parameters    &parameters,
                         const BoundaryNames &boundaries)
     {
       BoundaryConditions conditions;
       for (const std::string &name : parameters.clamped_boundaries)
-        conditions.clamped.insert(boundaries.at(name));
+        insert(boundaries.at(name), conditions.clamped);
       for (const std::string &name : parameters.contact_boundaries)
-        conditions.contact.insert(boundaries.at(name));
+        insert(boundaries.at(name), conditions.contact);
       conditions.names = boundaries;
       conditions.tangential_displacement_fixed =
         parameters.tangential_displacement_fixed;
@@ -39,8 +75,15 @@ namespace Debond
         loads.body_force =
           make_function<dim>(parameters.body_force, parameters.constants);
       for (const auto &[name, expression] : parameters.tractions)
-        loads.tractions[boundaries.at(name)] =
-          make_function<dim>(expression, parameters.constants);
+        for (const dealii::types::boundary_id id : boundaries.at(name))
+          {
+            const std::shared_ptr<const dealii::Function<dim>> added =
+              make_function<dim>(expression, parameters.constants);
+            auto &traction = loads.tractions[id];
+            traction       = traction ?
+                               std::make_shared<const Sum<dim>>(traction, added) :
+                               added;
+          }
       return loads;
     }
 
@@ -70,23 +113,25 @@ namespace Debond
 
   template <int dim>
   Scene<dim>::Scene(const Parameters &parameters, const MatrixStorage storage)
-    : Scene(parameters, make_body<dim>(parameters.body), storage)
+    : Scene(parameters,
+            std::dynamic_pointer_cast<const Body<dim>>(parameters.body),
+            storage)
   {}
 
 
 
   template <int dim>
   Scene<dim>::Scene(const Parameters                &parameters,
-                    std::unique_ptr<const Body<dim>> body,
+                    std::shared_ptr<const Body<dim>> body,
                     const MatrixStorage              storage)
     : elastic_body(std::move(body))
   {
-    const BoundaryNames &boundaries = elastic_body->boundaries();
-    dealii::Timer        timer;
-    std::string          entry = "Mesh/Lengths"; // that errors belong to
+    BoundaryNames boundaries;
+    dealii::Timer timer;
+    std::string   entry = "Mesh/Lengths"; // that errors belong to
     try
       {
-        elastic_body->make_mesh(triangulation);
+        boundaries       = elastic_body->make_mesh(triangulation).boundaries;
         seconds_for_mesh = timer.wall_time();
 
         timer.restart();

@@ -36,17 +36,17 @@ namespace Debond
 
 
 
-  template <int dim>
   SceneSize
-  scene_size(const Body<dim>             &body,
+  scene_size(const BodyDescription       &body,
+             const unsigned int           dimension,
              const std::set<std::string> &contact_boundaries)
   {
     SceneSize size;
     size.cells         = body.n_cells();
-    size.unknowns      = dim * body.n_vertices();
+    size.unknowns      = dimension * body.n_vertices();
     size.contact_nodes = 0.;
     for (const std::string &name : contact_boundaries)
-      size.contact_nodes += body.n_vertices_on(body.boundaries().at(name));
+      size.contact_nodes += body.n_vertices_on(name);
     size.shape = body.shape();
     return size;
   }
@@ -56,10 +56,8 @@ namespace Debond
   SceneSize
   scene_size(const Parameters &parameters)
   {
-    if (parameters.dimension == 2)
-      return scene_size(*make_body<2>(parameters.body),
-                        parameters.contact_boundaries);
-    return scene_size(*make_body<3>(parameters.body),
+    return scene_size(*parameters.body,
+                      parameters.dimension,
                       parameters.contact_boundaries);
   }
 
@@ -158,10 +156,4 @@ namespace Debond
     return available;
   }
 
-
-
-  template SceneSize
-  scene_size(const Body<2> &, const std::set<std::string> &);
-  template SceneSize
-  scene_size(const Body<3> &, const std::set<std::string> &);
 } // namespace Debond

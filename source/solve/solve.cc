@@ -385,7 +385,7 @@ namespace Debond
       coarse.prove = false;
 
       const bool factorised =
-        scene_size(*coarse_body, coarse.contact_boundaries).unknowns <=
+        scene_size(*coarse_body, dim, coarse.contact_boundaries).unknowns <=
         largest_coarse_factorisation;
       const Scene<dim> coarse_scene(coarse,
                                     std::move(coarse_body),

@@ -66,7 +66,7 @@ Loads<dim>
 no_loads()
 {
   Loads<dim> loads;
-  loads.boundary_names = box_sides<dim>();
+  loads.boundary_names = box_boundaries<dim>();
   return loads;
 }
 
@@ -686,7 +686,8 @@ test_errors()
   print_error([&] { ElasticProblem<3>(body, {{}, {}, true}); });
   print_error([&] { ElasticProblem<2>(mesh, {{left}, {bottom}, false}); });
   print_error([&] {
-    ElasticProblem<2>(mesh, {{left, bottom}, {bottom}, true, box_sides<2>()});
+    ElasticProblem<2>(mesh,
+                      {{left, bottom}, {bottom}, true, box_boundaries<2>()});
   });
   print_error([&] { ElasticProblem<2>(mesh, {{left, 7}, {}, true}); });
   print_error([] {

@@ -88,22 +88,22 @@ namespace Debond
   /// A scene: what each module is given.
   struct Parameters
   {
-    std::string                 scene; ///< path of the file
-    unsigned int                dimension = 2;
-    BodyParameters              body;
-    Material                    material;
-    std::set<std::string>       clamped_boundaries;
-    std::set<std::string>       contact_boundaries;
-    bool                        tangential_displacement_fixed = true;
-    LoadParameters              loads;
-    LoadPathParameters          load_path;
-    ContactLawParameters        law;
-    ContactQuadratureParameters quadrature;
-    std::string                 quadrature_name;
-    std::string                 method;
-    std::string                 linear_solver;
-    double                      memory_limit = 0.; ///< bytes, 0: what is there
-    ProximalBundleParameters    bundle;
+    std::string                            scene; ///< path of the file
+    unsigned int                           dimension = 2;
+    std::shared_ptr<const BodyDescription> body;
+    Material                               material;
+    std::set<std::string>                  clamped_boundaries;
+    std::set<std::string>                  contact_boundaries;
+    bool                                   tangential_displacement_fixed = true;
+    LoadParameters                         loads;
+    LoadPathParameters                     load_path;
+    ContactLawParameters                   law;
+    ContactQuadratureParameters            quadrature;
+    std::string                            quadrature_name;
+    std::string                            method;
+    std::string                            linear_solver;
+    double                   memory_limit = 0.; ///< bytes, 0: what is there
+    ProximalBundleParameters bundle;
 
     /// File with the first iterate of the Euclidean bundle; empty for zero.
     std::string start;

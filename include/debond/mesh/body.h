@@ -15,12 +15,24 @@
 
 namespace Debond
 {
-  using BoundaryNames = std::map<std::string, dealii::types::boundary_id>;
+  /// The faces and the cells of a mesh that have a name, by their ids. All ids
+  /// occur in the mesh.
+  using BoundaryNames =
+    std::map<std::string, std::set<dealii::types::boundary_id>>;
+  using RegionNames =
+    std::map<std::string, std::set<dealii::types::material_id>>;
 
-  /// The name of a boundary for messages, "boundary 7" if it has none.
+  /// The name of a boundary for messages, the narrowest of those that it has,
+  /// "boundary 7" if it has none.
   std::string
   boundary_name(const BoundaryNames             &names,
                 const dealii::types::boundary_id id);
+
+  struct PieceNames
+  {
+    BoundaryNames boundaries;
+    RegionNames   regions;
+  };
 
 
 
@@ -29,26 +41,29 @@ namespace Debond
   struct BodyShape
   {
     std::array<double, 3> lengths;
-    std::array<double, 3> cells; ///< before they are cut into simplices
+    std::array<double, 3> cells;  ///< before they are cut into simplices
+    bool                  is_box; ///< not only about
   };
 
 
 
   /**
-   * A body: what is known of its mesh without building it, the mesh, coarser
-   * meshes of the same body and the way between them. Numbers of cells and
-   * vertices are double, as what a user writes may exceed an integer.
+   * What is known of a body without building its mesh, in either dimension.
+   * Numbers of cells and vertices are double, as what a user writes may exceed
+   * an integer.
    */
-  template <int dim>
-  class Body
+  class BodyDescription
   {
   public:
-    virtual ~Body() = default;
+    virtual ~BodyDescription() = default;
 
-    /// The pieces of the boundary that a scene can name, with their ids in the
-    /// mesh.
-    virtual const BoundaryNames &
+    /// The pieces of the boundary that a scene can name.
+    virtual std::set<std::string>
     boundaries() const = 0;
+
+    /// The pieces of the body that a scene can name.
+    virtual std::set<std::string>
+    regions() const = 0;
 
     /// Triangles or tetrahedra.
     virtual double
@@ -59,14 +74,23 @@ namespace Debond
 
     /// Of one of boundaries().
     virtual double
-    n_vertices_on(const dealii::types::boundary_id boundary) const = 0;
+    n_vertices_on(const std::string &boundary) const = 0;
 
     virtual BodyShape
     shape() const = 0;
+  };
 
-    /// Fills an empty triangulation. Throws std::invalid_argument if the body
-    /// is none.
-    virtual void
+
+
+  /// A body: its mesh, coarser meshes of the same body and the way between
+  /// them.
+  template <int dim>
+  class Body : public BodyDescription
+  {
+  public:
+    /// Fills an empty triangulation and says which ids the boundaries() and
+    /// regions() have. Throws std::invalid_argument if the body is none.
+    virtual PieceNames
     make_mesh(dealii::Triangulation<dim> &mesh) const = 0;
 
     /// The same body with about half as many cells in each direction, null if

@@ -21,8 +21,12 @@ namespace Debond
    * and largest x, bottom and top y, back and front z (3D only).
    */
   template <int dim>
-  const BoundaryNames &
+  const std::map<std::string, dealii::types::boundary_id> &
   box_sides();
+
+  template <int dim>
+  BoundaryNames
+  box_boundaries();
 
   /// The crossed mesh of a box with the boundary ids of box_sides(). Throws
   /// std::invalid_argument if a length is not positive or there are no cells in
@@ -41,8 +45,12 @@ namespace Debond
   public:
     explicit Box(const BoxParameters &parameters);
 
-    const BoundaryNames &
+    std::set<std::string>
     boundaries() const override;
+
+    /// None.
+    std::set<std::string>
+    regions() const override;
 
     double
     n_cells() const override;
@@ -51,12 +59,12 @@ namespace Debond
     n_vertices() const override;
 
     double
-    n_vertices_on(const dealii::types::boundary_id boundary) const override;
+    n_vertices_on(const std::string &side) const override;
 
     BodyShape
     shape() const override;
 
-    void
+    PieceNames
     make_mesh(dealii::Triangulation<dim> &mesh) const override;
 
     /// Odd numbers of cells are rounded up: a box of one cell is its own

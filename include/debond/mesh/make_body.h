@@ -4,6 +4,8 @@
 
 #include <debond/mesh/box.h>
 
+#include <memory>
+
 namespace Debond
 {
   /// What a scene says of its body.
@@ -12,9 +14,9 @@ namespace Debond
     BoxParameters box;
   };
 
-  template <int dim>
-  std::unique_ptr<const Body<dim>>
-  make_body(const BodyParameters &parameters);
+  /// A Body<dimension>.
+  std::shared_ptr<const BodyDescription>
+  make_body(const unsigned int dimension, const BodyParameters &parameters);
 } // namespace Debond
 
 #endif

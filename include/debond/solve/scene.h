@@ -29,7 +29,7 @@ namespace Debond
     /// On another mesh: that of @p body, which has the boundaries that the
     /// parameters name.
     Scene(const Parameters                &parameters,
-          std::unique_ptr<const Body<dim>> body,
+          std::shared_ptr<const Body<dim>> body,
           const MatrixStorage              storage);
 
     Scene(const Scene &) = delete;
@@ -70,7 +70,7 @@ namespace Debond
     void
     add_contact(const Parameters &parameters, const MatrixStorage storage);
 
-    std::unique_ptr<const Body<dim>>                   elastic_body;
+    std::shared_ptr<const Body<dim>>                   elastic_body;
     dealii::Triangulation<dim>                         triangulation;
     std::unique_ptr<ElasticProblem<dim>>               elastic_problem;
     std::unique_ptr<AdhesiveLaw>                       adhesive_law;

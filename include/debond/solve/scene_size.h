@@ -16,9 +16,9 @@ namespace Debond
     BodyShape shape;
   };
 
-  template <int dim>
   SceneSize
-  scene_size(const Body<dim>             &body,
+  scene_size(const BodyDescription       &body,
+             const unsigned int           dimension,
              const std::set<std::string> &contact_boundaries);
 
   SceneSize
