@@ -93,8 +93,8 @@ namespace Debond
     row["scene"]    = contact.scene.name;
     row["path"]     = choice.linear_solver + " " + std::to_string(dim) + "D";
     row["method"]   = choice.method;
-    row["unknowns"] = problem.n_free_dofs();
-    row["contact_nodes"] = problem.contact_boundary().nodes.size();
+    row["unknowns"] = problem.unknowns().n_free_dofs();
+    row["contact_nodes"] = problem.unknowns().contact().boundary().nodes.size();
     row["status"]        = results[0].front().facts["status"];
     row["iterations"]    = results[0].front().facts["iterations"];
     row["cg_steps"]      = results[0].front().facts["cg_steps"];

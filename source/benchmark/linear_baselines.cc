@@ -99,7 +99,7 @@ namespace Debond
   {
     LinearSolve     result;
     const Multigrid preconditioner(problem);
-    result.u.reinit(problem.n_dofs());
+    result.u.reinit(problem.unknowns().n_dofs());
     dealii::SolverControl control(1000, 1e-10 * problem.load().l2_norm());
     dealii::SolverCG<dealii::Vector<double>> cg(control);
     cg.solve(problem.trilinos_matrix(),

@@ -117,11 +117,11 @@ namespace Debond
     euclidean_iterates(const Parameters &parameters, const Scene<dim> &scene)
     {
       std::vector<Iterate> iterates;
-      Vector               x(scene.problem().n_dofs());
+      Vector               x(scene.problem().unknowns().n_dofs());
       dealii::Timer        timer;
       ProximalBundle<Vector>(parameters.bundle)
         .minimize(scene.functional(),
-                  unilateral_constraint(scene.problem().contact_boundary()),
+                  scene.problem().unknowns().contact().bounds(),
                   x,
                   [&](const BundleIteration &iteration) {
                     iterates.push_back({iteration.iteration,
@@ -277,7 +277,7 @@ namespace Debond
         jobs.push_back(method_job(method, parameters, scene));
 
       MeshResult result;
-      result.unknowns = scene.problem().n_free_dofs();
+      result.unknowns = scene.problem().unknowns().n_free_dofs();
       result.methods  = measure_alternating(jobs, mesh.repetitions);
       result.J_min    = result.methods.front().front().facts["J_min"];
       if (scene.n_cells() != reference.n_cells())

@@ -92,9 +92,9 @@ namespace Debond
                      const dealii::Function<dim>  &exact)
   {
     const dealii::SymmetricTensor<4, dim> stiffness =
-      problem.material().template elasticity_tensor<dim>();
+      problem.fields().material().template elasticity_tensor<dim>();
     const dealii::Vector<double> displacement =
-      problem.cartesian_displacement(u);
+      problem.unknowns().cartesian_displacement(u);
     const dealii::QGaussSimplex<dim> rule(3);
     const double reference_volume = dim == 2 ? 0.5 : 1. / 6.;
 
@@ -110,10 +110,11 @@ namespace Debond
       squares.energy += weight * (strain * (stiffness * strain));
     };
 
-    for (const auto &cell : problem.dof_handler().active_cell_iterators())
+    for (const auto &cell :
+         problem.unknowns().dof_handler().active_cell_iterators())
       {
         const dealii::Tensor<2, dim> gradient =
-          problem.displacement_gradient(cell, displacement);
+          problem.fields().displacement_gradient(cell, displacement);
         // The points of the rule are further than twice that from the faces.
         const double step = 1e-3 * cell->minimum_vertex_distance();
         for (unsigned int q = 0; q < rule.size(); ++q)

@@ -11,10 +11,11 @@ namespace Debond
                  const dealii::Vector<double> &u)
   {
     const dealii::Vector<double> displacement =
-      problem.cartesian_displacement(u);
+      problem.unknowns().cartesian_displacement(u);
 
     LargestValues largest;
-    for (const auto &cell : problem.dof_handler().active_cell_iterators())
+    for (const auto &cell :
+         problem.unknowns().dof_handler().active_cell_iterators())
       {
         for (const unsigned int v : cell->vertex_indices())
           {
@@ -24,12 +25,13 @@ namespace Debond
             largest.displacement =
               std::max(largest.displacement, at_vertex.norm());
           }
-        largest.gradient =
-          std::max(largest.gradient,
-                   problem.displacement_gradient(cell, displacement).norm());
-        largest.von_mises = std::max(largest.von_mises,
-                                     problem.material().template von_mises<dim>(
-                                       problem.stress(cell, displacement)));
+        largest.gradient = std::max(
+          largest.gradient,
+          problem.fields().displacement_gradient(cell, displacement).norm());
+        largest.von_mises =
+          std::max(largest.von_mises,
+                   problem.fields().material().template von_mises<dim>(
+                     problem.fields().stress(cell, displacement)));
       }
     return largest;
   }

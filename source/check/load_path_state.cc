@@ -14,8 +14,8 @@ namespace Debond
                   const dealii::Vector<double> &u,
                   const Verification<dim>      &verification)
   {
-    const auto            &nodes = problem.contact_boundary().nodes;
-    dealii::Vector<double> s(static_cast<unsigned int>(nodes.size()));
+    const auto &nodes = problem.unknowns().contact().boundary().nodes;
+    dealii::Vector<double> s(problem.unknowns().contact().size());
     LoadPathState<dim>     state   = {};
     double                 measure = 0.;
 
@@ -70,11 +70,11 @@ namespace Debond
           other /= measure;
       }
 
-    state.elastic_energy  = problem.elastic_functional(u, 0.);
+    state.elastic_energy  = problem.fields().elastic_functional(u, 0.);
     state.adhesion_energy = adhesion.value(s);
     state.unit_load_work  = problem.load() * u;
     state.functional =
-      problem.elastic_functional(u, factor) + state.adhesion_energy;
+      problem.fields().elastic_functional(u, factor) + state.adhesion_energy;
 
     state.contact_reaction     = verification.contact_reaction;
     state.clamped_reaction     = verification.clamped_reaction;

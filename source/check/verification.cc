@@ -83,7 +83,7 @@ namespace Debond
     law_scales(const AdhesiveLaw                   &law,
                const ContactBoundary<dim>          &boundary,
                const std::vector<ContactNodeState> &nodes,
-               const std::vector<double>           &rounding,
+               const dealii::Vector<double>        &rounding,
                const double                         largest_reaction,
                const double                         largest_displacement)
     {
@@ -105,7 +105,7 @@ namespace Debond
           if (has_bonds)
             scale.force = std::min(scale.force, strength);
           scale.force =
-            std::max(scale.force, digits_above_rounding * rounding[i]);
+            std::max(scale.force, digits_above_rounding * rounding(i));
           if (has_bonds)
             scale.length =
               std::min(scale.length,
@@ -263,17 +263,18 @@ namespace Debond
     largest_residuals(const ElasticProblem<dim>    &problem,
                       const dealii::Vector<double> &residual)
     {
-      std::vector<bool> supported(problem.n_dofs(), false);
-      for (const auto &node : problem.contact_boundary().nodes)
-        supported[node.dof] = true;
+      std::vector<bool> supported(problem.unknowns().n_dofs(), false);
+      for (const auto normal : problem.unknowns().contact().normals())
+        supported[normal] = true;
 
       LargestResiduals result;
-      for (unsigned int i = 0; i < problem.n_dofs(); ++i)
+      for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
         {
-          double &largest = supported[i] || problem.is_constrained(i) ?
-                              result.supported :
-                              result.free;
-          largest         = std::max(largest, std::abs(residual(i)));
+          double &largest =
+            supported[i] || problem.unknowns().is_constrained(i) ?
+              result.supported :
+              result.free;
+          largest = std::max(largest, std::abs(residual(i)));
         }
       return result;
     }
@@ -287,25 +288,26 @@ namespace Debond
                           const double                  load_factor,
                           Verification<dim>            &result)
     {
-      const auto               &nodes = problem.contact_boundary().nodes;
-      std::vector<bool>         is_normal(problem.n_dofs(), false);
+      const auto       &normals = problem.unknowns().contact().normals();
+      std::vector<bool> is_normal(problem.unknowns().n_dofs(), false);
       std::vector<unsigned int> node_of_dof(
-        problem.n_dofs(), dealii::numbers::invalid_unsigned_int);
-      for (unsigned int i = 0; i < nodes.size(); ++i)
+        problem.unknowns().n_dofs(), dealii::numbers::invalid_unsigned_int);
+      for (unsigned int i = 0; i < normals.size(); ++i)
         {
-          is_normal[nodes[i].dof]   = true;
-          node_of_dof[nodes[i].dof] = i;
+          is_normal[normals[i]]   = true;
+          node_of_dof[normals[i]] = i;
         }
 
       // What the supports and the foundation exert is the residual at their
       // degrees of freedom; all of it at a vertex with a contact node comes
       // from the foundation.
-      dealii::Vector<double>    clamped(problem.n_dofs());
-      dealii::Vector<double>    contact(problem.n_dofs());
-      std::vector<unsigned int> component(problem.n_dofs());
+      dealii::Vector<double>    clamped(problem.unknowns().n_dofs());
+      dealii::Vector<double>    contact(problem.unknowns().n_dofs());
+      std::vector<unsigned int> component(problem.unknowns().n_dofs());
       std::vector<std::array<dealii::types::global_dof_index, dim>>
-        vertex_dofs_of_node(nodes.size());
-      for (const auto &cell : problem.dof_handler().active_cell_iterators())
+        vertex_dofs_of_node(normals.size());
+      for (const auto &cell :
+           problem.unknowns().dof_handler().active_cell_iterators())
         for (const unsigned int v : cell->vertex_indices())
           {
             bool has_contact_node = false;
@@ -316,7 +318,7 @@ namespace Debond
               {
                 const auto dof = cell->vertex_dof_index(v, d);
                 component[dof] = d;
-                if (is_normal[dof] || problem.is_constrained(dof))
+                if (is_normal[dof] || problem.unknowns().is_constrained(dof))
                   (has_contact_node ? contact : clamped)(dof) = residual(dof);
                 if (is_normal[dof])
                   for (unsigned int e = 0; e < dim; ++e)
@@ -327,22 +329,22 @@ namespace Debond
 
       const auto resultant = [&](const dealii::Vector<double> &forces) {
         const dealii::Vector<double> cartesian =
-          problem.cartesian_forces(forces);
+          problem.unknowns().cartesian_forces(forces);
         dealii::Tensor<1, dim> sum;
         for (unsigned int i = 0; i < cartesian.size(); ++i)
           sum[component[i]] += cartesian(i);
         return sum;
       };
 
-      result.applied_force    = load_factor * problem.total_load();
+      result.applied_force    = load_factor * problem.fields().total_load();
       result.clamped_reaction = resultant(clamped);
       result.contact_reaction = resultant(contact);
 
       dealii::Vector<double> tangential = contact;
-      for (const auto &node : nodes)
-        tangential(node.dof) = 0.;
+      for (const auto normal : normals)
+        tangential(normal) = 0.;
       result.tangential_reaction = resultant(tangential);
-      tangential                 = problem.cartesian_forces(tangential);
+      tangential = problem.unknowns().cartesian_forces(tangential);
       for (const auto &dofs : vertex_dofs_of_node)
         {
           dealii::Tensor<1, dim> force;
@@ -354,9 +356,9 @@ namespace Debond
       // Resultants can vanish where forces do not.
       dealii::Vector<double> supports = clamped;
       supports += contact;
-      const double scale =
-        supports.l1_norm() +
-        std::abs(load_factor) * problem.applied_nodal_forces().l1_norm();
+      const double scale = supports.l1_norm() +
+                           std::abs(load_factor) *
+                             problem.fields().applied_nodal_forces().l1_norm();
       const double imbalance = (result.applied_force + result.clamped_reaction +
                                 result.contact_reaction)
                                  .norm();
@@ -382,22 +384,22 @@ namespace Debond
         "The displacement is not finite and cannot be verified: the data of the "
         "scene are too large or too small for double precision.");
 
-    const ContactBoundary<dim>  &boundary = problem.contact_boundary();
-    const dealii::Vector<double> residual = problem.residual(u, load_factor);
+    const ContactSpace<dim>     &contact = problem.unknowns().contact();
+    const dealii::Vector<double> residual =
+      problem.fields().residual(u, load_factor);
 
-    dealii::Vector<double> s(static_cast<unsigned int>(boundary.nodes.size()));
-    for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
-      s(i) = u(boundary.nodes[i].dof);
-    const std::vector<Interval> forces = adhesion.force_intervals(s, 0.);
+    const dealii::Vector<double> s               = contact.trace(u);
+    const dealii::Vector<double> normal_residual = contact.trace(residual);
+    const std::vector<Interval>  forces = adhesion.force_intervals(s, 0.);
 
     Verification<dim> result;
     result.state_names = state_names(law);
     result.penetration = 0.;
-    for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
+    for (unsigned int i = 0; i < s.size(); ++i)
       {
         ContactNodeState node;
         node.u_nu          = s(i);
-        node.normal_force  = -residual(boundary.nodes[i].dof);
+        node.normal_force  = -normal_residual(i);
         node.allowed_force = unbounded_above_if(s(i) >= 0., forces[i]);
         result.nodes.push_back(node);
         result.penetration = std::max(result.penetration, s(i));
@@ -405,14 +407,11 @@ namespace Debond
 
     const LargestResiduals       largest = largest_residuals(problem, residual);
     const dealii::Vector<double> rounding =
-      problem.residual_rounding(u, load_factor);
-    std::vector<double> rounding_at_nodes;
-    for (const auto &node : boundary.nodes)
-      rounding_at_nodes.push_back(rounding(node.dof));
+      contact.trace(problem.fields().residual_rounding(u, load_factor));
     const std::vector<LawScale> scales = law_scales(law,
-                                                    boundary,
+                                                    contact.boundary(),
                                                     result.nodes,
-                                                    rounding_at_nodes,
+                                                    rounding,
                                                     largest.supported,
                                                     u.linfty_norm());
     compute_violations(adhesion, s, scales, result.nodes);

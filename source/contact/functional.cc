@@ -9,19 +9,6 @@
 
 namespace Debond
 {
-  template <int dim>
-  UpperBounds
-  unilateral_constraint(const ContactBoundary<dim> &boundary)
-  {
-    UpperBounds bounds;
-    for (const auto &node : boundary.nodes)
-      bounds.indices.push_back(node.dof);
-    bounds.upper.assign(boundary.nodes.size(), 0.);
-    return bounds;
-  }
-
-
-
   /// J along x + t d: a parabola with precomputed coefficients plus the
   /// adhesion of the contact trace.
   template <int dim, typename MatrixType, typename VectorType>
@@ -33,8 +20,8 @@ namespace Debond
       : functional(functional)
       , gradient(memory)
       , A_d(memory)
-      , s(functional.normal_trace(x))
-      , s_d(functional.normal_trace(d))
+      , s(functional.contact.trace(x))
+      , s_d(functional.contact.trace(d))
       , s_t(s)
       , xi(s)
       , adhesion_at_x(functional.adhesion.value(s))
@@ -61,8 +48,7 @@ namespace Debond
       eta = *gradient;
       eta.add(t, *A_d);
       functional.adhesion.subgradient(trace(t), xi);
-      for (unsigned int i = 0; i < xi.size(); ++i)
-        eta(functional.boundary.nodes[i].dof) += xi(i);
+      functional.contact.add_normal(xi, eta);
     }
 
   private:
@@ -96,11 +82,11 @@ namespace Debond
   Functional<dim, MatrixType, VectorType>::Functional(
     const MatrixType            &A,
     const VectorType            &f,
-    const ContactBoundary<dim>  &boundary,
+    const ContactSpace<dim>     &contact,
     const AdhesionIntegral<dim> &adhesion)
     : A(A)
     , f(f)
-    , boundary(boundary)
+    , contact(contact)
     , adhesion(adhesion)
   {}
 
@@ -112,7 +98,7 @@ namespace Debond
   {
     VectorType A_v(v);
     A.vmult(A_v, v);
-    return 0.5 * (A_v * v) - f * v + adhesion.value(normal_trace(v));
+    return 0.5 * (A_v * v) - f * v + adhesion.value(contact.trace(v));
   }
 
 
@@ -124,10 +110,9 @@ namespace Debond
   {
     A.vmult(eta, v);
     eta -= f;
-    dealii::Vector<double> xi(static_cast<unsigned int>(boundary.nodes.size()));
-    adhesion.subgradient(normal_trace(v), xi);
-    for (unsigned int i = 0; i < xi.size(); ++i)
-      eta(boundary.nodes[i].dof) += xi(i);
+    dealii::Vector<double> xi(contact.size());
+    adhesion.subgradient(contact.trace(v), xi);
+    contact.add_normal(xi, eta);
   }
 
 
@@ -142,23 +127,6 @@ namespace Debond
 
 
 
-  template <int dim, typename MatrixType, typename VectorType>
-  dealii::Vector<double>
-  Functional<dim, MatrixType, VectorType>::normal_trace(
-    const VectorType &v) const
-  {
-    dealii::Vector<double> s(static_cast<unsigned int>(boundary.nodes.size()));
-    for (unsigned int i = 0; i < s.size(); ++i)
-      s(i) = v(boundary.nodes[i].dof);
-    return s;
-  }
-
-
-
-  template UpperBounds
-  unilateral_constraint(const ContactBoundary<2> &);
-  template UpperBounds
-  unilateral_constraint(const ContactBoundary<3> &);
   template class Functional<2,
                             dealii::SparseMatrix<double>,
                             dealii::Vector<double>>;

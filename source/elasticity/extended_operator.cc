@@ -10,11 +10,13 @@ namespace Debond
   ExtendedOperator<dim>::ExtendedOperator(
     const ElasticProblem<dim> &elastic_problem)
     : problem(elastic_problem)
-    , lambda(problem.material().template lame_lambda<dim>())
-    , mu(problem.material().shear_modulus())
+    , lambda(problem.fields().material().template lame_lambda<dim>())
+    , mu(problem.fields().material().shear_modulus())
   {
-    cells.reserve(problem.dof_handler().get_triangulation().n_active_cells());
-    for (const auto &dof_cell : problem.dof_handler().active_cell_iterators())
+    cells.reserve(
+      problem.unknowns().dof_handler().get_triangulation().n_active_cells());
+    for (const auto &dof_cell :
+         problem.unknowns().dof_handler().active_cell_iterators())
       {
         Cell cell;
         for (unsigned int v = 0; v <= dim; ++v)
@@ -76,7 +78,7 @@ namespace Debond
       }
 
     ExtendedVector result = forces;
-    for (const auto &frame : problem.contact_frames())
+    for (const auto &frame : problem.unknowns().contact_frames())
       for (unsigned int k = 0; k < dim; ++k)
         {
           result(frame.dofs[k]) = 0.;
@@ -85,7 +87,7 @@ namespace Debond
               frame.to_cartesian[d][k] * forces(frame.dofs[d]);
         }
     for (unsigned int i = 0; i < result.size(); ++i)
-      if (problem.is_constrained(i))
+      if (problem.unknowns().is_constrained(i))
         result(i) = 0.;
     return result;
   }
@@ -122,7 +124,7 @@ namespace Debond
   ExtendedOperator<dim>::cartesian(const ExtendedVector &u) const
   {
     ExtendedVector result = u;
-    for (const auto &frame : problem.contact_frames())
+    for (const auto &frame : problem.unknowns().contact_frames())
       for (unsigned int d = 0; d < dim; ++d)
         {
           result(frame.dofs[d]) = 0.;

@@ -12,13 +12,16 @@ namespace Debond
                            const dealii::Vector<double> &u,
                            const ElasticProblem<dim>    &target)
   {
-    const auto &source_mesh = source.dof_handler().get_triangulation();
-    const auto &target_mesh = target.dof_handler().get_triangulation();
+    const auto &source_mesh =
+      source.unknowns().dof_handler().get_triangulation();
+    const auto &target_mesh =
+      target.unknowns().dof_handler().get_triangulation();
 
     const dealii::Vector<double> displacement =
-      source.cartesian_displacement(u);
+      source.unknowns().cartesian_displacement(u);
     std::vector<dealii::Tensor<1, dim>> at_vertices(source_mesh.n_vertices());
-    for (const auto &cell : source.dof_handler().active_cell_iterators())
+    for (const auto &cell :
+         source.unknowns().dof_handler().active_cell_iterators())
       for (const unsigned int v : cell->vertex_indices())
         for (unsigned int d = 0; d < dim; ++d)
           at_vertices[cell->vertex_index(v)][d] =
@@ -26,13 +29,14 @@ namespace Debond
 
     const std::vector<dealii::Tensor<1, dim>> interpolated =
       body.interpolate(source_mesh, at_vertices, target_mesh.get_vertices());
-    dealii::Vector<double> result(target.n_dofs());
-    for (const auto &cell : target.dof_handler().active_cell_iterators())
+    dealii::Vector<double> result(target.unknowns().n_dofs());
+    for (const auto &cell :
+         target.unknowns().dof_handler().active_cell_iterators())
       for (const unsigned int v : cell->vertex_indices())
         for (unsigned int d = 0; d < dim; ++d)
           result[cell->vertex_dof_index(v, d)] =
             interpolated[cell->vertex_index(v)][d];
-    return target.unknowns(result);
+    return target.unknowns().from_cartesian(result);
   }
 
 

@@ -15,12 +15,13 @@ namespace Debond
   {
     // ML reads the modes one after the other from a plain array, during the
     // initialisation only.
-    std::vector<dealii::Vector<double>> modes = problem.rigid_body_modes();
+    std::vector<dealii::Vector<double>> modes =
+      problem.unknowns().rigid_body_modes();
     for (dealii::Vector<double> &mode : modes)
       for (const dealii::types::global_dof_index i : held)
         mode(i) = 0.;
     std::vector<double> near_null_space;
-    near_null_space.reserve(modes.size() * problem.n_dofs());
+    near_null_space.reserve(modes.size() * problem.unknowns().n_dofs());
     for (const dealii::Vector<double> &mode : modes)
       near_null_space.insert(near_null_space.end(), mode.begin(), mode.end());
 

@@ -36,7 +36,7 @@ namespace Debond
     vmult(dealii::Vector<double> &dst, const dealii::Vector<double> &src) const
     {
       problem.A.vmult(dst, src);
-      const dealii::Vector<double> s     = problem.normal_trace(src);
+      const dealii::Vector<double> s     = problem.contact.trace(src);
       const Eigen::VectorXd        force = problem.E * eigen_view(s);
       for (unsigned int i = 0; i < s.size(); ++i)
         dst(problem.normals[i]) += force(i);
@@ -84,15 +84,16 @@ namespace Debond
     , multigrid(preconditioner)
     , u(start)
     , may_go_on(go_on ? go_on : []() { return true; })
-    , active(elastic_problem.contact_boundary().nodes.size())
+    , contact(elastic_problem.unknowns().contact())
+    , normals(contact.normals())
+    , active(contact.size())
   {
     diagonal.reinit(u);
     for (unsigned int i = 0; i < u.size(); ++i)
       diagonal(i) = A.diag_element(i);
-    for (const auto &node : elastic_problem.contact_boundary().nodes)
-      normals.push_back(node.dof);
-    for (unsigned int i = 0; i < normals.size(); ++i)
-      active[i] = u(normals[i]) == 0.;
+    const dealii::Vector<double> s = contact.trace(u);
+    for (unsigned int i = 0; i < s.size(); ++i)
+      active[i] = s(i) == 0.;
   }
 
 
@@ -103,7 +104,7 @@ namespace Debond
   {
     dealii::Vector<double> internal(u.size());
     A.vmult(internal, u);
-    const dealii::Vector<double> s = normal_trace(u);
+    const dealii::Vector<double> s = contact.trace(u);
     dealii::Vector<double>       xi(s.size());
     phi.subgradient(s, xi);
 
@@ -151,7 +152,7 @@ namespace Debond
   MultigridProblem<dim>::majorise()
   {
     // Phi <= Phi(s_k) + xi'(s - s_k) + 1/2 (s - s_k)'E (s - s_k).
-    const dealii::Vector<double> s = normal_trace(u);
+    const dealii::Vector<double> s = contact.trace(u);
     dealii::Vector<double>       xi(s.size());
     phi.subgradient(s, xi);
     const Eigen::SparseMatrix<double> previous_E   = E;
@@ -261,24 +262,12 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  MultigridProblem<dim>::normal_trace(const dealii::Vector<double> &v) const
-  {
-    dealii::Vector<double> s(static_cast<unsigned int>(normals.size()));
-    for (unsigned int i = 0; i < normals.size(); ++i)
-      s(i) = v(normals[i]);
-    return s;
-  }
-
-
-
-  template <int dim>
   void
   MultigridProblem<dim>::majorant_force(dealii::Vector<double> &force) const
   {
     A.vmult(force, u);
     force.sadd(-1., 1., f);
-    const dealii::Vector<double> s   = normal_trace(u);
+    const dealii::Vector<double> s   = contact.trace(u);
     const Eigen::VectorXd        E_s = E * eigen_view(s);
     for (unsigned int i = 0; i < normals.size(); ++i)
       force(normals[i]) += b_c(i) - E_s(i);

@@ -146,16 +146,14 @@ namespace Debond
     // <A u, u> = <f, u> - <xi, s> at a minimum: contact forces do no work.
     double terms = 0.;
     for (unsigned int i = 0; i < u.size(); ++i)
-      if (!problem.is_constrained(i))
+      if (!problem.unknowns().is_constrained(i))
         terms += problem.diagonal_entry(i) * u(i) * u(i);
     if (terms == 0.)
       return 0.;
     double energy = load_factor * (problem.load() * u);
 
-    const auto            &nodes = problem.contact_boundary().nodes;
-    dealii::Vector<double> s(static_cast<unsigned int>(nodes.size())), xi(s);
-    for (unsigned int i = 0; i < s.size(); ++i)
-      s(i) = u(nodes[i].dof);
+    const dealii::Vector<double> s = problem.unknowns().contact().trace(u);
+    dealii::Vector<double>       xi(s.size());
     phi.subgradient(s, xi);
     for (unsigned int i = 0; i < s.size(); ++i)
       energy -= xi(i) * s(i);
@@ -188,14 +186,12 @@ namespace Debond
         , solver(correction_solver)
         , may_go_on(go_on)
         , result(counts)
+        , normals(problem.unknowns().contact().normals())
         , u(to_extended(start))
         , f(load_factor * to_extended(problem.load()))
       {
-        for (const auto &node : problem.contact_boundary().nodes)
-          {
-            normals.push_back(node.dof);
-            active.push_back(start(node.dof) == 0.);
-          }
+        for (const double s : problem.unknowns().contact().trace(start))
+          active.push_back(s == 0.);
       }
 
       /// Returns false if the majorant is the one of before.
@@ -389,7 +385,7 @@ namespace Debond
       const std::function<bool()> &may_go_on;
       RefinementResult            &result;
 
-      std::vector<dealii::types::global_dof_index> normals;
+      const std::vector<dealii::types::global_dof_index> &normals;
 
       ExtendedVector u;
       ExtendedVector f;

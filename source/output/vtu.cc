@@ -131,17 +131,18 @@ namespace Debond
     contact_displacements(const ElasticProblem<dim>    &problem,
                           const dealii::Vector<double> &u)
     {
-      const auto                  &nodes = problem.contact_boundary().nodes;
+      const auto &normals = problem.unknowns().contact().normals();
       const dealii::Vector<double> cartesian =
-        problem.cartesian_displacement(u);
+        problem.unknowns().cartesian_displacement(u);
 
       std::vector<unsigned int> node_of_dof(
-        problem.n_dofs(), dealii::numbers::invalid_unsigned_int);
-      for (unsigned int i = 0; i < nodes.size(); ++i)
-        node_of_dof[nodes[i].dof] = i;
+        problem.unknowns().n_dofs(), dealii::numbers::invalid_unsigned_int);
+      for (unsigned int i = 0; i < normals.size(); ++i)
+        node_of_dof[normals[i]] = i;
 
-      std::vector<dealii::Tensor<1, dim>> displacements(nodes.size());
-      for (const auto &cell : problem.dof_handler().active_cell_iterators())
+      std::vector<dealii::Tensor<1, dim>> displacements(normals.size());
+      for (const auto &cell :
+           problem.unknowns().dof_handler().active_cell_iterators())
         for (const unsigned int v : cell->vertex_indices())
           for (unsigned int d = 0; d < dim; ++d)
             {
@@ -168,11 +169,11 @@ namespace Debond
 
     const std::string            axes = "xyz";
     const dealii::Vector<double> displacement =
-      problem.cartesian_displacement(u);
+      problem.unknowns().cartesian_displacement(u);
 
     dealii::DataOut<dim> data_out;
     data_out.set_flags(vtk_flags());
-    data_out.attach_dof_handler(problem.dof_handler());
+    data_out.attach_dof_handler(problem.unknowns().dof_handler());
     data_out.add_data_vector(
       displacement,
       std::vector<std::string>(dim, "displacement"),
@@ -181,9 +182,9 @@ namespace Debond
         dealii::DataComponentInterpretation::DataComponentInterpretation>(
         dim, component_is_part_of_vector));
 
-    const Material   &material = problem.material();
+    const Material   &material = problem.fields().material();
     const std::size_t n_cells =
-      problem.dof_handler().get_triangulation().n_active_cells();
+      problem.unknowns().dof_handler().get_triangulation().n_active_cells();
     std::vector<Field> fields;
     const auto         add_field = [&](const std::string &name) {
       fields.emplace_back(name, std::vector<float>());
@@ -207,10 +208,11 @@ namespace Debond
     // In the order of deal.II's patches.
     const dealii::SymmetricTensor<4, dim> compliance =
       dealii::invert(material.template elasticity_tensor<dim>());
-    for (const auto &cell : problem.dof_handler().active_cell_iterators())
+    for (const auto &cell :
+         problem.unknowns().dof_handler().active_cell_iterators())
       {
         const dealii::SymmetricTensor<2, dim> stress =
-          problem.stress(cell, displacement);
+          problem.fields().stress(cell, displacement);
         auto       field = fields.begin();
         const auto add   = [&field](const double number) {
           (field++)->second.push_back(static_cast<float>(number));
@@ -223,7 +225,7 @@ namespace Debond
         add(0.5 * (stress * (compliance * stress)));
       }
 
-    data_out.build_patches(problem.mapping());
+    data_out.build_patches(problem.unknowns().mapping());
     std::ostringstream vtu;
     data_out.write_vtu(vtu);
     write_atomically(file_name, [&](std::ostream &out) {
@@ -241,7 +243,8 @@ namespace Debond
                     const std::string            &file_name)
   {
     constexpr double            nan = std::numeric_limits<double>::quiet_NaN();
-    const ContactBoundary<dim> &boundary = problem.contact_boundary();
+    const ContactBoundary<dim> &boundary =
+      problem.unknowns().contact().boundary();
     const std::vector<dealii::Tensor<1, dim>> displacements =
       contact_displacements(problem, u);
 

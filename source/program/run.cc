@@ -69,13 +69,17 @@ namespace Debond
     summarize_problem(const Parameters &parameters, const Scene<dim> &scene)
     {
       Summary summary;
-      summary.scene                    = parameters.scene;
-      summary.dimension                = dim;
-      summary.cells                    = scene.n_cells();
-      summary.degrees_of_freedom       = scene.problem().n_free_dofs();
-      summary.degrees_of_freedom_paper = scene.problem().n_dofs_paper();
-      summary.contact_nodes            = static_cast<unsigned int>(
-        scene.problem().contact_boundary().nodes.size());
+      summary.scene              = parameters.scene;
+      summary.dimension          = dim;
+      summary.cells              = scene.n_cells();
+      summary.degrees_of_freedom = scene.problem().unknowns().n_free_dofs();
+      summary.contact_nodes      = scene.problem().unknowns().contact().size();
+      // The paper counts the tangential displacements of the contact nodes,
+      // although they are fixed: 710 on its mesh 40x4.
+      summary.degrees_of_freedom_paper =
+        summary.degrees_of_freedom + (parameters.tangential_displacement_fixed ?
+                                        (dim - 1) * summary.contact_nodes :
+                                        0);
       summary.timings_s["mesh"]     = scene.mesh_seconds();
       summary.timings_s["assembly"] = scene.assembly_seconds();
       summary.revision              = git_revision();
@@ -278,7 +282,7 @@ namespace Debond
       if (output.contact_profile)
         {
           files.push_back(path("contact_profile.csv"));
-          write_contact_profile(scene.problem().contact_boundary(),
+          write_contact_profile(scene.problem().unknowns().contact().boundary(),
                                 verification,
                                 files.back());
         }
@@ -354,7 +358,7 @@ namespace Debond
     if (!parameters.exact_displacement.empty())
       error_of(parameters,
                scene.problem(),
-               dealii::Vector<double>(scene.problem().n_dofs()));
+               dealii::Vector<double>(scene.problem().unknowns().n_dofs()));
 
     RunCheckpoints               checkpoints(parameters, choice);
     std::optional<DirectoryLock> lock;
@@ -408,7 +412,7 @@ namespace Debond
     for (const std::string &note : plausibility_notes(
            scene.body().shape(),
            dim,
-           scene.problem().applied_nodal_forces().linfty_norm() > 0.,
+           scene.problem().fields().applied_nodal_forces().linfty_norm() > 0.,
            summary.largest))
       summary.notes.push_back(note);
     if (!parameters.exact_displacement.empty())

@@ -78,7 +78,7 @@ namespace Debond
         condensed.scale_load(factor);
         const WhichMinimum which =
           find_better_minimum(what,
-                              scene.problem().contact_boundary(),
+                              scene.problem().unknowns().contact().boundary(),
                               scene.law(),
                               scene.adhesion(),
                               condensed,

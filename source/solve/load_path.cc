@@ -29,8 +29,7 @@ namespace Debond
         , out(out)
         , steps(steps)
         , condensed(condense_to_contact(scene.problem()))
-        , s(static_cast<unsigned int>(
-            scene.problem().contact_boundary().nodes.size()))
+        , s(scene.problem().unknowns().contact().size())
       {
         result.condition_estimate    = condensed.condition_estimate();
         result.parts["condensation"] = timer.wall_time();

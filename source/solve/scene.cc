@@ -96,13 +96,12 @@ namespace Debond
     read_start(const std::string &file_name, const ElasticProblem<dim> &problem)
     {
       const dealii::Vector<double> u =
-        read_displacement(file_name, problem.n_dofs());
+        read_displacement(file_name, problem.unknowns().n_dofs());
       bool admissible = true;
-      for (unsigned int i = 0; i < problem.n_dofs(); ++i)
-        admissible = admissible && (u(i) == 0. || !problem.is_constrained(i));
-      for (const auto &node : problem.contact_boundary().nodes)
-        admissible = admissible && u(node.dof) <= 0.;
-      if (!admissible)
+      for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
+        admissible =
+          admissible && (u(i) == 0. || !problem.unknowns().is_constrained(i));
+      if (!admissible || !problem.unknowns().contact().is_admissible(u))
         throw std::invalid_argument(
           file_name + " does not satisfy the scene's boundary conditions");
       return u;
@@ -147,7 +146,7 @@ namespace Debond
         entry = "Solver/Euclidean bundle/Start";
         // A run that restarts has its start already.
         if (parameters.start.empty() || parameters.restart)
-          first_iterate.reinit(elastic_problem->n_dofs());
+          first_iterate.reinit(elastic_problem->unknowns().n_dofs());
         else
           first_iterate = read_start(parameters.start, *elastic_problem);
       }
@@ -176,13 +175,15 @@ namespace Debond
       std::make_unique<ContactQuadrature<dim>>(parameters.quadrature,
                                                adhesive_law->kinks());
     adhesion_integral = std::make_unique<AdhesionIntegral<dim>>(
-      elastic_problem->contact_boundary(), *adhesive_law, *quadrature);
+      elastic_problem->unknowns().contact().boundary(),
+      *adhesive_law,
+      *quadrature);
     const auto make_functional = [this](const auto &A) {
       using MatrixType = std::decay_t<decltype(A)>;
       energy           = std::make_unique<Functional<dim, MatrixType, Vector>>(
         A,
         elastic_problem->load(),
-        elastic_problem->contact_boundary(),
+        elastic_problem->unknowns().contact(),
         *adhesion_integral);
     };
     if (storage == MatrixStorage::serial)

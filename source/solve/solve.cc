@@ -127,27 +127,14 @@ namespace Debond
 
 
 
-    /// The normal displacements of the contact nodes.
-    template <int dim>
-    Vector
-    normal_displacements(const Scene<dim> &scene, const Vector &u)
-    {
-      const auto &nodes = scene.problem().contact_boundary().nodes;
-      Vector      s(static_cast<unsigned int>(nodes.size()));
-      for (unsigned int i = 0; i < nodes.size(); ++i)
-        s(i) = u(nodes[i].dof);
-      return s;
-    }
-
-
-
     /// J(u), from the strains.
     template <int dim>
     double
     functional_of(const Scene<dim> &scene, const Vector &u)
     {
-      return scene.problem().elastic_functional(u) +
-             scene.adhesion().value(normal_displacements(scene, u));
+      return scene.problem().fields().elastic_functional(u) +
+             scene.adhesion().value(
+               scene.problem().unknowns().contact().trace(u));
     }
 
 
@@ -161,14 +148,14 @@ namespace Debond
                               SolveResult      &result)
     {
       result.u = scene.start();
-      add_bundle_result(ProximalBundle<Vector>(parameters.bundle)
-                          .minimize(scene.functional(),
-                                    unilateral_constraint(
-                                      scene.problem().contact_boundary()),
-                                    result.u,
-                                    std::ref(watch),
-                                    checkpoints),
-                        result);
+      add_bundle_result(
+        ProximalBundle<Vector>(parameters.bundle)
+          .minimize(scene.functional(),
+                    scene.problem().unknowns().contact().bounds(),
+                    result.u,
+                    std::ref(watch),
+                    checkpoints),
+        result);
     }
 
 
@@ -184,13 +171,12 @@ namespace Debond
                            SolveResult        &result)
     {
       // The condensed functional has the same form on the normals alone.
-      ContactBoundary<dim> normals = scene.problem().contact_boundary();
-      for (unsigned int i = 0; i < normals.nodes.size(); ++i)
-        normals.nodes[i].dof = i;
+      const ContactSpace<dim> contact =
+        scene.problem().unknowns().contact().condensed();
       const Functional<dim, dealii::FullMatrix<double>, Vector> functional(
         condensed.schur_complement(),
         condensed.load(),
-        normals,
+        contact,
         scene.adhesion());
 
       ProximalBundleParameters bundle = parameters.energy_bundle;
@@ -242,7 +228,7 @@ namespace Debond
       s = coarse_start(condensed.schur_complement(),
                        condensed.load(),
                        scene.adhesion(),
-                       coarsen(scene.problem().contact_boundary(),
+                       coarsen(scene.problem().unknowns().contact().boundary(),
                                coarsest_contact_nodes),
                        method,
                        result.notes,
@@ -271,8 +257,9 @@ namespace Debond
       if (!can_be_verified(result.status))
         return;
       const dealii::Timer timer;
-      const Vector        before = normal_displacements(scene, result.u);
-      const std::string   note   = refine_where_needed(
+      const Vector        before =
+        scene.problem().unknowns().contact().trace(result.u);
+      const std::string note = refine_where_needed(
         scene.problem(),
         scene.adhesion(),
         1.,
@@ -282,7 +269,7 @@ namespace Debond
       if (!note.empty())
         result.notes.push_back(note);
       // The search knows other bonds than the result has.
-      const Vector after = normal_displacements(scene, result.u);
+      const Vector after = scene.problem().unknowns().contact().trace(result.u);
       if (after.size() > 0 && (scene.adhesion().curvature(after) -
                                scene.adhesion().curvature(before))
                                   .norm() > 0.)
@@ -304,15 +291,14 @@ namespace Debond
     {
       dealii::Timer              timer;
       const ElasticProblem<dim> &problem = scene.problem();
-      watch.announce("factorisation", problem.n_free_dofs());
+      watch.announce("factorisation", problem.unknowns().n_free_dofs());
       const Condensation condensed = condense_to_contact(problem);
       result.condition_estimate    = condensed.condition_estimate();
       result.parts["condensation"] = timer.wall_time();
 
       watch.add_energy(condensed.energy_at_zero());
       timer.restart();
-      Vector s(
-        static_cast<unsigned int>(problem.contact_boundary().nodes.size()));
+      Vector s(problem.unknowns().contact().size());
       // If no contact node is free, there is no metric either.
       if (method == SolverMethod::energy_bundle && s.size() > 0)
         solve_by_energy_bundle(
@@ -328,7 +314,7 @@ namespace Debond
           const Vector followed = s;
           result.minimum        = find_better_minimum(
             parameters,
-            problem.contact_boundary(),
+            problem.unknowns().contact().boundary(),
             scene.law(),
             scene.adhesion(),
             condensed,
@@ -379,7 +365,7 @@ namespace Debond
     {
       std::unique_ptr<const Body<dim>> coarse_body = scene.body().coarser();
       if (!coarse_body)
-        return Vector(scene.problem().n_dofs());
+        return Vector(scene.problem().unknowns().n_dofs());
       Parameters coarse = parameters;
       coarse.start.clear(); // belongs to the finest mesh
       coarse.prove = false;
@@ -442,11 +428,12 @@ namespace Debond
       // To know them saves a third of the iterations in 2D (640x64), but costs
       // a quarter more in 3D (80x8x8), where few aggregates lie inside.
       std::vector<dealii::types::global_dof_index> held;
+      const auto &normals = scene.problem().unknowns().contact().normals();
       if (dim == 2)
-        for (const auto &node : scene.problem().contact_boundary().nodes)
-          if (result.u(node.dof) == 0.)
-            held.push_back(node.dof);
-      watch.announce("multigrid", scene.problem().n_free_dofs());
+        for (const auto normal : normals)
+          if (result.u(normal) == 0.)
+            held.push_back(normal);
+      watch.announce("multigrid", scene.problem().unknowns().n_free_dofs());
       const Multigrid multigrid(scene.problem(), held);
       result.parts["multigrid setup"] = timer.wall_time();
 
@@ -461,9 +448,6 @@ namespace Debond
                           result);
       result.parts["contact"] = timer.wall_time();
 
-      std::vector<dealii::types::global_dof_index> normals;
-      for (const auto &node : scene.problem().contact_boundary().nodes)
-        normals.push_back(node.dof);
       MultigridCorrection solver(multigrid, normals);
       refine_result(scene, solver, watch, result);
     }
@@ -509,7 +493,8 @@ namespace Debond
       result.minimum.kind =
         kind_without_search(scene.law(),
                             scene.adhesion(),
-                            normal_displacements(scene, result.u));
+                            scene.problem().unknowns().contact().trace(
+                              result.u));
     result.functional = functional_of(scene, result.u);
     return result;
   }

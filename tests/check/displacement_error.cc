@@ -133,7 +133,7 @@ namespace
                                  problem.load(),
                                  {},
                                  [&](const unsigned int i) {
-                                   return problem.is_constrained(i);
+                                   return problem.unknowns().is_constrained(i);
                                  });
     const dealii::Vector<double> u = condensed.expand(dealii::Vector<double>());
 
@@ -142,13 +142,14 @@ namespace
     const auto              norm  = [&](const dealii::Vector<double>       &v,
                           const dealii::VectorTools::NormType kind) {
       dealii::Vector<double> cells(mesh.n_active_cells());
-      dealii::VectorTools::integrate_difference(problem.mapping(),
-                                                problem.dof_handler(),
-                                                v,
-                                                exact,
-                                                cells,
-                                                dealii::QGaussSimplex<2>(4),
-                                                kind);
+      dealii::VectorTools::integrate_difference(
+        problem.unknowns().mapping(),
+        problem.unknowns().dof_handler(),
+        v,
+        exact,
+        cells,
+        dealii::QGaussSimplex<2>(4),
+        kind);
       return cells.l2_norm();
     };
     const dealii::Vector<double> zero(u.size());

@@ -112,9 +112,9 @@ random_field(const ElasticProblem<dim> &problem)
 {
   std::mt19937                           generator(1);
   std::uniform_real_distribution<double> uniform(-1., 1.);
-  Vector<double>                         u(problem.n_dofs());
+  Vector<double>                         u(problem.unknowns().n_dofs());
   for (unsigned int i = 0; i < u.size(); ++i)
-    u[i] = problem.is_constrained(i) ? 0. : uniform(generator);
+    u[i] = problem.unknowns().is_constrained(i) ? 0. : uniform(generator);
   return u;
 }
 
@@ -132,11 +132,12 @@ test_benchmark()
       Triangulation<2> mesh;
       make_box(box(n), mesh);
       const ElasticProblem<2> problem(mesh, paper_conditions());
-      std::cout << 10 * n << "x" << n << ": " << problem.n_dofs_paper()
-                << " degrees of freedom as the paper counts, "
-                << problem.n_free_dofs() << " free, "
-                << problem.contact_boundary().nodes.size() << " contact nodes"
-                << std::endl;
+      const unsigned int      n_free = problem.unknowns().n_free_dofs();
+      std::cout << 10 * n << "x" << n << ": "
+                << n_free + problem.unknowns().contact().size()
+                << " degrees of freedom as the paper counts, " << n_free
+                << " free, " << problem.unknowns().contact().size()
+                << " contact nodes" << std::endl;
     }
 
   // External work without contact and adhesion, from an independent code.
@@ -173,7 +174,7 @@ test_rotation(const bool fixed)
 
       // The same node: the order is that of the turned positions.
       normal_displacements[k] =
-        u[problem.contact_boundary().nodes[dim == 2 ? 9 : 25].dof];
+        u[problem.unknowns().contact().normals()[dim == 2 ? 9 : 25]];
     }
   check(std::string(dim == 2 ? "2D" : "3D") + ", tangential displacement " +
           (fixed ? "fixed" : "free"),
@@ -212,11 +213,13 @@ test_loads()
     Loads<2>          loads = paper_loads<2>();
     problem.assemble(Material(), loads);
     check("2D jump, resultant",
-          std::abs(problem.total_load()[1] / 0.069 - 1.),
+          std::abs(problem.fields().total_load()[1] / 0.069 - 1.),
           1e-12);
-    check("2D jump, transverse", std::abs(problem.total_load()[0]), 0.);
+    check("2D jump, transverse",
+          std::abs(problem.fields().total_load()[0]),
+          0.);
     check("2D jump, moment",
-          std::abs(work<2>(problem.dof_handler(),
+          std::abs(work<2>(problem.unknowns().dof_handler(),
                            loads,
                            [](const Point<2> &p) {
                              return Tensor<1, 2>({0., p[0]});
@@ -231,7 +234,7 @@ test_loads()
     });
     problem.assemble(Material(), loads);
     check("2D jump, other units",
-          std::abs(problem.total_load()[1] / (6.9e8 * 0.12345) - 1.),
+          std::abs(problem.fields().total_load()[1] / (6.9e8 * 0.12345) - 1.),
           1e-12);
 
     // Quadratic body force times linear displacement is beyond the rule,
@@ -241,7 +244,7 @@ test_loads()
       return Tensor<1, 2>({p[0], -3.});
     });
     check("2D body force",
-          std::abs(work<2>(problem.dof_handler(),
+          std::abs(work<2>(problem.unknowns().dof_handler(),
                            weight,
                            [](const Point<2> &p) {
                              return Tensor<1, 2>({p[0], 1.});
@@ -264,7 +267,7 @@ test_loads()
     problem.assemble(Material(), loads);
     const double loaded = 0.04 * (0.2 - 0.7 * 0.02);
     check("3D jump, resultant",
-          std::abs(problem.total_load()[1] /
+          std::abs(problem.fields().total_load()[1] /
                      (0.69 * loaded - 0.345 * (0.016 - loaded)) -
                    1.),
           1e-10);
@@ -276,7 +279,7 @@ test_loads()
       return Tensor<1, 3>({p[2], -3., 0.});
     });
     check("3D body force",
-          std::abs(work<3>(problem.dof_handler(),
+          std::abs(work<3>(problem.unknowns().dof_handler(),
                            weight,
                            [](const Point<3> &p) {
                              return Tensor<1, 3>({p[2], 1., 0.});
@@ -303,7 +306,7 @@ test_rough_loads()
       return Tensor<1, 2>({0., f(p[0])});
     });
     problem.assemble(Material(), loads);
-    return problem.total_load()[1];
+    return problem.fields().total_load()[1];
   };
   const auto check_integral = [&](const std::string                   &name,
                                   const std::function<double(double)> &f,
@@ -341,7 +344,7 @@ test_rough_loads()
     });
     problem.assemble(Material(), loads);
     check("a jump at the side's own y",
-          std::abs(problem.total_load()[1] / 0.8 - 1.),
+          std::abs(problem.fields().total_load()[1] / 0.8 - 1.),
           1e-12);
   }
 
@@ -351,7 +354,7 @@ test_rough_loads()
       return Tensor<1, 2>({f(p[0]), 0.});
     });
     problem.assemble(Material(), loads);
-    return problem.total_load()[0];
+    return problem.fields().total_load()[0];
   };
   // The rule has no points near the end: 1 % is what it can.
   check("1/sqrt(x) in the body",
@@ -394,7 +397,7 @@ test_rough_loads()
       return Tensor<1, 3>({0., f(p), 0.});
     });
     bar.assemble(Material(), loads);
-    return bar.total_load()[1];
+    return bar.fields().total_load()[1];
   };
   check("1/sqrt(x) in 3D",
         std::abs(
@@ -418,7 +421,7 @@ test_rough_loads()
       return Tensor<1, 3>({f(p), 0., 0.});
     });
     bar.assemble(Material(), loads);
-    return bar.total_load()[0];
+    return bar.fields().total_load()[0];
   };
   check("1/r in the body in 3D",
         in_bar([](const Point<3> &p) { return 1. / p.norm(); }) > 0.);
@@ -441,13 +444,13 @@ test_algebra(const ElasticProblem<dim> &problem, const std::string &name)
   std::cout << name << std::endl;
 
   // A u - f, and the reactions of the supports besides.
-  Vector<double> expected(problem.n_dofs());
+  Vector<double> expected(problem.unknowns().n_dofs());
   problem.matrix().vmult(expected, u);
   expected -= problem.load();
-  const Vector<double> residual = problem.residual(u);
+  const Vector<double> residual = problem.fields().residual(u);
   double               error = 0., reaction = 0.;
-  for (unsigned int i = 0; i < problem.n_dofs(); ++i)
-    if (problem.is_constrained(i))
+  for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
+    if (problem.unknowns().is_constrained(i))
       reaction = std::max(reaction, std::abs(residual[i]));
     else
       error = std::max(error, std::abs(residual[i] - expected[i]));
@@ -455,10 +458,11 @@ test_algebra(const ElasticProblem<dim> &problem, const std::string &name)
   std::cout << "reactions: " << verdict(reaction > 0.) << std::endl;
 
   // Internal forces are in balance, so the residual's resultant is the load's.
-  const Vector<double> forces = problem.cartesian_forces(residual);
+  const Vector<double> forces = problem.unknowns().cartesian_forces(residual);
   Tensor<1, dim>       resultant;
-  std::vector<bool>    visited(problem.n_dofs(), false);
-  for (const auto &cell : problem.dof_handler().active_cell_iterators())
+  std::vector<bool>    visited(problem.unknowns().n_dofs(), false);
+  for (const auto &cell :
+       problem.unknowns().dof_handler().active_cell_iterators())
     for (const unsigned int v : cell->vertex_indices())
       for (unsigned int d = 0; d < dim; ++d)
         {
@@ -468,11 +472,12 @@ test_algebra(const ElasticProblem<dim> &problem, const std::string &name)
           visited[dof] = true;
         }
   check("balance of forces",
-        (resultant + problem.total_load()).norm() / forces.l1_norm(),
+        (resultant + problem.fields().total_load()).norm() / forces.l1_norm(),
         1e-13);
 
   // Both pairs of components have the same work.
-  const Vector<double> displacement = problem.cartesian_displacement(u);
+  const Vector<double> displacement =
+    problem.unknowns().cartesian_displacement(u);
   check("work",
         std::abs(displacement * forces - u * residual) /
           (displacement.l2_norm() * forces.l2_norm()),
@@ -480,13 +485,17 @@ test_algebra(const ElasticProblem<dim> &problem, const std::string &name)
 
   // The energy of the cells.
   double energy = 0.;
-  for (const auto &cell : problem.dof_handler().active_cell_iterators())
+  for (const auto &cell :
+       problem.unknowns().dof_handler().active_cell_iterators())
     {
-      const SymmetricTensor<2, dim> stress = problem.stress(cell, displacement);
-      energy += 0.5 * cell->measure() *
-                (stress *
-                 (invert(problem.material().template elasticity_tensor<dim>()) *
-                  stress));
+      const SymmetricTensor<2, dim> stress =
+        problem.fields().stress(cell, displacement);
+      energy +=
+        0.5 * cell->measure() *
+        (stress *
+         (invert(
+            problem.fields().material().template elasticity_tensor<dim>()) *
+          stress));
     }
   check("strain energy",
         std::abs(0.5 * problem.matrix().matrix_norm_square(u) / energy - 1.),
@@ -502,27 +511,30 @@ test_algebra(const ElasticProblem<dim> &problem, const std::string &name)
 
   // Normal displacements of the contact nodes and of the faces.
   double normal_error = 0.;
-  for (const auto &face : problem.contact_boundary().faces)
+  for (const auto &face : problem.unknowns().contact().boundary().faces)
     for (unsigned int v = 0; v < dim; ++v)
       if (face.nodes[v] != numbers::invalid_unsigned_int)
         {
-          const auto &node = problem.contact_boundary().nodes[face.nodes[v]];
+          const auto &node =
+            problem.unknowns().contact().boundary().nodes[face.nodes[v]];
           normal_error =
             std::max(normal_error, node.position.distance(face.vertices[v]));
           if (node.normal * face.normal < std::cos(numbers::PI / 6.))
             normal_error = 1.;
         }
-  for (const auto &cell : problem.dof_handler().active_cell_iterators())
+  for (const auto &cell :
+       problem.unknowns().dof_handler().active_cell_iterators())
     for (const unsigned int v : cell->vertex_indices())
-      for (const auto &node : problem.contact_boundary().nodes)
-        if (node.position.distance(cell->vertex(v)) == 0.)
+      for (unsigned int i = 0; i < problem.unknowns().contact().size(); ++i)
+        if (const auto &node = problem.unknowns().contact().boundary().nodes[i];
+            node.position.distance(cell->vertex(v)) == 0.)
           {
-            double normal = 0.;
+            const auto dof    = problem.unknowns().contact().normals()[i];
+            double     normal = 0.;
             for (unsigned int d = 0; d < dim; ++d)
               normal +=
                 node.normal[d] * displacement[cell->vertex_dof_index(v, d)];
-            normal_error =
-              std::max(normal_error, std::abs(normal - u[node.dof]));
+            normal_error = std::max(normal_error, std::abs(normal - u[dof]));
           }
   check("normal displacements", normal_error, 1e-13);
 }
@@ -556,8 +568,8 @@ test_frames()
                      (fixed ? "fixed" : "free"));
       // 2 nodes inside of the left side and its top end, 3 inside of the
       // bottom; the corner has two nodes if it is free, else none.
-      std::cout << problem.contact_boundary().nodes.size() << " contact nodes"
-                << std::endl;
+      std::cout << problem.unknowns().contact().boundary().nodes.size()
+                << " contact nodes" << std::endl;
     }
   for (const bool fixed : {true, false})
     {
@@ -571,8 +583,8 @@ test_frames()
       // The left side has one vertex and the centre to itself, the bottom and
       // the back one vertex and two centres each: 8. If they are free, there
       // are three edge vertices with 2 nodes each and a corner with 3 as well.
-      std::cout << problem.contact_boundary().nodes.size() << " contact nodes"
-                << std::endl;
+      std::cout << problem.unknowns().contact().boundary().nodes.size()
+                << " contact nodes" << std::endl;
     }
 
   // A polygon for a disc: the mean normals are radial.
@@ -583,14 +595,15 @@ test_frames()
     crossed_subdivision(coarse, mesh);
     ElasticProblem<2> problem(mesh, {{}, {0}, true});
     double            error = 0., perimeter = 0., length = 0.;
-    for (const auto &node : problem.contact_boundary().nodes)
+    for (const auto &node : problem.unknowns().contact().boundary().nodes)
       {
         error = std::max(error, (node.normal - node.position).norm());
         length += node.measure;
       }
-    for (const auto &face : problem.contact_boundary().faces)
+    for (const auto &face : problem.unknowns().contact().boundary().faces)
       perimeter += face.measure;
-    std::cout << "disc, " << problem.contact_boundary().nodes.size()
+    std::cout << "disc, "
+              << problem.unknowns().contact().boundary().nodes.size()
               << " contact nodes" << std::endl;
     check("radial normals", error, 1e-13);
     check("perimeter of the 16-gon",
@@ -610,9 +623,9 @@ test_frames()
       },
       mesh);
     const ElasticProblem<3> problem(mesh, paper_conditions());
-    const auto             &nodes  = problem.contact_boundary().nodes;
-    bool                    exact  = true;
-    bool                    sorted = true;
+    const auto &nodes  = problem.unknowns().contact().boundary().nodes;
+    bool        exact  = true;
+    bool        sorted = true;
     for (unsigned int k = 0; k < nodes.size(); ++k)
       {
         exact = exact && nodes[k].normal == Tensor<1, 3>({0., -1., 0.});

@@ -86,9 +86,11 @@ namespace
     const BodyProblem<dim> coarse(coarse_box, MatrixStorage::serial);
     const BodyProblem<dim> fine(fine_box, MatrixStorage::serial);
 
-    dealii::Vector<double> u(coarse.problem->n_dofs());
+    dealii::Vector<double> u(coarse.problem->unknowns().n_dofs());
     for (unsigned int i = 0; i < u.size(); ++i)
-      u(i) = coarse.problem->is_constrained(i) ? 0. : std::sin(1. + i * i);
+      u(i) = coarse.problem->unknowns().is_constrained(i) ?
+               0. :
+               std::sin(1. + i * i);
     const dealii::Vector<double> v = interpolate_displacement(
       Box<dim>(coarse_box), *coarse.problem, u, *fine.problem);
     const double energy = coarse.problem->matrix().matrix_norm_square(u);
@@ -123,9 +125,9 @@ namespace
     // energy of a mode that is cut off there is no larger than that of a
     // vector of its size, which would be about n^2 dim times larger.
     const auto            &A = body.problem->trilinos_matrix();
-    dealii::Vector<double> product(body.problem->n_dofs());
+    dealii::Vector<double> product(body.problem->unknowns().n_dofs());
     double                 rows_with_force = 0.;
-    for (const auto &mode : body.problem->rigid_body_modes())
+    for (const auto &mode : body.problem->unknowns().rigid_body_modes())
       {
         A.vmult(product, mode);
         unsigned int count = 0;
@@ -139,7 +141,7 @@ namespace
           0.5);
 
     const Multigrid        multigrid(*body.problem);
-    dealii::Vector<double> u(body.problem->n_dofs());
+    dealii::Vector<double> u(body.problem->unknowns().n_dofs());
     dealii::SolverControl  control(60, 1e-10 * body.problem->load().l2_norm());
     dealii::SolverCG<dealii::Vector<double>>(control).solve(
       A, u, body.problem->load(), multigrid);
@@ -153,18 +155,18 @@ namespace
       {
         const ContactQuadrature<dim> quadrature(
           ContactQuadratureParameters::parse(rule), law.kinks());
-        const AdhesionIntegral<dim> adhesion(serial.problem->contact_boundary(),
-                                             law,
-                                             quadrature);
-        std::vector<unsigned int>   normals;
-        for (const auto &node : serial.problem->contact_boundary().nodes)
-          normals.push_back(node.dof);
-        const Condensation     condensed(serial.problem->matrix(),
-                                     serial.problem->load(),
-                                     normals,
-                                     [&](const unsigned int i) {
-                                       return serial.problem->is_constrained(i);
-                                     });
+        const AdhesionIntegral<dim> adhesion(
+          serial.problem->unknowns().contact().boundary(), law, quadrature);
+        std::vector<unsigned int> normals;
+        for (const auto normal : serial.problem->unknowns().contact().normals())
+          normals.push_back(normal);
+        const Condensation condensed(
+          serial.problem->matrix(),
+          serial.problem->load(),
+          normals,
+          [&](const unsigned int i) {
+            return serial.problem->unknowns().is_constrained(i);
+          });
         dealii::Vector<double> s(normals.size());
         CondensedProblem       small(condensed.schur_complement(),
                                condensed.load(),

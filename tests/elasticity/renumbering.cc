@@ -100,17 +100,16 @@ namespace
 
     const ContactQuadrature<dim> quadrature(
       ContactQuadratureParameters::parse("nodal"), law.kinks());
-    const AdhesionIntegral<dim> adhesion(problem.contact_boundary(),
-                                         law,
-                                         quadrature);
-    std::vector<unsigned int>   normals;
-    for (const auto &node : problem.contact_boundary().nodes)
-      normals.push_back(node.dof);
+    const AdhesionIntegral<dim> adhesion(
+      problem.unknowns().contact().boundary(), law, quadrature);
+    std::vector<unsigned int> normals;
+    for (const auto normal : problem.unknowns().contact().normals())
+      normals.push_back(normal);
     const Condensation condensed(problem.matrix(),
                                  problem.load(),
                                  normals,
                                  [&](const unsigned int i) {
-                                   return problem.is_constrained(i);
+                                   return problem.unknowns().is_constrained(i);
                                  });
     Minimum            result;
     result.s.reinit(normals.size());
@@ -119,8 +118,9 @@ namespace
                                        adhesion,
                                        result.s);
     MajoriseMinimise(MajoriseMinimiseParameters()).minimize(condensed_problem);
-    result.value = problem.elastic_functional(condensed.expand(result.s)) +
-                   adhesion.value(result.s);
+    result.value =
+      problem.fields().elastic_functional(condensed.expand(result.s)) +
+      adhesion.value(result.s);
     return result;
   }
 

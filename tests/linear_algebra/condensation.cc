@@ -46,17 +46,17 @@ namespace
     problem.assemble(material, loads);
 
     std::vector<unsigned int> kept, others;
-    std::vector<char>         is_kept(problem.n_dofs(), 0);
-    for (const auto &node : problem.contact_boundary().nodes)
+    std::vector<char>         is_kept(problem.unknowns().n_dofs(), 0);
+    for (const auto normal : problem.unknowns().contact().normals())
       {
-        kept.push_back(node.dof);
-        is_kept[node.dof] = 1;
+        kept.push_back(normal);
+        is_kept[normal] = 1;
       }
-    for (unsigned int i = 0; i < problem.n_dofs(); ++i)
-      if (!problem.is_constrained(i) && is_kept[i] == 0)
+    for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
+      if (!problem.unknowns().is_constrained(i) && is_kept[i] == 0)
         others.push_back(i);
     const auto excluded = [&](const unsigned int i) {
-      return problem.is_constrained(i);
+      return problem.unknowns().is_constrained(i);
     };
     Condensation condensed(problem.matrix(), problem.load(), kept, excluded);
 

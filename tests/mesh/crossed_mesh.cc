@@ -204,31 +204,31 @@ test_patch(const Material &material, const std::string &name)
     for (unsigned int j = 0; j < dim; ++j)
       gradient[i][j] = 0.2 - 0.7 * i + 0.4 * j * j;
 
-  const auto    &dof_handler = problem.dof_handler();
-  Vector<double> linear(problem.n_dofs());
+  const auto    &dof_handler = problem.unknowns().dof_handler();
+  Vector<double> linear(problem.unknowns().n_dofs());
   for (const auto &cell : dof_handler.active_cell_iterators())
     for (const unsigned int v : cell->vertex_indices())
       for (unsigned int d = 0; d < dim; ++d)
         linear[cell->vertex_dof_index(v, d)] =
           0.1 * d + gradient[d] * cell->vertex(v);
 
-  const Vector<double> forces  = problem.residual(linear);
+  const Vector<double> forces  = problem.fields().residual(linear);
   double               largest = 0.;
-  for (unsigned int i = 0; i < problem.n_dofs(); ++i)
-    if (!problem.is_constrained(i))
+  for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
+    if (!problem.unknowns().is_constrained(i))
       largest = std::max(largest, std::abs(forces[i]));
   check(name + ", inner forces of a linear field",
         largest / forces.linfty_norm(),
         1e-13);
 
   // Its boundary values alone determine it.
-  Vector<double> u = linear, rhs(problem.n_dofs());
-  for (unsigned int i = 0; i < problem.n_dofs(); ++i)
-    if (!problem.is_constrained(i))
+  Vector<double> u = linear, rhs(problem.unknowns().n_dofs());
+  for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
+    if (!problem.unknowns().is_constrained(i))
       u[i] = 0.;
-  const Vector<double> boundary_forces = problem.residual(u);
-  for (unsigned int i = 0; i < problem.n_dofs(); ++i)
-    if (!problem.is_constrained(i))
+  const Vector<double> boundary_forces = problem.fields().residual(u);
+  for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
+    if (!problem.unknowns().is_constrained(i))
       rhs[i] = -boundary_forces[i];
   SparseDirectUMFPACK solver;
   solver.initialize(problem.matrix());
@@ -241,9 +241,9 @@ test_patch(const Material &material, const std::string &name)
     material.elasticity_tensor<dim>() * symmetrize(gradient);
   double error = 0.;
   for (const auto &cell : dof_handler.active_cell_iterators())
-    error =
-      std::max(error,
-               (problem.stress(cell, linear) - exact).norm() / exact.norm());
+    error = std::max(error,
+                     (problem.fields().stress(cell, linear) - exact).norm() /
+                       exact.norm());
   check(name + ", stress", error, 1e-13);
 }
 

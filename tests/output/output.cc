@@ -277,12 +277,12 @@ namespace
       dealii::FullMatrix<double> matrix;
       matrix.copy_from(problem->matrix());
       dealii::Vector<double> rhs = problem->load();
-      for (const auto &node : problem->contact_boundary().nodes)
+      for (const auto dof : problem->unknowns().contact().normals())
         {
           for (unsigned int j = 0; j < matrix.n(); ++j)
-            matrix(node.dof, j) = 0.;
-          matrix(node.dof, node.dof) = 1.;
-          rhs(node.dof)              = s;
+            matrix(dof, j) = 0.;
+          matrix(dof, dof) = 1.;
+          rhs(dof)         = s;
         }
       matrix.gauss_jordan();
       dealii::Vector<double> u(rhs.size());
@@ -312,9 +312,8 @@ namespace
         (name == "none" ? no_adhesion() : winkler_law(a, M)).branches);
       const ContactQuadrature<dim> quadrature(
         ContactQuadratureParameters::parse(rule), law.kinks());
-      const AdhesionIntegral<dim> adhesion(problem->contact_boundary(),
-                                           law,
-                                           quadrature);
+      const AdhesionIntegral<dim> adhesion(
+        problem->unknowns().contact().boundary(), law, quadrature);
       return verify(*problem, adhesion, law, u);
     }
   };
@@ -334,10 +333,11 @@ namespace
   {
     std::cout << "== Distance to the law, E = " << young_modulus << std::endl;
     const Body<2> pulled(young_modulus, 1.);
-    const auto   &node  = pulled.problem->contact_boundary().nodes.at(0);
-    const double  scale = young_modulus * node.measure;
+    const auto   &node =
+      pulled.problem->unknowns().contact().boundary().nodes.at(0);
+    const double scale = young_modulus * node.measure;
     check("there is one contact node",
-          pulled.problem->contact_boundary().nodes.size() == 1);
+          pulled.problem->unknowns().contact().boundary().nodes.size() == 1);
 
     // A pulled node that the bonds hold back at s: any force can be put on
     // the graph by the choice of a.
@@ -499,13 +499,14 @@ namespace
   {
     std::cout << "== Forces and files in " << dim << "D, E = " << young_modulus
               << std::endl;
-    const Body<dim>              body(young_modulus, 1.);
-    const ElasticProblem<dim>   &problem  = *body.problem;
-    const ContactBoundary<dim>  &boundary = problem.contact_boundary();
-    const double                 M        = 1e-3;
-    const double                 a        = young_modulus / 10.;
-    const dealii::Vector<double> u        = body.equilibrium(-M / 2.);
-    const Verification<dim>      result   = body.check_law(u, "winkler", a, M);
+    const Body<dim>             body(young_modulus, 1.);
+    const ElasticProblem<dim>  &problem = *body.problem;
+    const ContactBoundary<dim> &boundary =
+      problem.unknowns().contact().boundary();
+    const double                 M      = 1e-3;
+    const double                 a      = young_modulus / 10.;
+    const dealii::Vector<double> u      = body.equilibrium(-M / 2.);
+    const Verification<dim>      result = body.check_law(u, "winkler", a, M);
 
     // The top has a length (area) of 2.
     dealii::Tensor<1, dim> applied;
@@ -521,10 +522,11 @@ namespace
               1e-12 * applied.norm() &&
             result.force_imbalance < 1e-13);
     const dealii::Vector<double> reactions_at_vertices =
-      problem.cartesian_forces(problem.residual(u));
+      problem.unknowns().cartesian_forces(problem.fields().residual(u));
     dealii::Tensor<1, dim> at_clamped_ends;
-    std::vector<bool>      visited(problem.n_dofs(), false);
-    for (const auto &cell : problem.dof_handler().active_cell_iterators())
+    std::vector<bool>      visited(problem.unknowns().n_dofs(), false);
+    for (const auto &cell :
+         problem.unknowns().dof_handler().active_cell_iterators())
       for (const unsigned int v : cell->vertex_indices())
         for (unsigned int d = 0; d < dim; ++d)
           {
@@ -553,24 +555,24 @@ namespace
     check("free nodes are in equilibrium", result.equilibrium_residual < 1e-13);
 
     // One free displacement off by a little.
-    std::vector<bool> supported(problem.n_dofs(), false);
-    for (const auto &node : boundary.nodes)
-      supported[node.dof] = true;
-    for (unsigned int i = 0; i < problem.n_dofs(); ++i)
-      supported[i] = supported[i] || problem.is_constrained(i);
+    std::vector<bool> supported(problem.unknowns().n_dofs(), false);
+    for (const auto dof : problem.unknowns().contact().normals())
+      supported[dof] = true;
+    for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
+      supported[i] = supported[i] || problem.unknowns().is_constrained(i);
     const unsigned int dof =
       std::find(supported.begin(), supported.end(), false) - supported.begin();
     dealii::Vector<double> wrong = u;
     wrong(dof) += 1e-2 * M;
     const Verification<dim> off = body.check_law(wrong, "winkler", a, M);
 
-    dealii::Vector<double> forces(problem.n_dofs());
+    dealii::Vector<double> forces(problem.unknowns().n_dofs());
     problem.matrix().vmult(forces, wrong);
     forces -= problem.load();
-    const dealii::Vector<double> reactions        = problem.residual(wrong);
+    const dealii::Vector<double> reactions = problem.fields().residual(wrong);
     double                       largest_free     = 0.;
     double                       largest_reaction = 0.;
-    for (unsigned int i = 0; i < problem.n_dofs(); ++i)
+    for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
       if (supported[i])
         largest_reaction = std::max(largest_reaction, std::abs(reactions(i)));
       else
@@ -667,8 +669,9 @@ namespace
     problem.assemble(material, {});
 
     const double           e = 1e-2, g = -3e-2;
-    dealii::Vector<double> u(problem.n_dofs());
-    for (const auto &cell : problem.dof_handler().active_cell_iterators())
+    dealii::Vector<double> u(problem.unknowns().n_dofs());
+    for (const auto &cell :
+         problem.unknowns().dof_handler().active_cell_iterators())
       for (const unsigned int v : cell->vertex_indices())
         {
           u(cell->vertex_dof_index(v, 0)) = e * cell->vertex(v)[0];

@@ -337,12 +337,13 @@ namespace
               const OwnCheck::Body<dim> &body)
   {
     const Scene<dim>             scene(parameters);
-    const dealii::Vector<double> u = scene.problem().cartesian_displacement(
-      read_displacement(directory + "/displacement.txt",
-                        scene.problem().n_dofs()));
+    const dealii::Vector<double> u =
+      scene.problem().unknowns().cartesian_displacement(
+        read_displacement(directory + "/displacement.txt",
+                          scene.problem().unknowns().n_dofs()));
     VectorX own = VectorX::Zero(body.n_dofs());
     for (const auto &cell :
-         scene.problem().dof_handler().active_cell_iterators())
+         scene.problem().unknowns().dof_handler().active_cell_iterators())
       for (const unsigned int v : cell->vertex_indices())
         {
           std::array<double, dim> point;

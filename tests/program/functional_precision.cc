@@ -97,7 +97,8 @@ namespace
              const dealii::Vector<double> &u)
   {
     Real work = 0;
-    for (const auto &cell : problem.dof_handler().active_cell_iterators())
+    for (const auto &cell :
+         problem.unknowns().dof_handler().active_cell_iterators())
       for (const auto &face : cell->face_iterators())
         if (face->at_boundary() &&
             face->boundary_id() == box_sides<2>().at("top"))
@@ -133,7 +134,7 @@ namespace
 
     // The unknowns' frame at a contact node has u_nu = -u_y first and the
     // tangential displacement second.
-    const unsigned int n = problem.n_dofs();
+    const unsigned int n = problem.unknowns().n_dofs();
     std::vector<Real>  value(n), direction(n, 1);
     std::vector<int>   component(n, -1);
     for (unsigned int i = 0; i < n; ++i)
@@ -141,20 +142,23 @@ namespace
 
     std::vector<char> fixed(n, 0);
     for (unsigned int i = 0; i < n; ++i)
-      fixed[i] = problem.is_constrained(i);
+      fixed[i] = problem.unknowns().is_constrained(i);
     std::vector<Real> spring(n, 0);
     Real              broken_energy = 0;
-    for (const auto &node : problem.contact_boundary().nodes)
+    const auto       &contact       = problem.unknowns().contact();
+    for (unsigned int i = 0; i < contact.size(); ++i)
       {
-        direction[node.dof]     = -1;
-        component[node.dof]     = 1;
-        component[node.dof + 1] = 0;
-        if (u(node.dof) == 0.)
-          fixed[node.dof] = 1;
-        else if (u(node.dof) < -law.bond_threshold())
-          broken_energy += a * M * M / 2 * node.measure;
+        const auto   dof     = contact.normals()[i];
+        const double measure = contact.boundary().nodes[i].measure;
+        direction[dof]       = -1;
+        component[dof]       = 1;
+        component[dof + 1]   = 0;
+        if (u(dof) == 0.)
+          fixed[dof] = 1;
+        else if (u(dof) < -law.bond_threshold())
+          broken_energy += a * M * M / 2 * measure;
         else
-          spring[node.dof] = a * node.measure;
+          spring[dof] = a * measure;
       }
 
     std::vector<int> place(n, -1);
@@ -165,7 +169,8 @@ namespace
 
     std::vector<Eigen::Triplet<Real>> entries;
     Real                              energy_of_u = 0;
-    for (const auto &cell : problem.dof_handler().active_cell_iterators())
+    for (const auto &cell :
+         problem.unknowns().dof_handler().active_cell_iterators())
       {
         const Triangle t              = triangle(cell);
         Real           gradient[2][2] = {{0, 0}, {0, 0}};

@@ -73,13 +73,14 @@ namespace
   make_elements(const ElasticProblem<dim> &problem)
   {
     std::map<unsigned int, std::array<Real, dim>> direction;
-    for (const auto &frame : problem.contact_frames())
+    for (const auto &frame : problem.unknowns().contact_frames())
       for (unsigned int k = 0; k < dim; ++k)
         for (unsigned int d = 0; d < dim; ++d)
           direction[frame.dofs[k]][d] = frame.to_cartesian[d][k];
 
     std::vector<Element<dim>> elements;
-    for (const auto &cell : problem.dof_handler().active_cell_iterators())
+    for (const auto &cell :
+         problem.unknowns().dof_handler().active_cell_iterators())
       {
         Element<dim>                  element;
         Eigen::Matrix<Real, dim, dim> edges;
@@ -132,17 +133,19 @@ namespace
     const Real lambda = plane_stress ? E * nu / (1 - nu * nu) :
                                        E * nu / ((1 + nu) * (1 - 2 * nu));
 
-    const unsigned int n = problem.n_dofs();
+    const unsigned int n = problem.unknowns().n_dofs();
     std::vector<char>  fixed(n, 0);
     std::vector<Real>  spring(n, 0);
     const AdhesiveLaw  law(parameters.law.branches);
     for (unsigned int i = 0; i < n; ++i)
-      fixed[i] = problem.is_constrained(i);
-    for (const auto &node : problem.contact_boundary().nodes)
-      if (u(node.dof) == 0.)
-        fixed[node.dof] = 1;
+      fixed[i] = problem.unknowns().is_constrained(i);
+    const auto &contact = problem.unknowns().contact();
+    for (unsigned int i = 0; i < contact.size(); ++i)
+      if (const auto dof = contact.normals()[i]; u(dof) == 0.)
+        fixed[dof] = 1;
       else
-        spring[node.dof] = law.curvature(u(node.dof)) * node.measure;
+        spring[dof] =
+          law.curvature(u(dof)) * contact.boundary().nodes[i].measure;
     std::vector<int> place(n, -1);
     int              n_unknowns = 0;
     for (unsigned int i = 0; i < n; ++i)

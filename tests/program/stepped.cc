@@ -71,7 +71,7 @@ namespace
           S(i, j) = condensed.schur_complement()(i, j);
         branches[i] = stepped_law({690., 100.}, {0.001, 0.003}).branches;
         const double measure =
-          scene.problem().contact_boundary().nodes[i].measure;
+          scene.problem().unknowns().contact().boundary().nodes[i].measure;
         for (ConvexBranch &branch : branches[i])
           {
             branch.curvature *= measure;

@@ -276,12 +276,10 @@ namespace
       }
     ++counts.words[to_string(result.minimum.kind)];
 
-    const Condensation     condensed = condense_to_contact(scene.problem());
-    const auto            &nodes     = scene.problem().contact_boundary().nodes;
-    const unsigned int     n         = nodes.size();
-    dealii::Vector<double> s(n);
-    for (unsigned int i = 0; i < n; ++i)
-      s(i) = result.u(nodes[i].dof);
+    const Condensation condensed = condense_to_contact(scene.problem());
+    const dealii::Vector<double> s =
+      scene.problem().unknowns().contact().trace(result.u);
+    const unsigned int      n = s.size();
     const SeparableBranches bonds =
       lumped_branches(scene.adhesion(), n, scene.law().branches());
     const double found =
@@ -391,7 +389,7 @@ namespace
           {
             const WhichMinimum result = find_better_minimum(
               parameters,
-              scene.problem().contact_boundary(),
+              scene.problem().unknowns().contact().boundary(),
               law,
               scene.adhesion(),
               condensed,

@@ -21,9 +21,6 @@ namespace Debond
   {
     struct Node
     {
-      /// The degree of freedom that holds u_nu of this node.
-      dealii::types::global_dof_index dof;
-
       dealii::Point<dim> position;
 
       /// Outward unit normal of the body.

@@ -3,17 +3,11 @@
 #define debond_contact_functional_h
 
 #include <debond/contact/adhesion_integral.h>
+#include <debond/contact/contact_space.h>
 #include <debond/optimization/objective.h>
 
 namespace Debond
 {
-  /// The constraint v_nu <= 0 as bounds on degrees of freedom.
-  template <int dim>
-  UpperBounds
-  unilateral_constraint(const ContactBoundary<dim> &boundary);
-
-
-
   /**
    * The paper's functional (Problem M_Vn)
    *
@@ -28,7 +22,7 @@ namespace Debond
   public:
     Functional(const MatrixType            &A,
                const VectorType            &f,
-               const ContactBoundary<dim>  &boundary,
+               const ContactSpace<dim>     &contact,
                const AdhesionIntegral<dim> &adhesion);
 
     double
@@ -42,16 +36,12 @@ namespace Debond
     std::unique_ptr<LineRestriction<VectorType>>
     along(const VectorType &x, const VectorType &d) const override;
 
-    /// The normal displacements s of the contact nodes.
-    dealii::Vector<double>
-    normal_trace(const VectorType &v) const;
-
   private:
     class Line;
 
     const MatrixType            &A;
     const VectorType            &f;
-    const ContactBoundary<dim>  &boundary;
+    const ContactSpace<dim>     &contact;
     const AdhesionIntegral<dim> &adhesion;
   };
 } // namespace Debond

@@ -13,14 +13,12 @@ namespace Debond
   Condensation
   condense_to_contact(const ElasticProblem<dim> &problem)
   {
-    std::vector<unsigned int> normals;
-    for (const auto &node : problem.contact_boundary().nodes)
-      normals.push_back(node.dof);
+    const auto &normals = problem.unknowns().contact().normals();
     return Condensation(problem.matrix(),
                         problem.load(),
-                        normals,
+                        {normals.begin(), normals.end()},
                         [&](const unsigned int i) {
-                          return problem.is_constrained(i);
+                          return problem.unknowns().is_constrained(i);
                         });
   }
 } // namespace Debond

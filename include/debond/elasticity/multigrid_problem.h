@@ -55,9 +55,6 @@ namespace Debond
     class Operator;
     class Preconditioner;
 
-    dealii::Vector<double>
-    normal_trace(const dealii::Vector<double> &v) const;
-
     /// Minus the majorant's gradient at u: a force for each unknown.
     void
     majorant_force(dealii::Vector<double> &force) const;
@@ -72,7 +69,10 @@ namespace Debond
     const Multigrid                              &multigrid;
     dealii::Vector<double>                       &u;
     std::function<bool()>                         may_go_on;
-    std::vector<dealii::types::global_dof_index>  normals;
+    const ContactSpace<dim>                      &contact;
+
+    /// Of contact.
+    const std::vector<dealii::types::global_dof_index> &normals;
 
     dealii::Vector<double> diagonal; ///< of A
 

@@ -46,7 +46,7 @@ namespace Debond
     const AdhesionIntegral<dim> &
     adhesion() const;
 
-    /// J, on vectors of problem().n_dofs() entries.
+    /// J, on vectors of problem().unknowns().n_dofs() entries.
     const Objective<dealii::Vector<double>> &
     functional() const;
 

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_contact_contact_space_h
+#define debond_contact_contact_space_h
+
+#include <deal.II/base/types.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/contact/boundary.h>
+#include <debond/optimization/objective.h>
+
+#include <vector>
+
+namespace Debond
+{
+  /**
+   * The normal displacements s of the contact nodes within the vector of all
+   * unknowns u: s = N'u, where each node's normal displacement is an unknown of
+   * its own. Who reads or writes u at contact nodes does it here.
+   */
+  template <int dim>
+  class ContactSpace
+  {
+  public:
+    /// Without nodes.
+    ContactSpace() = default;
+
+    /// @p normals: the degrees of freedom of the normal displacements, in the
+    /// order of the nodes.
+    ContactSpace(const ContactBoundary<dim>                         &boundary,
+                 const std::vector<dealii::types::global_dof_index> &normals);
+
+    const ContactBoundary<dim> &
+    boundary() const;
+
+    /// The number of nodes.
+    unsigned int
+    size() const;
+
+    /// The degrees of freedom of s.
+    const std::vector<dealii::types::global_dof_index> &
+    normals() const;
+
+    /// s = N'u.
+    dealii::Vector<double>
+    trace(const dealii::Vector<double> &u) const;
+
+    /// u += N s.
+    void
+    add_normal(const dealii::Vector<double> &s,
+               dealii::Vector<double>       &u) const;
+
+    /// The unilateral constraint s <= 0 as bounds on degrees of freedom.
+    UpperBounds
+    bounds() const;
+
+    /// Whether u satisfies them.
+    bool
+    is_admissible(const dealii::Vector<double> &u) const;
+
+    /// The same nodes where s itself is the vector of all unknowns.
+    ContactSpace
+    condensed() const;
+
+  private:
+    ContactBoundary<dim>                         nodes_and_faces;
+    std::vector<dealii::types::global_dof_index> normal_dofs;
+  };
+} // namespace Debond
+
+#endif

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_fields_h
+#define debond_elasticity_fields_h
+
+#include <deal.II/base/symmetric_tensor.h>
+#include <deal.II/base/tensor.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/elasticity/material.h>
+#include <debond/elasticity/unknowns.h>
+
+namespace Debond
+{
+  /// Stresses, energies and forces of a displacement, by loops over the cells
+  /// that use no matrix.
+  template <int dim>
+  class ElasticFields
+  {
+  public:
+    using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
+
+    /// Keeps a reference to the unknowns. @p applied_forces: the Cartesian
+    /// nodal forces of all loads, at every degree of freedom.
+    ElasticFields(const ElasticUnknowns<dim>   &unknowns,
+                  const Material               &material,
+                  const dealii::Vector<double> &applied_forces);
+
+    const Material &
+    material() const;
+
+    /// The Cartesian nodal forces of all loads, at every degree of freedom, the
+    /// constrained ones included.
+    const dealii::Vector<double> &
+    applied_nodal_forces() const;
+
+    /// The resultant of all applied loads, in Cartesian components.
+    dealii::Tensor<1, dim>
+    total_load() const;
+
+    /**
+     * A u - f, f being @p load_factor times the load, at
+     * every degree of freedom, the constrained ones included: internal
+     * forces, from the cells' stresses, minus the applied nodal forces,
+     * in the unknowns' frames. At constrained degrees
+     * of freedom this is the reaction of the support, at u_nu of a contact
+     * node minus the normal force of the foundation.
+     */
+    dealii::Vector<double>
+    residual(const dealii::Vector<double> &u,
+             const double                  load_factor = 1.) const;
+
+    /**
+     * What the rounding of u to double precision can make of residual(u,
+     * load_factor) at each degree of freedom: epsilon (|A| |u| + |f|), with
+     * norms of each cell's entries. No u can be expected to have a smaller
+     * residual.
+     */
+    dealii::Vector<double>
+    residual_rounding(const dealii::Vector<double> &u,
+                      const double                  load_factor = 1.) const;
+
+    /// Strain-energy density, stress and displacement gradient are constant
+    /// on each cell: the stress of the active cell, in the units of E.
+    dealii::SymmetricTensor<2, dim>
+    stress(const Cell                   &cell,
+           const dealii::Vector<double> &cartesian_displacement) const;
+
+    /// The displacement gradient of the cell, its row d that of component d.
+    dealii::Tensor<2, dim>
+    displacement_gradient(
+      const Cell                   &cell,
+      const dealii::Vector<double> &cartesian_displacement) const;
+
+    /**
+     * 1/2 <A u, u> - load_factor <f, u> from the strains of the cells, with
+     * compensated sums: in a product with A, whose rows nearly cancel, rounding
+     * grows with the condition of A, in the strains it does not.
+     */
+    double
+    elastic_functional(const dealii::Vector<double> &u,
+                       const double                  load_factor = 1.) const;
+
+  private:
+    const ElasticUnknowns<dim>     &unknowns;
+    Material                        elastic_material;
+    dealii::SymmetricTensor<4, dim> stiffness;
+    dealii::Vector<double>          applied_forces;
+  };
+} // namespace Debond
+
+#endif

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/contact/contact_space.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace Debond
+{
+  template <int dim>
+  ContactSpace<dim>::ContactSpace(
+    const ContactBoundary<dim>                         &boundary,
+    const std::vector<dealii::types::global_dof_index> &normals)
+    : nodes_and_faces(boundary)
+    , normal_dofs(normals)
+  {
+    AssertDimension(boundary.nodes.size(), normals.size());
+  }
+
+
+
+  template <int dim>
+  const ContactBoundary<dim> &
+  ContactSpace<dim>::boundary() const
+  {
+    return nodes_and_faces;
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  ContactSpace<dim>::size() const
+  {
+    return static_cast<unsigned int>(normal_dofs.size());
+  }
+
+
+
+  template <int dim>
+  const std::vector<dealii::types::global_dof_index> &
+  ContactSpace<dim>::normals() const
+  {
+    return normal_dofs;
+  }
+
+
+
+  template <int dim>
+  dealii::Vector<double>
+  ContactSpace<dim>::trace(const dealii::Vector<double> &u) const
+  {
+    dealii::Vector<double> s(size());
+    for (unsigned int i = 0; i < size(); ++i)
+      s(i) = u(normal_dofs[i]);
+    return s;
+  }
+
+
+
+  template <int dim>
+  void
+  ContactSpace<dim>::add_normal(const dealii::Vector<double> &s,
+                                dealii::Vector<double>       &u) const
+  {
+    for (unsigned int i = 0; i < size(); ++i)
+      u(normal_dofs[i]) += s(i);
+  }
+
+
+
+  template <int dim>
+  UpperBounds
+  ContactSpace<dim>::bounds() const
+  {
+    return {{normal_dofs.begin(), normal_dofs.end()},
+            std::vector<double>(size(), 0.)};
+  }
+
+
+
+  template <int dim>
+  bool
+  ContactSpace<dim>::is_admissible(const dealii::Vector<double> &u) const
+  {
+    return std::all_of(normal_dofs.begin(),
+                       normal_dofs.end(),
+                       [&u](const dealii::types::global_dof_index normal) {
+                         return u(normal) <= 0.;
+                       });
+  }
+
+
+
+  template <int dim>
+  ContactSpace<dim>
+  ContactSpace<dim>::condensed() const
+  {
+    std::vector<dealii::types::global_dof_index> all(size());
+    std::iota(all.begin(), all.end(), 0u);
+    return ContactSpace(nodes_and_faces, all);
+  }
+
+
+
+  template class ContactSpace<2>;
+  template class ContactSpace<3>;
+} // namespace Debond

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/elasticity/fields.h>
+#include <debond/elasticity/linear_simplex.h>
+
+#include <boost/accumulators/accumulators.hpp>
+#include <boost/accumulators/statistics/stats.hpp>
+#include <boost/accumulators/statistics/sum_kahan.hpp>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace Debond
+{
+  template <int dim>
+  ElasticFields<dim>::ElasticFields(
+    const ElasticUnknowns<dim>   &unknowns,
+    const Material               &material,
+    const dealii::Vector<double> &applied_forces)
+    : unknowns(unknowns)
+    , elastic_material(material)
+    , stiffness(material.elasticity_tensor<dim>())
+    , applied_forces(applied_forces)
+  {}
+
+
+
+  template <int dim>
+  const Material &
+  ElasticFields<dim>::material() const
+  {
+    return elastic_material;
+  }
+
+
+
+  template <int dim>
+  const dealii::Vector<double> &
+  ElasticFields<dim>::applied_nodal_forces() const
+  {
+    return applied_forces;
+  }
+
+
+
+  template <int dim>
+  dealii::Vector<double>
+  ElasticFields<dim>::residual(const dealii::Vector<double> &u,
+                               const double                  load_factor) const
+  {
+    const dealii::Vector<double> displacement =
+      unknowns.cartesian_displacement(u);
+
+    dealii::Vector<double> forces(unknowns.n_dofs());
+    for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
+      {
+        const LinearSimplex<dim>              simplex(cell);
+        const dealii::SymmetricTensor<2, dim> sigma =
+          stress(cell, displacement);
+        for (unsigned int v = 0; v <= dim; ++v)
+          {
+            const dealii::Tensor<1, dim> force =
+              simplex.volume * (sigma * simplex.gradients[v]);
+            for (unsigned int d = 0; d < dim; ++d)
+              forces[cell->vertex_dof_index(v, d)] += force[d];
+          }
+      }
+    forces.add(-load_factor, applied_forces);
+    return unknowns.in_frames(forces);
+  }
+
+
+
+  template <int dim>
+  dealii::Vector<double>
+  ElasticFields<dim>::residual_rounding(const dealii::Vector<double> &u,
+                                        const double load_factor) const
+  {
+    const dealii::Vector<double> displacement =
+      unknowns.cartesian_displacement(u);
+    const double modulus = stiffness.norm();
+
+    dealii::Vector<double> rounding(unknowns.n_dofs());
+    for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
+      {
+        const LinearSimplex<dim> simplex(cell);
+        double                   gradient = 0.;
+        for (unsigned int v = 0; v <= dim; ++v)
+          {
+            double size = 0.;
+            for (unsigned int d = 0; d < dim; ++d)
+              size += std::abs(displacement[cell->vertex_dof_index(v, d)]);
+            gradient += size * simplex.gradients[v].norm();
+          }
+        for (unsigned int v = 0; v <= dim; ++v)
+          for (unsigned int d = 0; d < dim; ++d)
+            rounding[cell->vertex_dof_index(v, d)] +=
+              simplex.volume * modulus * gradient * simplex.gradients[v].norm();
+      }
+    for (unsigned int i = 0; i < rounding.size(); ++i)
+      rounding[i] = std::numeric_limits<double>::epsilon() *
+                    (rounding[i] + std::abs(load_factor * applied_forces[i]));
+    return rounding;
+  }
+
+
+
+  template <int dim>
+  dealii::SymmetricTensor<2, dim>
+  ElasticFields<dim>::stress(
+    const Cell                   &cell,
+    const dealii::Vector<double> &cartesian_displacement) const
+  {
+    return stiffness * dealii::symmetrize(
+                         displacement_gradient(cell, cartesian_displacement));
+  }
+
+
+
+  template <int dim>
+  dealii::Tensor<2, dim>
+  ElasticFields<dim>::displacement_gradient(
+    const Cell                   &cell,
+    const dealii::Vector<double> &cartesian_displacement) const
+  {
+    const LinearSimplex<dim> simplex(cell);
+    dealii::Tensor<2, dim>   gradient;
+    // The basis sums to one: without vertex 0 there are only differences of
+    // neighbours' displacements, and a translation rounds nothing away.
+    for (unsigned int v = 1; v <= dim; ++v)
+      {
+        dealii::Tensor<1, dim> difference;
+        for (unsigned int d = 0; d < dim; ++d)
+          difference[d] = cartesian_displacement[cell->vertex_dof_index(v, d)] -
+                          cartesian_displacement[cell->vertex_dof_index(0, d)];
+        gradient += dealii::outer_product(difference, simplex.gradients[v]);
+      }
+    return gradient;
+  }
+
+
+
+  template <int dim>
+  double
+  ElasticFields<dim>::elastic_functional(const dealii::Vector<double> &u,
+                                         const double load_factor) const
+  {
+    const dealii::Vector<double> displacement =
+      unknowns.cartesian_displacement(u);
+    namespace accumulators = boost::accumulators;
+    accumulators::
+      accumulator_set<double, accumulators::stats<accumulators::tag::sum_kahan>>
+        sum;
+    for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
+      {
+        const dealii::SymmetricTensor<2, dim> strain =
+          dealii::symmetrize(displacement_gradient(cell, displacement));
+        sum(0.5 * LinearSimplex<dim>(cell).volume *
+            (strain * (stiffness * strain)));
+      }
+    const dealii::Vector<double> load = unknowns.in_frames(applied_forces);
+    for (unsigned int i = 0; i < u.size(); ++i)
+      sum(-load_factor * load(i) * u(i));
+    return accumulators::sum_kahan(sum);
+  }
+
+
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  ElasticFields<dim>::total_load() const
+  {
+    dealii::Tensor<1, dim> result;
+    std::vector<bool>      visited(
+      unknowns.dof_handler().get_triangulation().n_vertices(), false);
+    for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
+      for (const unsigned int v : cell->vertex_indices())
+        if (!visited[cell->vertex_index(v)])
+          {
+            visited[cell->vertex_index(v)] = true;
+            for (unsigned int d = 0; d < dim; ++d)
+              result[d] += applied_forces[cell->vertex_dof_index(v, d)];
+          }
+    return result;
+  }
+
+
+
+  template class ElasticFields<2>;
+  template class ElasticFields<3>;
+} // namespace Debond
