@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/number_text.h>
 #include <debond/base/text.h>
+#include <debond/input/mesh_parameters.h>
 #include <debond/input/parameters.h>
 #include <debond/input/solver_parameters.h>
 
@@ -11,24 +12,6 @@
 
 namespace Debond
 {
-  namespace
-  {
-    template <typename Container>
-    std::string
-    to_text(const Container &numbers, const unsigned int count)
-    {
-      std::vector<std::string> words;
-      for (unsigned int i = 0; i < count; ++i)
-        words.push_back(shortest_text(static_cast<double>(numbers[i])));
-      return join(words, ", ");
-    }
-
-
-
-  } // namespace
-
-
-
   BadInput::BadInput(const std::vector<std::string> &errors)
     : std::invalid_argument(join(errors, "\n"))
     , lines(errors)
@@ -39,8 +22,7 @@ namespace Debond
   void
   declare_parameters(ParameterTable &table)
   {
-    const Parameters     defaults;
-    const BodyParameters body;
+    const Parameters defaults;
 
     table.declare("Dimension",
                   std::to_string(defaults.dimension),
@@ -48,24 +30,7 @@ namespace Debond
                   "Space dimension",
                   "none");
 
-    table.declare(
-      "Mesh/Lengths",
-      to_text(body.box.lengths, defaults.dimension),
-      one_for_each_dimension(quantity()),
-      "Edge lengths of the box (0, L_1) x (0, L_2) [x (0, L_3)], one for each dimension",
-      "length");
-    table.declare(
-      "Mesh/Cells",
-      to_text(body.box.cells, defaults.dimension),
-      one_for_each_dimension(whole_number(1, 1000000)),
-      "Cells along each edge, before each is cut into 4 triangles (24 tetrahedra)",
-      "none");
-    table.declare(
-      "Mesh/Rotation",
-      shortest_text(body.box.rotation),
-      number("in [-360, 360]", [](double x) { return std::abs(x) <= 360.; }),
-      "Turns the box about the origin in the x-y plane. The sides keep their names; loads are not turned",
-      "degrees");
+    declare_mesh(table);
 
     table.declare("Material/Young modulus",
                   shortest_text(defaults.material.young_modulus),
@@ -199,21 +164,6 @@ namespace Debond
 
   namespace
   {
-    /// Checks that a list has one value for each dimension.
-    void
-    check_length(ParameterTable    &table,
-                 const std::string &path,
-                 const unsigned int dimension)
-    {
-      if (table.get_list(path).size() != dimension)
-        table.reject(path,
-                     "expected " + std::to_string(dimension) +
-                       " values for Dimension = " + std::to_string(dimension),
-                     {"Dimension"});
-    }
-
-
-
     /// Checks that the body has boundaries of these names.
     void
     check_boundaries(ParameterTable              &table,
@@ -233,12 +183,8 @@ namespace Debond
 
 
     void
-    check_consistency(ParameterTable &table, const Parameters &parameters)
+    check_boundaries(ParameterTable &table, const Parameters &parameters)
     {
-      const unsigned int dimension = parameters.dimension;
-      check_length(table, "Mesh/Lengths", dimension);
-      check_length(table, "Mesh/Cells", dimension);
-
       const std::set<std::string> boundaries = parameters.body->boundaries();
       check_boundaries(table,
                        "Boundary conditions/Clamped boundaries",
@@ -250,10 +196,20 @@ namespace Debond
                        boundaries);
       for (const auto &[name, unused] : parameters.loads.tractions)
         check_boundaries(table, "Loads/Traction " + name, {name}, boundaries);
+    }
+
+
+
+    void
+    check_consistency(ParameterTable &table, const Parameters &parameters)
+    {
+      // Otherwise there is an error already.
+      if (parameters.body)
+        check_boundaries(table, parameters);
 
       try
         {
-          if (dimension == 2)
+          if (parameters.dimension == 2)
             parameters.material.validate<2>();
           else
             parameters.material.validate<3>();
@@ -306,15 +262,7 @@ namespace Debond
     p.scene     = scene;
     p.dimension = table.get_unsigned("Dimension");
 
-    BodyParameters                 body;
-    const std::vector<std::string> lengths = table.get_list("Mesh/Lengths");
-    for (std::size_t d = 0; d < lengths.size(); ++d)
-      read_number(lengths[d], body.box.lengths[d]);
-    const std::vector<std::string> cells = table.get_list("Mesh/Cells");
-    for (std::size_t d = 0; d < cells.size(); ++d)
-      body.box.cells[d] = static_cast<unsigned int>(std::stoul(cells[d]));
-    body.box.rotation = table.get_double("Mesh/Rotation");
-    p.body            = make_body(p.dimension, body);
+    p.body = read_body(scene, p.dimension, table);
 
     p.material.young_modulus = table.get_double("Material/Young modulus");
     p.material.poisson_ratio = table.get_double("Material/Poisson ratio");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/mesh/make_body.h>
+#include <debond/mesh/mesh_body.h>
 
 namespace Debond
 {
@@ -9,7 +10,33 @@ namespace Debond
     std::shared_ptr<const BodyDescription>
     make(const BodyParameters &parameters)
     {
-      return std::make_shared<const Box<dim>>(parameters.box);
+      switch (parameters.source)
+        {
+          case BodyParameters::Source::file:
+            {
+              const std::shared_ptr<const SourceMesh<dim>> coarse =
+                read_gmsh_mesh<dim>(parameters.file, parameters.scale);
+              return std::make_shared<const MeshBody<dim>>(
+                [coarse](const unsigned int n_refinements) {
+                  auto source = std::make_unique<SourceMesh<dim>>();
+                  source->mesh.copy_triangulation(coarse->mesh);
+                  source->names = coarse->names;
+                  source->refine(n_refinements);
+                  return source;
+                },
+                parameters.n_refinements);
+            }
+          case BodyParameters::Source::generator:
+            // Made anew, as manifolds do not survive a copy.
+            return std::make_shared<const MeshBody<dim>>(
+              [name = parameters.generator, arguments = parameters.arguments](
+                const unsigned int n_refinements) {
+                return generate_mesh<dim>(name, arguments, n_refinements);
+              },
+              parameters.n_refinements);
+          default:
+            return std::make_shared<const Box<dim>>(parameters.box);
+        }
     }
   } // namespace
 

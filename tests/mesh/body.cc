@@ -3,7 +3,7 @@
 // What a body says of its mesh before that exists, against the mesh; its
 // coarser bodies, and fields that are carried over.
 
-#include <debond/mesh/box.h>
+#include <debond/mesh/make_body.h>
 
 #include <algorithm>
 #include <cmath>
@@ -96,11 +96,11 @@ test_interpolation(const Body<dim> &coarse, const Body<dim> &fine)
 
 
 
+/// A body and its coarser ones.
 template <int dim>
 void
-test(const BoxParameters &box)
+test(std::shared_ptr<const Body<dim>> body)
 {
-  std::shared_ptr<const Body<dim>> body = std::make_shared<Box<dim>>(box);
   test_sizes(*body);
   for (std::shared_ptr<const Body<dim>> coarser = body->coarser(); coarser;
        coarser                                  = body->coarser())
@@ -113,11 +113,95 @@ test(const BoxParameters &box)
 
 
 
+template <int dim>
+void
+test_box(const BoxParameters &box)
+{
+  test<dim>(std::make_shared<Box<dim>>(box));
+}
+
+
+
+/// A generated mesh with straight sides, refined twice.
+template <int dim>
+void
+test_generated(const std::string &name, const std::string &arguments)
+{
+  BodyParameters parameters;
+  parameters.source        = BodyParameters::Source::generator;
+  parameters.generator     = name;
+  parameters.arguments     = arguments;
+  parameters.n_refinements = dim == 2 ? 2 : 1;
+  std::cout << name << std::endl;
+  test<dim>(
+    std::dynamic_pointer_cast<const Body<dim>>(make_body(dim, parameters)));
+}
+
+
+
+/// Points on a circle that the coarser mesh cuts off, and a field that is
+/// linear: it is carried on.
+void
+test_curved_side()
+{
+  const auto disc = [](const unsigned int n_refinements) {
+    BodyParameters parameters;
+    parameters.source        = BodyParameters::Source::generator;
+    parameters.generator     = "hyper_ball";
+    parameters.arguments     = "0, 0 : 1 : false";
+    parameters.n_refinements = n_refinements;
+    return std::dynamic_pointer_cast<const Body<2>>(make_body(2, parameters));
+  };
+  const auto       coarse = disc(2)->coarser();
+  Triangulation<2> coarse_mesh, mesh;
+  coarse->make_mesh(coarse_mesh);
+  disc(2)->make_mesh(mesh);
+  const auto field = [](const Point<2> &p) {
+    return Tensor<1, 2>({1. + p[0] - 2. * p[1], 3. * p[0] + p[1]});
+  };
+  std::vector<Tensor<1, 2>> values;
+  for (const auto &vertex : coarse_mesh.get_vertices())
+    values.push_back(field(vertex));
+  const auto carried =
+    coarse->interpolate(coarse_mesh, values, mesh.get_vertices());
+  double largest_error = 0.;
+  for (std::size_t i = 0; i < carried.size(); ++i)
+    largest_error =
+      std::max(largest_error,
+               (carried[i] - field(mesh.get_vertices()[i])).norm());
+  check("a linear field is carried beyond a curved side", largest_error, 1e-12);
+}
+
+
+
+void
+test_errors()
+{
+  std::cout << "Generators that make no body" << std::endl;
+  const auto error = [](const std::string &name, const std::string &arguments) {
+    print_error([&] {
+      BodyParameters parameters;
+      parameters.source    = BodyParameters::Source::generator;
+      parameters.generator = name;
+      parameters.arguments = arguments;
+      make_body(2, parameters);
+    });
+  };
+  error("hyper_heap", "1");
+  error("hyper_ball", "0, 0 : one : false");
+}
+
+
+
 int
 main(int argc, char **)
 {
   print_figures = argc > 1;
-  test<2>({{{0.4, 0.04, 1.}}, {{7, 2, 1}}, 0.});
-  test<2>({{{3., 1., 1.}}, {{4, 3, 1}}, 30.});
-  test<3>({{{1., 2., 0.5}}, {{3, 1, 2}}, -20.});
+  test_box<2>({{{0.4, 0.04, 1.}}, {{7, 2, 1}}, 0.});
+  test_box<2>({{{3., 1., 1.}}, {{4, 3, 1}}, 30.});
+  test_box<3>({{{1., 2., 0.5}}, {{3, 1, 2}}, -20.});
+  test_generated<2>("hyper_L", "-1 : 1 : true");
+  test_generated<3>("hyper_L", "-1 : 1 : true");
+  test_curved_side();
+  test_errors();
 }

@@ -8,7 +8,7 @@
 #include <debond/elasticity/material.h>
 #include <debond/input/load_parameters.h>
 #include <debond/input/load_path_parameters.h>
-#include <debond/mesh/make_body.h>
+#include <debond/mesh/body.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/branch_search.h>

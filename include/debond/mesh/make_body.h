@@ -11,10 +11,24 @@ namespace Debond
   /// What a scene says of its body.
   struct BodyParameters
   {
+    enum class Source
+    {
+      box,
+      file,
+      generator
+    };
+
+    Source        source = Source::box;
     BoxParameters box;
+    std::string   file;              ///< of Gmsh
+    double        scale = 1.;        ///< of the lengths in the file
+    std::string   generator;         ///< a function of dealii::GridGenerator
+    std::string   arguments;         ///< of that function
+    unsigned int  n_refinements = 0; ///< unless it is a box
   };
 
-  /// A Body<dimension>.
+  /// A Body<dimension>. Throws std::invalid_argument if there is no such
+  /// function or file, or no body in it.
   std::shared_ptr<const BodyDescription>
   make_body(const unsigned int dimension, const BodyParameters &parameters);
 } // namespace Debond

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/exceptions.h>
+#include <deal.II/grid/grid_generator.h>
+
+#include <debond/mesh/source_mesh.h>
+
+#include <boost/algorithm/string/replace.hpp>
+
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+
+namespace Debond
+{
+  namespace
+  {
+    /// What an exception of deal.II says, without where it was thrown.
+    std::string
+    words_of(const dealii::ExceptionBase &error)
+    {
+      std::ostringstream text;
+      error.print_info(text);
+      std::string       words, line;
+      std::stringstream lines(text.str());
+      while (std::getline(lines, line))
+        if (const std::size_t first = line.find_first_not_of(' ');
+            first != std::string::npos)
+          words += (words.empty() ? "" : " ") + line.substr(first);
+      return boost::replace_all_copy(words,
+                                     " -MAX_DOUBLE...MAX_DOUBLE (inclusive)",
+                                     "");
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::unique_ptr<SourceMesh<dim>>
+  generate_mesh(const std::string &name,
+                const std::string &arguments,
+                const unsigned int n_refinements)
+  {
+    auto source = std::make_unique<SourceMesh<dim>>();
+    try
+      {
+        dealii::GridGenerator::generate_from_name_and_arguments(source->mesh,
+                                                                name,
+                                                                arguments);
+        source->refine(n_refinements);
+      }
+    catch (const dealii::ExceptionBase &error)
+      {
+        throw std::invalid_argument("deal.II's GridGenerator makes no " + name +
+                                    " of these arguments: " + words_of(error));
+      }
+    for (const dealii::types::boundary_id id : source->mesh.get_boundary_ids())
+      source->names.boundaries[std::to_string(id)] = {id};
+    for (const auto &cell : source->mesh.active_cell_iterators())
+      source->names.regions[std::to_string(cell->material_id())] = {
+        cell->material_id()};
+    return source;
+  }
+
+
+
+  template std::unique_ptr<SourceMesh<2>>
+  generate_mesh(const std::string &, const std::string &, const unsigned int);
+  template std::unique_ptr<SourceMesh<3>>
+  generate_mesh(const std::string &, const std::string &, const unsigned int);
+} // namespace Debond

@@ -1,0 +1,458 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Boxes written as Gmsh files of both versions, of both kinds of cells, some
+// turned inside out, and read again: the same cells, sides and regions as the
+// box has. Files that are no body. Any argument: the number of mutated files
+// that are read beside them.
+
+#include <deal.II/grid/grid_generator.h>
+
+#include <debond/mesh/box.h>
+#include <debond/mesh/crossed_mesh.h>
+#include <debond/mesh/make_body.h>
+#include <debond/mesh/msh_file.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <random>
+
+#include "../check.h"
+
+using namespace dealii;
+using namespace Debond;
+
+/// The mesh as a Gmsh file. Every second cell is written inside out, the nodes
+/// have numbers with gaps, and one node belongs to no cell. The groups of faces
+/// are the boundary ids + 1, that of the cells is "all", and those whose centre
+/// has x > 1 are in "upper" as well.
+template <int dim>
+std::string
+msh_text(const Triangulation<dim> &mesh, const bool version_4)
+{
+  const bool simplices = mesh.all_reference_cells_are_simplex();
+  const auto in_circle = [&](std::vector<unsigned int> v) {
+    for (std::size_t i = 0; !simplices && i + 3 < v.size(); i += 4)
+      std::swap(v[i + 2], v[i + 3]);
+    return v;
+  };
+  struct Element
+  {
+    std::vector<unsigned int> vertices;
+    unsigned int              group;
+  };
+  std::vector<Element> faces, cells;
+  for (const auto &cell : mesh.active_cell_iterators())
+    {
+      std::vector<unsigned int> v;
+      for (const unsigned int i : cell->vertex_indices())
+        v.push_back(cell->vertex_index(i));
+      v = in_circle(v);
+      if (cells.size() % 2 == 1)
+        {
+          if (v.size() == 8)
+            std::swap_ranges(v.begin(), v.begin() + 4, v.begin() + 4);
+          else
+            std::reverse(v.begin(), v.end());
+          // Even permutations of four corners of a tetrahedron do not turn it.
+          if (dim == 3 && v.size() == 4)
+            std::swap(v[0], v[1]);
+        }
+      cells.push_back({v, cell->center()[0] > 1. ? 8u : 7u});
+      for (const auto &face : cell->face_iterators())
+        if (face->at_boundary())
+          {
+            std::vector<unsigned int> w;
+            for (const unsigned int i : face->vertex_indices())
+              w.push_back(face->vertex_index(i));
+            faces.push_back({in_circle(w), face->boundary_id() + 1});
+          }
+    }
+
+  const int  cell_type = dim == 2 ? (simplices ? 2 : 3) : (simplices ? 4 : 5);
+  const int  face_type = dim == 2 ? 1 : (simplices ? 2 : 3);
+  const auto tag       = [](const std::size_t v) { return 3 * v + 5; };
+  std::ostringstream text;
+  text.precision(17);
+  text << "$MeshFormat\n"
+       << (version_4 ? "4.1" : "2.2") << " 0 8\n"
+       << "$EndMeshFormat\n$PhysicalNames\n"
+       << 2 * dim + 2 << '\n';
+  for (const auto &[name, id] : box_sides<dim>())
+    text << dim - 1 << ' ' << id + 1 << " \"" << name << "\"\n";
+  text << dim << " 7 \"all\"\n" << dim << " 8 \"upper\"\n$EndPhysicalNames\n";
+
+  const auto &points = mesh.get_vertices();
+  const auto  print  = [&](const Point<dim> &p) {
+    text << p << (dim == 2 ? " 0\n" : "\n");
+  };
+  const auto n_nodes    = points.size() + 1;
+  const auto n_elements = cells.size() + faces.size();
+  if (version_4)
+    {
+      // Entities of the cells and of each side; the last is in two groups.
+      text << "$Entities\n0 " << (dim == 2 ? "4 2 0\n" : "0 6 2\n");
+      for (unsigned int id = 1; id <= 2 * dim; ++id)
+        text << id << " 0 0 0 1 1 1 1 " << id << " 0\n";
+      text << "1 0 0 0 1 1 1 1 7 0\n2 0 0 0 1 1 1 2 7 -8 0\n$EndEntities\n"
+           << "$Nodes\n1 " << n_nodes << " 1 " << tag(points.size()) << '\n'
+           << dim << " 1 0 " << n_nodes << '\n';
+      for (std::size_t v = 0; v < n_nodes; ++v)
+        text << tag(v) << '\n';
+      for (const auto &p : points)
+        print(p);
+      text << "9 9 9\n$EndNodes\n$Elements\n"
+           << 2 * dim + 2 << ' ' << n_elements << " 1 " << n_elements << '\n';
+      unsigned int number = 0;
+      const auto   block  = [&](const int                   dimension,
+                             const int                   entity,
+                             const int                   type,
+                             const std::vector<Element> &all,
+                             const unsigned int          group) {
+        const auto in_group = [&](const Element &e) {
+          return e.group == group;
+        };
+        text << dimension << ' ' << entity << ' ' << type << ' '
+             << std::count_if(all.begin(), all.end(), in_group) << '\n';
+        for (const Element &e : all)
+          if (in_group(e))
+            {
+              text << ++number;
+              for (const unsigned int v : e.vertices)
+                text << ' ' << tag(v);
+              text << '\n';
+            }
+      };
+      for (unsigned int id = 1; id <= 2 * dim; ++id)
+        block(dim - 1, static_cast<int>(id), face_type, faces, id);
+      block(dim, 1, cell_type, cells, 7);
+      block(dim, 2, cell_type, cells, 8);
+    }
+  else
+    {
+      text << "$Nodes\n" << n_nodes << '\n';
+      for (std::size_t v = 0; v < points.size(); ++v)
+        {
+          text << tag(v) << ' ';
+          print(points[v]);
+        }
+      text << tag(points.size()) << " 9 9 9\n$EndNodes\n";
+      std::ostringstream elements;
+      unsigned int       number = 0;
+      const auto         write =
+        [&](const int type, const Element &e, const unsigned int group) {
+          elements << ++number << ' ' << type << " 2 " << group << " 1";
+          for (const unsigned int v : e.vertices)
+            elements << ' ' << tag(v);
+          elements << '\n';
+        };
+      for (const Element &face : faces)
+        write(face_type, face, face.group);
+      // This version repeats what is in two groups.
+      for (const Element &cell : cells)
+        {
+          write(cell_type, cell, 7);
+          if (cell.group == 8)
+            write(cell_type, cell, 8);
+        }
+      text << "$Elements\n" << number << '\n' << elements.str();
+    }
+  text << "$EndElements\n";
+  return text.str();
+}
+
+
+
+std::string
+write(const std::string &text)
+{
+  const std::string name = "test.msh";
+  std::ofstream(name) << text;
+  return name;
+}
+
+
+
+template <int dim>
+std::shared_ptr<const Body<dim>>
+read(const std::string &text, const double scale = 1.)
+{
+  BodyParameters parameters;
+  parameters.source = BodyParameters::Source::file;
+  parameters.file   = write(text);
+  parameters.scale  = scale;
+  return std::dynamic_pointer_cast<const Body<dim>>(make_body(dim, parameters));
+}
+
+
+
+/// Where the cells of each region and the faces of each boundary are, as
+/// sorted lists of the centres.
+template <int dim>
+std::map<std::string, std::vector<std::array<double, dim + 1>>>
+pieces(const Triangulation<dim> &mesh, const PieceNames &names)
+{
+  std::map<std::string, std::vector<std::array<double, dim + 1>>> result;
+  const auto add = [&](const std::string &name, const auto &object) {
+    std::array<double, dim + 1> entry;
+    for (unsigned int d = 0; d < dim; ++d)
+      entry[d] = std::round(1e9 * object->center()[d]);
+    entry[dim] = std::round(1e9 * object->measure());
+    result[name].push_back(entry);
+  };
+  for (const auto &cell : mesh.active_cell_iterators())
+    {
+      for (const auto &[name, ids] : names.regions)
+        if (ids.count(cell->material_id()) > 0)
+          add(name, cell);
+      for (const auto &face : cell->face_iterators())
+        if (face->at_boundary())
+          for (const auto &[name, ids] : names.boundaries)
+            if (ids.count(face->boundary_id()) > 0)
+              add(name, face);
+    }
+  for (auto &[unused, list] : result)
+    std::sort(list.begin(), list.end());
+  return result;
+}
+
+
+
+template <int dim>
+void
+test_box(const BoxParameters &parameters)
+{
+  const Box<dim>     box(parameters);
+  Triangulation<dim> mesh;
+  PieceNames         names = box.make_mesh(mesh);
+  // The regions, from the cells before they are crossed.
+  Triangulation<dim>        coarse;
+  std::vector<unsigned int> cells;
+  Point<dim>                corner;
+  for (unsigned int d = 0; d < dim; ++d)
+    {
+      cells.push_back(parameters.cells[d]);
+      corner[d] = parameters.lengths[d];
+    }
+  GridGenerator::subdivided_hyper_rectangle(
+    coarse, cells, Point<dim>(), corner, true);
+  for (const auto &cell : mesh.active_cell_iterators())
+    cell->set_material_id(1);
+  names.regions["all"] = {1, 2};
+
+  for (const bool crossed : {false, true})
+    for (const bool version_4 : {false, true})
+      {
+        for (const auto &cell : mesh.active_cell_iterators())
+          {
+            // Of a quadrilateral as a whole, where that is what is written.
+            const double edge = parameters.lengths[0] / parameters.cells[0];
+            const double x =
+              crossed ? cell->center()[0] :
+                        (std::floor(cell->center()[0] / edge) + 0.5) * edge;
+            cell->set_material_id(x > 1. ? 2 : 1);
+          }
+        names.regions["upper"] = {2};
+
+        const std::string text =
+          crossed ? msh_text(mesh, version_4) : msh_text(coarse, version_4);
+        const auto         body = read<dim>(text);
+        Triangulation<dim> read_mesh;
+        const PieceNames   read_names = body->make_mesh(read_mesh);
+        std::cout << dim << "D, " << (crossed ? "simplices" : "to be crossed")
+                  << ", version " << (version_4 ? "4.1" : "2.2") << ": "
+                  << read_mesh.n_active_cells() << " cells" << std::endl;
+        check("the box's cells and names",
+              pieces<dim>(read_mesh, read_names) == pieces<dim>(mesh, names));
+        check("number of vertices",
+              body->n_vertices() == mesh.n_used_vertices());
+        bool same = body->n_cells() == mesh.n_active_cells();
+        for (const auto &[name, unused] : box_sides<dim>())
+          same = same && body->n_vertices_on(name) == box.n_vertices_on(name);
+        check("sizes", same && body->boundaries() == box.boundaries());
+        for (unsigned int d = 0; d < dim; ++d)
+          same = same && std::abs(body->shape().lengths[d] -
+                                  parameters.lengths[d]) < 1e-12;
+        check("lengths", same);
+      }
+}
+
+
+
+/// A square of two triangles with a boundary element, to be spoilt.
+const std::string square = "$MeshFormat\n"
+                           "2.2 0 8\n"
+                           "$EndMeshFormat\n"
+                           "$Nodes\n"
+                           "5\n"
+                           "1 0 0 0\n"
+                           "2 1 0 0\n"
+                           "3 1 1 0\n"
+                           "4 0 1 0\n"
+                           "5 0.5 0 0\n"
+                           "$EndNodes\n"
+                           "$Elements\n"
+                           "3\n"
+                           "1 1 2 1 1 1 2\n"
+                           "2 2 2 1 1 1 2 3\n"
+                           "3 2 2 1 1 1 3 4\n"
+                           "$EndElements\n";
+
+std::string
+with(const std::string &from, const std::string &to, std::string text = square)
+{
+  const std::size_t at = text.find(from);
+  return at == std::string::npos ? "not in it: " + from :
+                                   text.replace(at, from.size(), to);
+}
+
+
+
+void
+test_errors()
+{
+  std::cout << "Files that are no body" << std::endl;
+  const auto error = [](const std::string &text) {
+    print_error([&] { read<2>(text); });
+  };
+  check("a square without groups' names is one",
+        read<2>(square)->boundaries() == std::set<std::string>{"1"});
+  error("");
+  error("$MeshFormat\n");
+  error(with("2.2 0 8", "4.0 0 8"));
+  error(with("2.2 0 8", "2.2 1 8"));
+  error(with("$Nodes\n5", "$Nodes\n6"));
+  error(with("$Nodes\n5", "$Nodes\nfive"));
+  error(with("4 0 1 0", "4 0 1"));
+  error(with("4 0 1 0", "4 0 nan 0"));
+  error(with("4 0 1 0", "3 0 1 0"));
+  error(with("4 0 1 0", "4 0 1 1"));
+  error(with("$EndElements\n", ""));
+  error(with("1 3 4", "1 3 6"));
+  error(with("1 3 4", "1 3 3"));
+  error(with("3 2 2 1 1 1 3 4", "3 9 2 1 1 1 3 4 5 5 5"));
+  error(with("3 2 2 1 1 1 3 4", "3 4 2 1 1 1 2 3 4"));
+  error(with("3 2 2 1 1 1 3 4", "3 3 2 1 1 1 2 3 4"));
+  error(with("1 3 4", "1 2 4"));                 // overlaps
+  error(with("1 1 2 1 1 1 2", "1 1 2 1 1 2 4")); // an edge of nothing
+  error(with("4 0 1 0", "4 2 2 0"));             // flat
+  // A triangle below two whose common node is on its edge.
+  error(with("3\n1 1 2 1 1 1 2\n2 2 2 1 1 1 2 3\n3 2 2 1 1 1 3 4",
+             "4\n2 2 2 1 1 1 5 4\n3 2 2 1 1 5 2 3\n4 2 2 1 1 5 3 4\n"
+             "5 2 2 1 1 1 6 2",
+             with("$Nodes\n5", "$Nodes\n6\n6 0.5 -1 0")));
+  // A triangle that touches a corner only.
+  error(with("1 3 4", "3 4 5", with("5 0.5 0 0", "5 2 2 0")));
+  error(with("2 2 2 1 1 1 2 3\n3 2 2 1 1 1 3 4",
+             "2 3 2 1 1 1 2 3 4\n3 15 2 1 1 1",
+             with("3 1 1 0", "3 0.2 0.2 0")));
+  print_error([&] { read<3>(square); });
+  print_error(
+    [&] { read<3>(with("3 2 2 1 1 1 3 4", "3 6 2 1 1 1 3 4 2 5 5")); });
+}
+
+
+
+/// Reads mutated files: each is a body or is refused by its name.
+void
+test_mutations(const unsigned int n)
+{
+  std::mt19937             random(1);
+  std::vector<std::string> texts;
+  Triangulation<2>         coarse, crossed;
+  Triangulation<3>         bricks;
+  GridGenerator::subdivided_hyper_rectangle(
+    coarse, {4, 2}, Point<2>(), Point<2>(2., 1.), true);
+  crossed_subdivision(coarse, crossed);
+  GridGenerator::subdivided_hyper_rectangle(
+    bricks, {2, 1, 1}, Point<3>(), Point<3>(2., 1., 1.), true);
+  for (const bool version_4 : {false, true})
+    texts.insert(texts.end(),
+                 {msh_text(coarse, version_4),
+                  msh_text(crossed, version_4),
+                  msh_text(bricks, version_4)});
+
+  const auto pick = [&](const std::size_t size) {
+    return std::uniform_int_distribution<std::size_t>(0, size - 1)(random);
+  };
+  const std::vector<std::string> odd = {
+    "-1", "0", "1e300", "nan", "x", "99999999999999999999", "2", "7", "", "\""};
+  unsigned int n_read = 0, n_refused = 0;
+  for (unsigned int i = 0; i < n; ++i)
+    {
+      const std::size_t        which = pick(texts.size());
+      std::vector<std::string> lines;
+      std::istringstream       text(texts[which]);
+      for (std::string line; std::getline(text, line);)
+        lines.push_back(line);
+      for (std::size_t k = 0; k <= pick(3); ++k)
+        {
+          std::string &line = lines[pick(lines.size())];
+          switch (pick(5))
+            {
+              case 0:
+                lines.erase(lines.begin() + (&line - lines.data()));
+                break;
+              case 1:
+                std::swap(line, lines[pick(lines.size())]);
+                break;
+              case 2:
+                line = line.substr(0, pick(line.size() + 1));
+                break;
+              case 3:
+                lines.insert(lines.begin() + (&line - lines.data()),
+                             std::string(lines[pick(lines.size())]));
+                break;
+              default:
+                {
+                  const std::size_t at = line.rfind(' ', pick(line.size() + 1));
+                  const std::size_t from = at == std::string::npos ? 0 : at + 1;
+                  line.replace(from,
+                               line.find(' ', from) - from,
+                               odd[pick(odd.size())]);
+                }
+            }
+        }
+      std::string mutated;
+      for (const std::string &line : lines)
+        mutated += line + '\n';
+
+      try
+        {
+          if (which % 3 == 2)
+            {
+              Triangulation<3> mesh;
+              read<3>(mutated)->make_mesh(mesh);
+            }
+          else
+            {
+              Triangulation<2> mesh;
+              read<2>(mutated)->make_mesh(mesh);
+            }
+          ++n_read;
+        }
+      catch (const std::invalid_argument &error)
+        {
+          const std::string message = error.what();
+          if (message.find("test.msh") != std::string::npos)
+            ++n_refused;
+          else
+            std::cout << message << std::endl;
+        }
+    }
+  check("mutated files are read or refused by name", n_read + n_refused == n);
+  check("some of each", n_read > 0 && n_refused > 0);
+}
+
+
+
+int
+main(int argc, char **argv)
+{
+  print_figures = argc > 1;
+  test_box<2>({{{3., 1., 1.}}, {{5, 3, 1}}, 0.});
+  test_box<3>({{{3., 1., 0.5}}, {{3, 2, 2}}, 0.});
+  test_errors();
+  test_mutations(argc > 1 ? static_cast<unsigned int>(std::stoul(argv[1])) :
+                            300);
+}

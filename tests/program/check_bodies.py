@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""check_bodies.py DEBOND SCENE: the benchmark's bar, 40x4, as a box, from a
+Gmsh file (quadrilaterals that are crossed, triangles that are used as they are,
+a coarser mesh that is refined, a mesh in mm), and from a generator: J is the
+same to 1e-12, and so are the contact nodes. What is wrong with a mesh is told
+with its place.
+"""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+NAMES = {1: "left", 2: "right", 3: "bottom", 4: "top"}
+
+
+def msh(nx, ny, scale=1., triangles=False):
+    """The bar as a file of version 2.2."""
+    points = {}
+
+    def node(i, j):
+        return points.setdefault((i, j), len(points) + 1)
+
+    cells = []
+    for j in range(0, 2 * ny, 2):
+        for i in range(0, 2 * nx, 2):
+            corners = [node(i, j), node(i + 2, j), node(i + 2, j + 2),
+                       node(i, j + 2)]
+            if triangles:
+                centre = node(i + 1, j + 1)
+                cells += [[corners[k], corners[(k + 1) % 4], centre]
+                          for k in range(4)]
+            else:
+                cells.append(corners)
+    lines = []
+    for i in range(0, 2 * nx, 2):
+        lines += [(3, node(i, 0), node(i + 2, 0)),
+                  (4, node(i, 2 * ny), node(i + 2, 2 * ny))]
+    for j in range(0, 2 * ny, 2):
+        lines += [(1, node(0, j), node(0, j + 2)),
+                  (2, node(2 * nx, j), node(2 * nx, j + 2))]
+
+    text = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "4"]
+    text += [f'1 {group} "{name}"' for group, name in NAMES.items()]
+    text += ["$EndPhysicalNames", "$Nodes", str(len(points))]
+    text += [f"{n} {scale * 0.2 * i / nx!r} {scale * 0.02 * j / ny!r} 0"
+             for (i, j), n in points.items()]
+    text += ["$EndNodes", "$Elements", str(len(lines) + len(cells))]
+    text += [f"{n} 1 2 {group} 1 {a} {b}"
+             for n, (group, a, b) in enumerate(lines, 1)]
+    kind = 2 if triangles else 3
+    text += [f"{n} {kind} 2 9 1 " + " ".join(map(str, cell))
+             for n, cell in enumerate(cells, len(lines) + 1)]
+    return "\n".join(text + ["$EndElements", ""])
+
+
+def run(debond, settings):
+    arguments = [f"--set={entry}" for entry in
+                 ["Solver/Method=majorise minimise", "Output/Body VTU=false",
+                  "Output/Directory=output"] + settings]
+    return subprocess.run([debond, "scenes/bar.prm"] + arguments,
+                          capture_output=True, text=True, check=False)
+
+
+def main(debond, scene):
+    failures = []
+    reference = None
+
+    def same(what, settings):
+        nonlocal reference
+        result = run(debond, settings)
+        if result.returncode != 0:
+            failures.append(f"{what}: {result.stderr}")
+            return
+        summary = json.loads(pathlib.Path("output/summary.json").read_text())
+        if reference is None:
+            reference = summary
+        if (abs(summary["functional"] / reference["functional"] - 1.) > 1e-12
+                or summary["bond_states"] != reference["bond_states"]):
+            failures.append(f"{what}: J = {summary['functional']!r}, of the box "
+                            f"{reference['functional']!r}")
+
+    def refused(message, settings):
+        result = run(debond, settings)
+        if result.returncode != 2 or message not in result.stderr:
+            failures.append(f"expected {message!r}, exit code 2: exit code "
+                            f"{result.returncode}, {result.stderr!r}")
+
+    pathlib.Path("scenes").mkdir()
+    shutil.copy(scene, "scenes/bar.prm")
+    for name, text in {"quadrilaterals": msh(40, 4),
+                       "triangles": msh(40, 4, triangles=True),
+                       "coarse": msh(20, 2), "mm": msh(40, 4, 1000.),
+                       "cut": msh(40, 4).replace("$EndElements\n", "")}.items():
+        pathlib.Path(f"scenes/{name}.msh").write_text(text)
+
+    def file(name):
+        return ["Mesh/Source=file", f"Mesh/File={name}.msh"]
+
+    same("box", [])
+    same("quadrilaterals", file("quadrilaterals"))
+    same("triangles", file("triangles"))
+    same("refined", file("coarse") + ["Mesh/Refinements=1"])
+    same("scaled", file("mm") + ["Mesh/Scale=0.001"])
+    # What was written can be run again from another folder.
+    shutil.copy("output/parameters.prm", "bar-again.prm")
+    again = subprocess.run([debond, "bar-again.prm"], capture_output=True,
+                           text=True, check=False)
+    if again.returncode != 0:
+        failures.append(f"the effective scene: {again.stderr}")
+    generator = ["Mesh/Source=generator",
+                 "Mesh/Generator=subdivided_hyper_rectangle",
+                 "Boundary conditions/Clamped boundaries=0, 1",
+                 "Boundary conditions/Contact boundary=2",
+                 "Loads/Traction top=",
+                 "Loads/Traction 3=0; if(x < 0.2, 0.69, -0.345)"]
+    same("generator",
+         generator + ["Mesh/Arguments=40, 4 : 0, 0 : 0.4, 0.04 : true"])
+    same("generator, refined",
+         generator + ["Mesh/Arguments=10, 1 : 0, 0 : 0.4, 0.04 : true",
+                      "Mesh/Refinements=2"])
+
+    refused("Mesh/File =  (default): Source = file needs one", ["Mesh/Source=file"])
+    refused("scenes/none.msh cannot be read", file("none"))
+    refused("this is no Gmsh file", ["Mesh/Source=file", "Mesh/File=bar.prm"])
+    refused("the file ends within $Elements", file("cut"))
+    refused("Mesh/File = mm.msh: this belongs to Source = file",
+            ["Mesh/File=mm.msh"])
+    refused("Mesh/Refinements = 1: a box has its Cells", ["Mesh/Refinements=1"])
+    refused("A mesh of triangles or tetrahedra is not refined",
+            file("triangles") + ["Mesh/Refinements=1"])
+    refused("the body has no boundary glued, but bottom, left, right, top",
+            file("mm") + ["Boundary conditions/Contact boundary=glued"])
+    refused("the mesh has no tetrahedra or hexahedra",
+            file("mm") + ["Dimension=3"])
+    refused("Mesh/Generator =  (default): Source = generator needs one",
+            ["Mesh/Source=generator"])
+
+    for failure in failures:
+        print(failure)
+    return 1 if failures else 0
+
+
+with tempfile.TemporaryDirectory() as directory:
+    program, scene = (str(pathlib.Path(path).resolve())
+                      for path in sys.argv[1:])
+    os.chdir(directory)
+    sys.exit(main(program, scene))
