@@ -2,6 +2,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <debond/base/nearest_name.h>
+#include <debond/base/number_text.h>
 #include <debond/base/parameter_table.h>
 #include <debond/base/text.h>
 
@@ -9,6 +10,7 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 namespace Debond
 {
@@ -85,9 +87,14 @@ namespace Debond
                           const std::string &default_value,
                           const Pattern     &pattern,
                           const std::string &documentation,
-                          const std::string &units)
+                          const std::string &units,
+                          const Reader      &reader,
+                          const AtRestart    restart)
   {
-    expected[path] = pattern.description();
+    const std::string expected = pattern.description();
+    entries[path]              = {expected, restart};
+    if (reader)
+      readers.emplace_back(path, reader);
 
     const auto [sections, name] = split_path(path);
     for (const std::string &section : sections)
@@ -95,7 +102,7 @@ namespace Debond
     handler.declare_entry(name,
                           default_value,
                           pattern,
-                          documentation + ". Allowed: " + expected[path] +
+                          documentation + ". Allowed: " + expected +
                             ". Units: " + units + ".");
     for (std::size_t i = 0; i < sections.size(); ++i)
       handler.leave_subsection();
@@ -104,12 +111,140 @@ namespace Debond
 
 
   void
-  ParameterTable::declare_family(const std::string &path,
-                                 const Pattern     &pattern,
-                                 const std::string &documentation,
-                                 const std::string &units)
+  ParameterTable::bind(const std::string &path,
+                       double            &variable,
+                       const Pattern     &pattern,
+                       const std::string &documentation,
+                       const std::string &units,
+                       const AtRestart    restart)
   {
-    families.emplace(path, Family{pattern, documentation, units});
+    declare(
+      path,
+      shortest_text(variable),
+      pattern,
+      documentation,
+      units,
+      [&variable](const std::string &text) { read_number(text, variable); },
+      restart);
+  }
+
+
+
+  void
+  ParameterTable::bind(const std::string &path,
+                       unsigned int      &variable,
+                       const Pattern     &pattern,
+                       const std::string &documentation,
+                       const std::string &units,
+                       const AtRestart    restart)
+  {
+    declare(
+      path,
+      std::to_string(variable),
+      pattern,
+      documentation,
+      units,
+      [&variable](const std::string &text) {
+        variable = static_cast<unsigned int>(std::stoul(text));
+      },
+      restart);
+  }
+
+
+
+  void
+  ParameterTable::bind(const std::string &path,
+                       std::string       &variable,
+                       const Pattern     &pattern,
+                       const std::string &documentation,
+                       const std::string &units,
+                       const AtRestart    restart)
+  {
+    declare(
+      path,
+      variable,
+      pattern,
+      documentation,
+      units,
+      [&variable](const std::string &text) { variable = text; },
+      restart);
+  }
+
+
+
+  void
+  ParameterTable::bind(const std::string   &path,
+                       std::vector<double> &variable,
+                       const Pattern       &pattern,
+                       const std::string   &documentation,
+                       const std::string   &units,
+                       const AtRestart      restart)
+  {
+    std::vector<std::string> words;
+    for (const double number : variable)
+      words.push_back(shortest_text(number));
+    declare(
+      path,
+      join(words, ", "),
+      pattern,
+      documentation,
+      units,
+      [&variable](const std::string &text) {
+        variable.clear();
+        for (const std::string &word :
+             dealii::Utilities::split_string_list(text, ','))
+          read_number(word, variable.emplace_back());
+      },
+      restart);
+  }
+
+
+
+  void
+  ParameterTable::bind(const std::string     &path,
+                       std::set<std::string> &variable,
+                       const std::string     &documentation,
+                       const AtRestart        restart)
+  {
+    declare(
+      path,
+      join({variable.begin(), variable.end()}, ", "),
+      list_of_names(),
+      documentation,
+      "none",
+      [&variable](const std::string &text) {
+        const std::vector<std::string> names =
+          dealii::Utilities::split_string_list(text, ',');
+        variable = {names.begin(), names.end()};
+      },
+      restart);
+  }
+
+
+
+  void
+  ParameterTable::bind(const std::string &path,
+                       bool              &variable,
+                       const std::string &documentation,
+                       const AtRestart    restart)
+  {
+    bind_choice(path,
+                variable,
+                {{"true", true}, {"false", false}},
+                documentation,
+                restart);
+  }
+
+
+
+  void
+  ParameterTable::bind_family(const std::string                  &path,
+                              std::map<std::string, std::string> &variable,
+                              const Pattern                      &pattern,
+                              const std::string                  &documentation,
+                              const std::string                  &units)
+  {
+    families.emplace(path, Family{pattern, documentation, units, &variable});
   }
 
 
@@ -128,33 +263,18 @@ namespace Debond
 
 
 
-  std::vector<std::string>
-  ParameterTable::family(const std::string &path) const
-  {
-    std::vector<std::string> members;
-    for (const auto &[candidate, unused] : expected)
-      if (starts_with(candidate, path + " "))
-        members.push_back(candidate.substr(path.size() + 1));
-    return members;
-  }
-
-
-
   void
   ParameterTable::set(const std::string &path,
                       const std::string &value,
                       const std::string &location)
   {
-    if (expected.find(path) == expected.end() && !declare_member(path))
+    if (entries.count(path) == 0 && !declare_member(path))
       {
-        std::vector<std::string> known;
-        for (const auto &entry : expected)
-          known.push_back(entry.first);
         lines.push_back(location + ": unknown parameter " + path +
-                        suggestion(path, known));
+                        suggestion(path, known_entries()));
         return;
       }
-    locations[path] = location;
+    set_at[path] = location;
 
     const auto [sections, name] = split_path(path);
     for (const std::string &section : sections)
@@ -167,7 +287,7 @@ namespace Debond
     catch (const dealii::ParameterHandler::ExcValueDoesNotMatchPattern &)
       {
         lines.push_back(location + ": " + path + " = " + shortened(value) +
-                        ": expected " + expected[path]);
+                        ": expected " + entries[path].expected);
         rejected.insert(path);
       }
     for (std::size_t i = 0; i < sections.size(); ++i)
@@ -182,10 +302,8 @@ namespace Debond
     file_name = file;
     reading.push_back(file);
 
-    std::vector<std::string> known;
-    for (const auto &entry : expected)
-      known.push_back(entry.first);
-    const std::vector<std::string> known_sections = sections_of(known);
+    const std::vector<std::string> known_sections =
+      sections_of(known_entries());
 
     // The sections that are open, and where they were opened. What is in an
     // unknown section is skipped, since the section is reported already.
@@ -337,6 +455,31 @@ namespace Debond
 
 
 
+  void
+  ParameterTable::parse()
+  {
+    for (const auto &[path, reader] : readers)
+      try
+        {
+          reader(get(path));
+        }
+      catch (const std::invalid_argument &error)
+        {
+          reject(path, error.what());
+        }
+
+    for (const auto &[path, family] : families)
+      {
+        family.variable->clear();
+        for (const std::string &member : known_entries())
+          if (starts_with(member, path + " "))
+            if (const std::string value = get(member); !value.empty())
+              (*family.variable)[member.substr(path.size() + 1)] = value;
+      }
+  }
+
+
+
   std::string
   ParameterTable::get(const std::string &path) const
   {
@@ -346,46 +489,45 @@ namespace Debond
 
 
 
-  double
-  ParameterTable::get_double(const std::string &path) const
+  std::string
+  ParameterTable::location(const std::string &path) const
   {
-    const auto [sections, name] = split_path(path);
-    return handler.get_double(sections, name);
+    const auto location = set_at.find(path);
+    return location != set_at.end() ? location->second : file_name;
   }
 
 
 
-  unsigned int
-  ParameterTable::get_unsigned(const std::string &path) const
+  std::map<std::string, std::string>
+  ParameterTable::locations() const
   {
-    const auto [sections, name] = split_path(path);
-    return static_cast<unsigned int>(handler.get_integer(sections, name));
+    std::map<std::string, std::string> result;
+    for (const std::string &path : known_entries())
+      result[path] = location(path);
+    return result;
   }
 
 
 
-  bool
-  ParameterTable::get_bool(const std::string &path) const
+  std::map<std::string, std::string>
+  ParameterTable::values_of_state() const
   {
-    const auto [sections, name] = split_path(path);
-    return handler.get_bool(sections, name);
+    std::map<std::string, std::string> result;
+    for (const auto &[path, entry] : entries)
+      if (entry.restart == AtRestart::same)
+        result[path] = get(path);
+    return result;
   }
 
 
 
   std::vector<std::string>
-  ParameterTable::get_list(const std::string &path) const
+  ParameterTable::known_entries() const
   {
-    return dealii::Utilities::split_string_list(get(path), ',');
-  }
-
-
-
-  std::string
-  ParameterTable::location(const std::string &path) const
-  {
-    const auto location = locations.find(path);
-    return location != locations.end() ? location->second : file_name;
+    std::vector<std::string> paths;
+    for (const auto &[path, unused] : entries)
+      paths.push_back(path);
+    return paths;
   }
 
 
@@ -412,22 +554,11 @@ namespace Debond
                          const std::string              &reason,
                          const std::vector<std::string> &others)
   {
-    const bool is_default = locations.count(path) == 0;
+    const bool is_default = set_at.count(path) == 0;
     add_error(path,
               path + " = " + shortened(get(path)) +
                 (is_default ? " (default): " : ": ") + reason,
               others);
-  }
-
-
-
-  std::map<std::string, std::string>
-  ParameterTable::values() const
-  {
-    std::map<std::string, std::string> result;
-    for (const auto &[path, unused] : expected)
-      result[path] = get(path);
-    return result;
   }
 
 

@@ -71,14 +71,13 @@ namespace Debond
   {
     try
       {
-        ParameterTable table;
-        declare_parameters(table);
+        SceneTable table;
         read_scene(scene, table);
         for (const std::string &setting : settings)
           table.assign(setting);
         // No iterations in the log.
         table.assign("Output/Machine details=false");
-        return to_parameters(scene, table);
+        return table.parameters(scene);
       }
     catch (const BadInput &error)
       {

@@ -174,32 +174,32 @@ namespace Debond
 
 
 
+  LawSection::LawSection()
+    : name(kinds()[0].name)
+  {}
+
+
+
   void
-  declare_laws(ParameterTable &table)
+  LawSection::bind(ParameterTable &table)
   {
     std::vector<std::string> descriptions;
     for (const LawKind &kind : kinds())
       descriptions.push_back(kind.name + " " + kind.description);
-    table.declare("Contact law/Law",
-                  kinds()[0].name,
-                  one_of(law_names()),
-                  "The adhesive law: " + join(descriptions, "; "),
-                  "none");
+    table.bind("Contact law/Law",
+               name,
+               one_of(law_names()),
+               "The adhesive law: " + join(descriptions, "; "),
+               "none");
     for (const LawKind &kind : kinds())
-      kind.declare(table);
+      makers[kind.name] = kind.bind(table);
   }
 
 
 
   ContactLawParameters
-  read_law(ParameterTable &table)
+  LawSection::make_law(ParameterTable &table) const
   {
-    const std::string name = table.get("Contact law/Law");
-    const auto        kind =
-      std::find_if(kinds().begin(), kinds().end(), [&](const LawKind &k) {
-        return k.name == name;
-      });
-    // Another name has been rejected already.
-    return (kind == kinds().end() ? kinds()[0] : *kind).read(table);
+    return makers.at(name)(table);
   }
 } // namespace Debond

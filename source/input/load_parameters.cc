@@ -74,16 +74,21 @@ namespace Debond
 
 
   void
-  declare_loads(ParameterTable &table)
+  bind_loads(LoadParameters &loads, ParameterTable &table)
   {
     const Pattern expression = vector_expression();
-    table.declare(
+    table.bind(
       "Loads/Body force",
-      "",
+      loads.body_force,
       expression,
       "The body force f_0 in global coordinates: expressions in x, y (and z in 3D) as muParser reads them; none if empty",
       "force per volume");
     const std::string traction = "The traction f_2 on the ";
+    table.bind_family("Loads/Traction",
+                      loads.tractions,
+                      expression,
+                      traction + "boundary of this name",
+                      "force per area");
     for (const std::string side :
          {"left", "right", "bottom", "top", "front", "back"})
       table.declare("Loads/Traction " + side,
@@ -91,10 +96,6 @@ namespace Debond
                     expression,
                     traction + "side " + side + ", as the body force",
                     "force per area");
-    table.declare_family("Loads/Traction",
-                         expression,
-                         traction + "boundary of this name",
-                         "force per area");
     table.declare(
       "Loads/Constants",
       "",
@@ -105,22 +106,26 @@ namespace Debond
           return read_constants(value, constants);
         }),
       "Names that the expressions may use, such as 'q=0.69, L=0.4'. pi is known, and unless they are given here, so are the material's E, nu, lambda and mu (in plane stress the lambda of the plane problem)",
-      "those that the expressions need");
+      "those that the expressions need",
+      [&loads](const std::string &text) {
+        loads.constants.clear();
+        read_constants(text, loads.constants);
+      });
   }
 
 
 
-  std::string
-  read_expression(ParameterTable                      &table,
-                  const std::string                   &path,
-                  const unsigned int                   dimension,
-                  const std::map<std::string, double> &constants)
+  void
+  check_expression(const std::string                   &path,
+                   const std::string                   &expression,
+                   const unsigned int                   dimension,
+                   const std::map<std::string, double> &constants,
+                   ParameterTable                      &table)
   {
-    const std::string expression = table.get(path);
+    if (expression.empty())
+      return;
     try
       {
-        if (expression.empty())
-          return "";
         if (dimension == 2)
           make_function<2>(expression, constants);
         else
@@ -130,33 +135,27 @@ namespace Debond
       {
         table.reject(path, error.what(), {"Dimension", "Loads/Constants"});
       }
-    return expression;
   }
 
 
 
-  LoadParameters
-  read_loads(const unsigned int dimension,
-             const Material    &material,
-             ParameterTable    &table)
+  void
+  complete_loads(const unsigned int dimension,
+                 const Material    &material,
+                 LoadParameters    &loads,
+                 ParameterTable    &table)
   {
-    LoadParameters loads;
-    read_constants(table.get("Loads/Constants"), loads.constants);
     if (dimension == 2)
       add_material_constants<2>(material, loads.constants);
     else
       add_material_constants<3>(material, loads.constants);
 
-    const auto read = [&](const std::string &path) {
-      return read_expression(table, path, dimension, loads.constants);
+    const auto check = [&](const std::string &path,
+                           const std::string &expression) {
+      check_expression(path, expression, dimension, loads.constants, table);
     };
-    loads.body_force = read("Loads/Body force");
-    for (const std::string &boundary : table.family("Loads/Traction"))
-      {
-        const std::string traction = read("Loads/Traction " + boundary);
-        if (!traction.empty())
-          loads.tractions[boundary] = traction;
-      }
-    return loads;
+    check("Loads/Body force", loads.body_force);
+    for (const auto &[boundary, traction] : loads.tractions)
+      check("Loads/Traction " + boundary, traction);
   }
 } // namespace Debond

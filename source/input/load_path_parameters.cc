@@ -3,7 +3,6 @@
 
 #include <debond/input/load_path_parameters.h>
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -13,10 +12,6 @@ namespace Debond
   namespace
   {
     constexpr unsigned int most_factors = 10000;
-
-    const std::vector<std::string> global_branch_names = {"none",
-                                                          "search",
-                                                          "prove"};
 
 
 
@@ -107,7 +102,7 @@ namespace Debond
 
 
   void
-  declare_load_path(ParameterTable &table)
+  bind_load_path(LoadPathParameters &load_path, ParameterTable &table)
   {
     table.declare(
       "Load path/Factors",
@@ -116,35 +111,16 @@ namespace Debond
               "commas",
               [](const std::string & /*value*/) { return true; }),
       "Multiples of all loads that are applied one after the other, each solved from the state before it, the first one from rest, such as '0:0.05:1.2, 1.2:-0.05:0' for loading and unloading; empty for the loads as they are. Needs majorise minimise with a direct linear solver",
-      "none");
-    table.declare(
+      "none",
+      [&load_path](const std::string &text) {
+        load_path.factors = parse_load_factors(text);
+      });
+    table.bind_choice(
       "Load path/Global branch",
-      global_branch_names[static_cast<unsigned int>(
-        LoadPathParameters().global_branch)],
-      one_of(global_branch_names),
-      "What is computed beside the states that the load path leads to: search is the lowest minimum that a search finds at each factor (full, unless Solver/Search is quick), prove has it proved as well, with the limits of Solver/Proof for each factor, and needs nodal quadrature",
-      "none");
-  }
-
-
-
-  LoadPathParameters
-  read_load_path(ParameterTable &table)
-  {
-    LoadPathParameters parameters;
-    try
-      {
-        parameters.factors = parse_load_factors(table.get("Load path/Factors"));
-      }
-    catch (const std::invalid_argument &error)
-      {
-        table.reject("Load path/Factors", error.what());
-      }
-    const auto name          = std::find(global_branch_names.begin(),
-                                global_branch_names.end(),
-                                table.get("Load path/Global branch"));
-    parameters.global_branch = static_cast<GlobalBranch>(
-      std::distance(global_branch_names.begin(), name));
-    return parameters;
+      load_path.global_branch,
+      {{"none", GlobalBranch::none},
+       {"search", GlobalBranch::search},
+       {"prove", GlobalBranch::prove}},
+      "What is computed beside the states that the load path leads to: search is the lowest minimum that a search finds at each factor (full, unless Solver/Search is quick), prove has it proved as well, with the limits of Solver/Proof for each factor, and needs nodal quadrature");
   }
 } // namespace Debond

@@ -134,8 +134,7 @@ namespace Debond
       if (options.count("set") > 0)
         assignments = options["set"].as<std::vector<std::string>>();
 
-      ParameterTable table;
-      declare_parameters(table);
+      SceneTable table;
       if (options.count("scene") > 0)
         {
           const std::string file = options["scene"].as<std::string>();
@@ -160,7 +159,7 @@ namespace Debond
 
       const bool only_validate = options.count("validate") > 0;
       Parameters parameters =
-        to_parameters(options["scene"].as<std::string>(), table);
+        table.parameters(options["scene"].as<std::string>());
       parameters.restart = options.count("restart") > 0;
       return parameters.dimension == 2 ?
                run_or_validate<2>(parameters, only_validate) :

@@ -2,7 +2,6 @@
 #include <debond/base/version.h>
 #include <debond/solve/run_checkpoints.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
@@ -10,40 +9,6 @@ namespace Debond
 {
   namespace
   {
-    /// Beginnings of the names of parameters that change no iterate of a bundle
-    /// method: where it ends, and what is done with the result.
-    const std::vector<std::string> free_to_change = {
-      "Output/",
-      "Verification/",
-      "Solver/Checkpoint interval",
-      "Solver/Memory limit",
-      "Solver/Method",
-      "Solver/Linear solver",
-      "Solver/Search",
-      "Solver/Prove",
-      "Solver/Proof/",
-      "Solver/Majorise minimise/",
-      "Solver/Euclidean bundle/Stop tolerance",
-      "Solver/Euclidean bundle/Maximum iterations",
-      "Solver/Energy bundle/Stop tolerance",
-      "Solver/Energy bundle/Maximum iterations"};
-
-
-
-    bool
-    may_change(const std::string &parameter)
-    {
-      return std::any_of(free_to_change.begin(),
-                         free_to_change.end(),
-                         [&](const std::string &beginning) {
-                           return parameter.compare(0,
-                                                    beginning.size(),
-                                                    beginning) == 0;
-                         });
-    }
-
-
-
     std::string
     value_of(const CheckpointOrigin &origin, const std::string &name)
     {
@@ -63,9 +28,7 @@ namespace Debond
     , interval(parameters.checkpoint_interval)
     , method_has_states(choice.method != SolverMethod::majorise_minimise)
   {
-    for (const auto &[name, value] : parameters.values)
-      if (!may_change(name))
-        origin.settings[name] = value;
+    origin.settings = parameters.values_of_state;
     // What was chosen, not how.
     origin.settings["the method"] = choice.method;
     origin.revision               = git_revision();

@@ -64,14 +64,13 @@ namespace Debond
       one.settings.push_back("Output/Contact VTU=" + fields);
       one.settings.push_back("Output/Directory=" + one.directory);
 
-      ParameterTable table;
-      declare_parameters(table);
+      SceneTable table;
       read_scene(study.scene, table);
       for (const std::string &setting : one.settings)
         table.assign(setting);
       try
         {
-          const Parameters parameters = to_parameters(study.scene, table);
+          const Parameters parameters = table.parameters(study.scene);
           one.effective_scene         = parameters.effective_scene;
           one.law                     = parameters.law;
           const BodyShape shape       = scene_size(parameters).shape;

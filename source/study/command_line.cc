@@ -96,14 +96,13 @@ namespace Debond
       if (options.count("file") == 0)
         throw BadInput({"no study is given; see debond --study --help"});
       const std::string file = options["file"].as<std::string>();
-      ParameterTable    table;
-      declare_study_parameters(table);
+      StudyTable        table;
       read_scene(file, table);
       if (options.count("set") > 0)
         for (const std::string &assignment :
              options["set"].as<std::vector<std::string>>())
           table.assign(assignment);
-      return to_study_parameters(file, table);
+      return table.parameters(file);
     }
 
 
@@ -119,9 +118,7 @@ namespace Debond
         }
       if (options.count("print-parameters") > 0)
         {
-          ParameterTable table;
-          declare_study_parameters(table);
-          table.print(std::cout, true);
+          StudyTable().print(std::cout, true);
           return ExitCode::success;
         }
 

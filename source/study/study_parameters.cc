@@ -18,7 +18,7 @@ namespace Debond
   {
     using dealii::Utilities::trim;
 
-    const std::vector<std::string> sweep_sections = {"Sweep 1", "Sweep 2"};
+    const std::array<std::string, 2> sweep_sections = {{"Sweep 1", "Sweep 2"}};
 
     const std::string method_parameter = "Solver/Method";
 
@@ -91,31 +91,21 @@ namespace Debond
 
 
 
-    /// Reads "a = 1 | b = 2". Returns false if the text is not such a list.
-    bool
-    read_pairs(const std::string                                &text,
-               std::vector<std::pair<std::string, std::string>> &pairs)
+    /// Reads "a = 1 | b = 2". Throws std::invalid_argument if the text is not
+    /// such a list.
+    std::map<std::string, std::string>
+    parse_pairs(const std::string &text)
     {
+      std::map<std::string, std::string> pairs;
       for (const std::string &item : split_at_bars(text))
         {
           const std::size_t equals = item.find('=');
           if (equals == std::string::npos)
-            return false;
-          pairs.emplace_back(trim(item.substr(0, equals)),
-                             trim(item.substr(equals + 1)));
+            throw std::invalid_argument("'" + item + "' has no '='");
+          pairs.emplace(trim(item.substr(0, equals)),
+                        trim(item.substr(equals + 1)));
         }
-      return true;
-    }
-
-
-
-    Pattern
-    pairs_pattern(const std::string &what)
-    {
-      return Pattern(what, [](const std::string &value) {
-        std::vector<std::pair<std::string, std::string>> pairs;
-        return read_pairs(value, pairs);
-      });
+      return pairs;
     }
 
 
@@ -133,76 +123,224 @@ namespace Debond
 
 
     void
-    declare_reference(ParameterTable &table)
+    bind_list(const std::string        &path,
+              std::vector<std::string> &variable,
+              const Pattern            &pattern,
+              const std::string        &documentation,
+              const std::string        &units,
+              ParameterTable           &table)
     {
-      table.declare(
-        "Reference/File",
-        "",
-        any_text("nothing, or a path relative to the study file"),
-        "A CSV file with printed results, to stand beside those of the study; its first line that is not a comment ('#') has the titles",
-        "none");
-      table.declare("Reference/Label",
-                    "reference",
-                    any_text("a text"),
-                    "What the columns of the reference are called",
-                    "none");
-      table.declare("Reference/Rows",
-                    "",
-                    pairs_pattern("a list COLUMN=TEXT | COLUMN=TEXT | ..."),
-                    "Which rows of the file count",
-                    "none");
-      table.declare(
-        "Reference/Key",
-        "value",
-        any_text("the name of a column"),
-        "The column of the file that has the value of the first sweep",
-        "none");
-      table.declare(
-        "Reference/Columns",
-        "",
-        pairs_pattern("a list COLUMN=COLUMN | COLUMN=COLUMN | ..."),
-        "For columns of the study the columns of the file that are shown beside them. If the study's column is an error, the file's is a functional, and its error is shown",
-        "none");
-      table.declare("Reference/Minimum",
-                    "0",
-                    any_number(),
-                    "The functional to which those of the file are compared",
-                    "energy");
+      table.declare(path,
+                    join(variable, " | "),
+                    pattern,
+                    documentation,
+                    units,
+                    [&variable](const std::string &text) {
+                      variable = split_at_bars(text);
+                    });
     }
 
 
 
     void
-    declare_sweep(const std::string &section, ParameterTable &table)
+    bind_settings(const std::string        &path,
+                  std::vector<std::string> &variable,
+                  const std::string        &documentation,
+                  ParameterTable           &table)
     {
-      table.declare(section + "/Parameter",
+      bind_list(
+        path,
+        variable,
+        parsed_by("a list Section/Entry=value | Section/Entry=value | ...",
+                  parse_pairs),
+        documentation,
+        "those of the parameters",
+        table);
+    }
+
+
+
+    void
+    bind_pairs(const std::string                  &path,
+               std::map<std::string, std::string> &variable,
+               const std::string                  &allowed,
+               const std::string                  &documentation,
+               ParameterTable                     &table)
+    {
+      table.declare(path,
                     "",
-                    any_text("nothing, or Section/Entry as for --set"),
-                    "The parameter of the scene that is varied; none if empty",
-                    "none");
-      table.declare(section + "/Label",
-                    "",
-                    any_text("a text"),
-                    "Its name in tables and plots; Section/Entry if empty",
-                    "none");
+                    parsed_by(allowed, parse_pairs),
+                    documentation,
+                    "none",
+                    [&variable](const std::string &text) {
+                      variable = parse_pairs(text);
+                    });
+    }
+
+
+
+    void
+    bind_study(StudyParameters          &study,
+               std::vector<std::string> &methods,
+               ParameterTable           &table)
+    {
+      table.bind("Study/Title",
+                 study.title,
+                 any_text("a text"),
+                 "The head of the index page",
+                 "none");
+      table.bind("Study/Description",
+                 study.description,
+                 any_text("a text"),
+                 "A paragraph for the index page",
+                 "none");
+      table.bind("Study/Scene",
+                 study.scene,
+                 any_text("a path relative to the study file"),
+                 "The scene that all cases begin with",
+                 "none");
+      bind_settings(
+        "Study/Settings",
+        study.settings,
+        "What all cases have different from the scene. {preparation} stands for the directory of the case of the section Preparation",
+        table);
+      bind_list("Study/Methods",
+                methods,
+                any_text(
+                  "nothing, or a list of values of Solver/Method, separated by "
+                  "' | '"),
+                "The methods that are compared; the scene's if empty",
+                "none",
+                table);
+      bind_list("Study/Columns",
+                study.columns,
+                any_text("a list of columns, separated by ' | '"),
+                "What the table has for each case: " + Column::documentation(),
+                "none",
+                table);
+      bind_list(
+        "Study/Accepted statuses",
+        study.accepted_statuses,
+        any_text("a list, separated by ' | '"),
+        "Cases with another status, as in summary.json, count as failed; 'success | iteration limit' for studies in which not all cases converge",
+        "none",
+        table);
+      table.bind(
+        "Study/Fields",
+        study.fields,
+        "Whether the cases write their VTU files, which fields.pvd and contact.pvd then list as a series");
+      table.declare(
+        "Study/Fit window",
+        "1e-3, 1e-8",
+        Pattern("two numbers > 0, the larger one first",
+                [](const std::string &value) {
+                  double from, to;
+                  return read_fit_window(value, from, to);
+                }),
+        "The rate of convergence is fitted between the first iterations that have these errors (J - J_min) / |J_min|",
+        "none",
+        [&study](const std::string &text) {
+          read_fit_window(text, study.fit_from, study.fit_to);
+        });
+      table.bind(
+        "Study/Output directory",
+        study.directory,
+        any_text("a path"),
+        "Relative to the working directory; {study} stands for the name of the study file without its ending",
+        "none");
+      bind_settings(
+        "Preparation/Settings",
+        study.preparation,
+        "If there are any, a case with the scene and these settings is run before the others",
+        table);
+    }
+
+
+
+    void
+    bind_sweep(const std::string &section, Sweep &sweep, ParameterTable &table)
+    {
+      table.bind(section + "/Parameter",
+                 sweep.parameter,
+                 any_text("nothing, or Section/Entry as for --set"),
+                 "The parameter of the scene that is varied; none if empty",
+                 "none");
+      table.bind(section + "/Label",
+                 sweep.label,
+                 any_text("a text"),
+                 "Its name in tables and plots; Section/Entry if empty",
+                 "none");
       table.declare(
         section + "/Values",
         "",
-        Pattern("a | b | c (with blanks around the bars), or geometric FIRST "
-                "LAST COUNT",
-                [](const std::string &value) {
-                  try
-                    {
-                      parse_sweep_values(value);
-                      return true;
-                    }
-                  catch (const std::invalid_argument &)
-                    {
-                      return false;
-                    }
-                }),
+        parsed_by("a | b | c (with blanks around the bars), or geometric FIRST "
+                  "LAST COUNT",
+                  parse_sweep_values),
         "The values it is given: each one as it would stand in the scene, or a geometric range of numbers",
-        "those of the parameter");
+        "those of the parameter",
+        [&sweep](const std::string &text) {
+          sweep.values = parse_sweep_values(text);
+        });
+    }
+
+
+
+    void
+    bind_plots(PlotParameters &plots, ParameterTable &table)
+    {
+      bind_list("Plots/Kinds",
+                plots.kinds,
+                any_text("nothing, or a list separated by ' | '"),
+                "Which plots are made: " + plot_documentation(),
+                "none",
+                table);
+      bind_list("Plots/Fitted cases",
+                plots.fitted,
+                any_text(
+                  "nothing, or a list of values of the first sweep, separated "
+                  "by ' | '"),
+                "The cases that the plot 'fit' shows; all if empty",
+                "none",
+                table);
+    }
+
+
+
+    void
+    bind_reference(ReferenceParameters &reference, ParameterTable &table)
+    {
+      table.bind(
+        "Reference/File",
+        reference.file,
+        any_text("nothing, or a path relative to the study file"),
+        "A CSV file with printed results, to stand beside those of the study; its first line that is not a comment ('#') has the titles",
+        "none");
+      table.bind("Reference/Label",
+                 reference.label,
+                 any_text("a text"),
+                 "What the columns of the reference are called",
+                 "none");
+      bind_pairs("Reference/Rows",
+                 reference.rows,
+                 "a list COLUMN=TEXT | COLUMN=TEXT | ...",
+                 "Which rows of the file count",
+                 table);
+      table.bind("Reference/Key",
+                 reference.key,
+                 any_text("the name of a column"),
+                 "The column of the file that has the value of the first sweep",
+                 "none");
+      bind_pairs(
+        "Reference/Columns",
+        reference.columns,
+        "a list COLUMN=COLUMN | COLUMN=COLUMN | ...",
+        "For columns of the study the columns of the file that are shown beside them. If the study's column is an error, the file's is a functional, and its error is shown",
+        table);
+      table.bind("Reference/Minimum",
+                 reference.minimum,
+                 any_number(),
+                 "The functional to which those of the file are compared",
+                 "energy");
     }
 
 
@@ -225,8 +363,7 @@ namespace Debond
                   const std::string &path,
                   ParameterTable    &table)
     {
-      ParameterTable scene_table;
-      declare_parameters(scene_table);
+      SceneTable scene_table;
       read_scene(scene, scene_table);
       const std::size_t errors_before = scene_table.errors().size();
       scene_table.assign(setting);
@@ -242,30 +379,26 @@ namespace Debond
 
 
 
-    std::vector<std::string>
-    read_settings(const std::string &path,
-                  const std::string &scene,
-                  ParameterTable    &table)
+    void
+    check_settings(const std::string              &path,
+                   const std::vector<std::string> &settings,
+                   const std::string              &scene,
+                   ParameterTable                 &table)
     {
-      const std::vector<std::string> settings = split_at_bars(table.get(path));
       for (const std::string &setting : settings)
         check_setting(scene, setting, path, table);
-      return settings;
     }
 
 
 
     void
-    read_sweep(const std::string &section,
-               StudyParameters   &study,
-               ParameterTable    &table)
+    add_sweep(const std::string &section,
+              Sweep              sweep,
+              StudyParameters   &study,
+              ParameterTable    &table)
     {
-      Sweep sweep;
-      sweep.parameter = table.get(section + "/Parameter");
-      sweep.label     = table.get(section + "/Label");
       if (sweep.label.empty())
         sweep.label = sweep.parameter;
-      sweep.values = parse_sweep_values(table.get(section + "/Values"));
       if (sweep.parameter.empty())
         {
           if (!sweep.values.empty())
@@ -282,8 +415,10 @@ namespace Debond
       for (const std::string &value : sweep.values)
         try
           {
-            for (const std::string &setting : sweep.settings(value))
-              check_setting(study.scene, setting, section + "/Values", table);
+            check_settings(section + "/Values",
+                           sweep.settings(value),
+                           study.scene,
+                           table);
           }
         catch (const std::invalid_argument &error)
           {
@@ -302,29 +437,26 @@ namespace Debond
 
 
     void
-    read_methods(StudyParameters &study, ParameterTable &table)
+    add_methods(const std::vector<std::string> &methods,
+                StudyParameters                &study,
+                ParameterTable                 &table)
     {
-      Sweep methods{method_parameter,
-                    "method",
-                    split_at_bars(table.get("Study/Methods"))};
-      for (const std::string &method : methods.values)
+      for (const std::string &method : methods)
         check_setting(study.scene,
                       method_parameter + "=" + method,
                       "Study/Methods",
                       table);
-      if (methods.values.size() > 1)
-        study.sweeps.push_back(methods);
-      else if (methods.values.size() == 1)
-        study.settings.push_back(method_parameter + "=" +
-                                 methods.values.front());
+      if (methods.size() > 1)
+        study.sweeps.push_back({method_parameter, "method", methods});
+      else if (methods.size() == 1)
+        study.settings.push_back(method_parameter + "=" + methods.front());
     }
 
 
 
     void
-    read_columns(StudyParameters &study, ParameterTable &table)
+    check_columns(const StudyParameters &study, ParameterTable &table)
     {
-      study.columns = split_at_bars(table.get("Study/Columns"));
       for (const std::string &name : study.columns)
         try
           {
@@ -340,22 +472,20 @@ namespace Debond
 
 
     void
-    read_reference(StudyParameters &study, ParameterTable &table)
+    check_plots(const StudyParameters &study, ParameterTable &table)
     {
-      ReferenceParameters &reference = study.reference;
-      if (table.get("Reference/File").empty())
-        return;
-      reference.file    = beside(study.file, table.get("Reference/File"));
-      reference.label   = table.get("Reference/Label");
-      reference.key     = table.get("Reference/Key");
-      reference.minimum = table.get_double("Reference/Minimum");
-      std::vector<std::pair<std::string, std::string>> pairs;
-      read_pairs(table.get("Reference/Rows"), pairs);
-      reference.rows.insert(pairs.begin(), pairs.end());
-      pairs.clear();
-      read_pairs(table.get("Reference/Columns"), pairs);
-      reference.columns.insert(pairs.begin(), pairs.end());
-      for (const auto &column : reference.columns)
+      for (const std::string &kind : study.plots.kinds)
+        if (const std::string reason = why_no_plot(kind, study);
+            !reason.empty())
+          table.add_error("Plots/Kinds", "Plots/Kinds: " + reason);
+    }
+
+
+
+    void
+    check_reference(const StudyParameters &study, ParameterTable &table)
+    {
+      for (const auto &column : study.reference.columns)
         if (std::find(study.columns.begin(),
                       study.columns.end(),
                       column.first) == study.columns.end())
@@ -394,147 +524,56 @@ namespace Debond
 
 
 
-  void
-  declare_study_parameters(ParameterTable &table)
+  StudyTable::StudyTable()
   {
-    table.declare("Study/Title",
-                  "",
-                  any_text("a text"),
-                  "The head of the index page",
-                  "none");
-    table.declare("Study/Description",
-                  "",
-                  any_text("a text"),
-                  "A paragraph for the index page",
-                  "none");
-    table.declare("Study/Scene",
-                  "",
-                  any_text("a path relative to the study file"),
-                  "The scene that all cases begin with",
-                  "none");
-    table.declare(
-      "Study/Settings",
-      "",
-      pairs_pattern("a list Section/Entry=value | Section/Entry=value | ..."),
-      "What all cases have different from the scene. {preparation} stands for the directory of the case of the section Preparation",
-      "those of the parameters");
-    table.declare(
-      "Study/Methods",
-      "",
-      any_text("nothing, or a list of values of Solver/Method, separated by "
-               "' | '"),
-      "The methods that are compared; the scene's if empty",
-      "none");
-    table.declare(
-      "Study/Columns",
-      "status | iterations | long | short | null | J | error | law violation | seconds",
-      any_text("a list of columns, separated by ' | '"),
-      "What the table has for each case: " + Column::documentation(),
-      "none");
-    table.declare(
-      "Study/Accepted statuses",
-      "success",
-      any_text("a list, separated by ' | '"),
-      "Cases with another status, as in summary.json, count as failed; 'success | iteration limit' for studies in which not all cases converge",
-      "none");
-    table.declare(
-      "Study/Fields",
-      "false",
-      one_of({"true", "false"}),
-      "Whether the cases write their VTU files, which fields.pvd and contact.pvd then list as a series",
-      "none");
-    table.declare(
-      "Study/Fit window",
-      "1e-3, 1e-8",
-      Pattern("two numbers > 0, the larger one first",
-              [](const std::string &value) {
-                double from, to;
-                return read_fit_window(value, from, to);
-              }),
-      "The rate of convergence is fitted between the first iterations that have these errors (J - J_min) / |J_min|",
-      "none");
-    table.declare(
-      "Study/Output directory",
-      "output/{study}",
-      any_text("a path"),
-      "Relative to the working directory; {study} stands for the name of the study file without its ending",
-      "none");
-
-    table.declare(
-      "Preparation/Settings",
-      "",
-      pairs_pattern("a list Section/Entry=value | Section/Entry=value | ..."),
-      "If there are any, a case with the scene and these settings is run before the others",
-      "those of the parameters");
-
-    for (const std::string &section : sweep_sections)
-      declare_sweep(section, table);
-
-    table.declare("Plots/Kinds",
-                  "",
-                  any_text("nothing, or a list separated by ' | '"),
-                  "Which plots are made: " + plot_documentation(),
-                  "none");
-    table.declare(
-      "Plots/Fitted cases",
-      "",
-      any_text("nothing, or a list of values of the first sweep, separated by "
-               "' | '"),
-      "The cases that the plot 'fit' shows; all if empty",
-      "none");
-    declare_reference(table);
+    bind_study(study, methods, *this);
+    for (std::size_t i = 0; i < sweeps.size(); ++i)
+      bind_sweep(sweep_sections[i], sweeps[i], *this);
+    bind_plots(study.plots, *this);
+    bind_reference(study.reference, *this);
   }
 
 
 
   StudyParameters
-  to_study_parameters(const std::string &file, ParameterTable &table)
+  StudyTable::parameters(const std::string &file)
   {
-    StudyParameters study;
-    study.file                    = file;
-    study.title                   = table.get("Study/Title");
-    study.description             = table.get("Study/Description");
-    study.scene                   = beside(file, table.get("Study/Scene"));
-    study.directory               = table.get("Study/Output directory");
+    parse();
+    const std::string name = std::filesystem::path(file).stem().string();
+    study.file             = file;
+    if (study.title.empty())
+      study.title = name;
     const std::string placeholder = "{study}";
     if (const std::size_t at = study.directory.find(placeholder);
         at != std::string::npos)
-      study.directory.replace(at,
-                              placeholder.size(),
-                              std::filesystem::path(file).stem().string());
-    if (study.title.empty())
-      study.title = std::filesystem::path(file).stem().string();
+      study.directory.replace(at, placeholder.size(), name);
+    study.scene = beside(file, study.scene);
+    if (study.reference.file.empty())
+      study.reference = ReferenceParameters();
+    else
+      study.reference.file = beside(file, study.reference.file);
 
     std::error_code error; // of a name that no file can have
     if (!std::filesystem::is_regular_file(study.scene, error))
       {
-        table.add_error("Study/Scene",
-                        "Study/Scene: there is no file " + study.scene);
-        throw BadInput(table.errors());
+        add_error("Study/Scene",
+                  "Study/Scene: there is no file " + study.scene);
+        throw BadInput(errors());
       }
 
-    study.settings = read_settings("Study/Settings", study.scene, table);
-    study.preparation =
-      read_settings("Preparation/Settings", study.scene, table);
-    for (const std::string &section : sweep_sections)
-      read_sweep(section, study, table);
-    read_methods(study, table);
-    read_columns(study, table);
-    study.accepted_statuses =
-      split_at_bars(table.get("Study/Accepted statuses"));
-    study.fields = table.get_bool("Study/Fields");
-    read_fit_window(table.get("Study/Fit window"),
-                    study.fit_from,
-                    study.fit_to);
-    study.plots.kinds  = split_at_bars(table.get("Plots/Kinds"));
-    study.plots.fitted = split_at_bars(table.get("Plots/Fitted cases"));
-    for (const std::string &kind : study.plots.kinds)
-      if (const std::string reason = why_no_plot(kind, study); !reason.empty())
-        table.add_error("Plots/Kinds", "Plots/Kinds: " + reason);
-    read_reference(study, table);
-
-    if (!table.errors().empty())
-      throw BadInput(table.errors());
+    check_settings("Study/Settings", study.settings, study.scene, *this);
+    check_settings("Preparation/Settings",
+                   study.preparation,
+                   study.scene,
+                   *this);
+    for (std::size_t i = 0; i < sweeps.size(); ++i)
+      add_sweep(sweep_sections[i], sweeps[i], study, *this);
+    add_methods(methods, study, *this);
+    check_columns(study, *this);
+    check_plots(study, *this);
+    check_reference(study, *this);
+    if (!errors().empty())
+      throw BadInput(errors());
     return study;
   }
 } // namespace Debond

@@ -111,10 +111,12 @@ namespace
   AdhesiveLaw
   default_law(const std::string &name, const double factor)
   {
+    LawSection     section;
     ParameterTable table;
-    declare_laws(table);
+    section.bind(table);
     table.assign("Contact law/Law=" + name);
-    std::vector<ConvexBranch> branches = read_law(table).branches;
+    table.parse();
+    std::vector<ConvexBranch> branches = section.make_law(table).branches;
     for (ConvexBranch &branch : branches)
       {
         branch.curvature *= factor;
@@ -309,13 +311,15 @@ namespace
     print_error([] { stepped_law({69., 0.}, {0.001, 0.002}); });
     print_error([] { stepped_law({69., 23.}, {0.001, INFINITY}); });
 
+    LawSection     section;
     ParameterTable table;
-    declare_laws(table);
+    section.bind(table);
     for (const std::string entry : {"Law=stepped",
                                     "Stepped/Stiffnesses=69, 70",
                                     "Stepped/Thresholds=1, 2"})
       table.assign("Contact law/" + entry);
-    read_law(table);
+    table.parse();
+    section.make_law(table);
     for (const std::string &line : table.errors())
       std::cout << line << std::endl;
   }

@@ -509,14 +509,13 @@ namespace
     Outcome outcome;
     try
       {
-        ParameterTable table;
-        declare_parameters(table);
+        SceneTable table;
         for (const std::string &assignment : attack.assignments)
           table.assign(assignment);
         table.assign("Output/Displacement=true");
         table.assign("Output/Body VTU=false");
         table.assign("Output/Contact VTU=false");
-        Parameters parameters       = to_parameters("attack.prm", table);
+        Parameters parameters       = table.parameters("attack.prm");
         parameters.output.directory = directory;
         const ExitCode code         = run<dim>(parameters, log, false);
         nlohmann::json summary;

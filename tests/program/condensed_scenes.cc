@@ -34,13 +34,12 @@ namespace
   Run
   run(const std::vector<std::string> &assignments)
   {
-    ParameterTable table;
-    declare_parameters(table);
+    SceneTable table;
     table.assign("Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)");
     table.assign("Output/Machine details=false");
     for (const std::string &assignment : assignments)
       table.assign(assignment);
-    const Parameters   parameters = to_parameters("benchmark.prm", table);
+    const Parameters   parameters = table.parameters("benchmark.prm");
     const MethodChoice choice     = choose_method(parameters);
     const Scene<2>     scene(parameters, matrix_storage(choice));
     std::ostringstream log;

@@ -244,8 +244,7 @@ namespace
        const double                    q,
        const std::vector<std::string> &assignments)
   {
-    ParameterTable table;
-    declare_parameters(table);
+    SceneTable table;
     table.assign("Loads/Traction top=0; if(x < 0.2, q, -q/2)");
     std::ostringstream constant;
     constant.precision(17);
@@ -255,7 +254,7 @@ namespace
     table.assign("Solver/Method=majorise minimise");
     for (const std::string &assignment : assignments)
       table.assign(assignment);
-    const Parameters   parameters = to_parameters("benchmark.prm", table);
+    const Parameters   parameters = table.parameters("benchmark.prm");
     const MethodChoice choice     = choose_method(parameters);
     const Scene<2>     scene(parameters, matrix_storage(choice));
     std::ostringstream log;

@@ -151,11 +151,10 @@ namespace
   {
     try
       {
-        ParameterTable table;
-        declare_parameters(table);
+        SceneTable         table;
         std::istringstream input(current_case);
         table.read(input, "fuzz.prm");
-        Parameters         parameters = to_parameters("fuzz.prm", table);
+        Parameters         parameters = table.parameters("fuzz.prm");
         const MethodChoice choice     = choose_method(parameters);
         ++counts.read;
         if (scene_size(parameters).unknowns > largest_scene_to_solve)

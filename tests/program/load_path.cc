@@ -35,12 +35,11 @@ namespace
   Parameters
   parameters_of(const std::vector<std::string> &assignments)
   {
-    ParameterTable table;
-    declare_parameters(table);
+    SceneTable table;
     table.assign("Output/Machine details=false");
     for (const std::string &assignment : assignments)
       table.assign(assignment);
-    return to_parameters("scene.prm", table);
+    return table.parameters("scene.prm");
   }
 
 

@@ -231,12 +231,11 @@ namespace
        const std::vector<std::string> &assignments,
        Tally                          &tally)
   {
-    ParameterTable table;
-    declare_parameters(table);
+    SceneTable table;
     table.assign("Output/Machine details=false");
     for (const std::string &assignment : assignments)
       table.assign(assignment);
-    const Parameters   parameters = to_parameters("strip.prm", table);
+    const Parameters   parameters = table.parameters("strip.prm");
     const MethodChoice choice     = choose_method(parameters);
     const Scene<dim>   scene(parameters, matrix_storage(choice));
     std::ostringstream log;

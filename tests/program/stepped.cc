@@ -41,14 +41,13 @@ namespace
   parameters_of(const std::vector<std::string> &scene,
                 const std::vector<std::string> &others)
   {
-    ParameterTable table;
-    declare_parameters(table);
+    SceneTable table;
     table.assign("Output/Machine details=false");
     for (const std::string &assignment : scene)
       table.assign(assignment);
     for (const std::string &assignment : others)
       table.assign(assignment);
-    return to_parameters("scene.prm", table);
+    return table.parameters("scene.prm");
   }
 
 

@@ -183,12 +183,11 @@ namespace
   Parameters
   read(const std::vector<std::string> &entries)
   {
-    ParameterTable table;
-    declare_parameters(table);
+    SceneTable table;
     table.assign("Output/Machine details=false");
     for (const std::string &entry : entries)
       table.assign(entry);
-    return to_parameters("random.prm", table);
+    return table.parameters("random.prm");
   }
 
 

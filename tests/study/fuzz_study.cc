@@ -159,12 +159,11 @@ main(int argc, char *argv[])
 
   const std::filesystem::path prm(SOURCE_DIR "/../../prm");
   fuzz("studies", read_files(prm / "studies", ".prm"), n_cases, [&]() {
-    const std::string file = (prm / "studies" / "fuzz.prm").string();
-    ParameterTable    table;
-    declare_study_parameters(table);
+    const std::string  file = (prm / "studies" / "fuzz.prm").string();
+    StudyTable         table;
     std::istringstream input(current_case);
     table.read(input, file);
-    make_cases(to_study_parameters(file, table));
+    make_cases(table.parameters(file));
   });
   fuzz("benchmarks", read_files(prm / "benchmarks", ".json"), n_cases, [&]() {
     std::istringstream   input(current_case);

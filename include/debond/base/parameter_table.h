@@ -6,44 +6,122 @@
 
 #include <debond/base/patterns.h>
 
+#include <functional>
 #include <istream>
 #include <map>
 #include <ostream>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace Debond
 {
+  /// Whether a run that goes on from a checkpoint may have another value of an
+  /// entry than the run that wrote it.
+  enum class AtRestart
+  {
+    same, ///< the iterates depend on it
+    any   ///< it decides when a run ends, or what is done with the result
+  };
+
+
+
   /**
-   * A dealii::ParameterHandler whose entries have paths ("Section/Name"), and
-   * which collects all errors of a scene file, each one line with file, line,
+   * A dealii::ParameterHandler whose entries have paths ("Section/Name"), which
+   * writes their values into variables that are bound to them, and which
+   * collects all errors of a scene file, each one line with file, line,
    * parameter, value and what is allowed, in place of throwing the first one.
    */
   class ParameterTable
   {
   public:
-    /// The @p documentation and the @p units are sentences without their full
-    /// stop; the printed documentation also says which values are allowed.
+    /// Takes the text of an entry, which its pattern allows. What it throws as
+    /// std::invalid_argument is why the value is rejected all the same.
+    using Reader = std::function<void(const std::string &)>;
+
+    /// Declares an entry whose value parse() writes into @p variable; the value
+    /// that this has now is the default. The @p documentation and the @p units
+    /// are sentences without their full stop; the printed documentation also
+    /// says which values are allowed. The variable has to live as long as
+    /// parse() is called.
+    void
+    bind(const std::string &path,
+         double            &variable,
+         const Pattern     &pattern,
+         const std::string &documentation,
+         const std::string &units,
+         const AtRestart    restart = AtRestart::same);
+
+    void
+    bind(const std::string &path,
+         unsigned int      &variable,
+         const Pattern     &pattern,
+         const std::string &documentation,
+         const std::string &units,
+         const AtRestart    restart = AtRestart::same);
+
+    void
+    bind(const std::string &path,
+         std::string       &variable,
+         const Pattern     &pattern,
+         const std::string &documentation,
+         const std::string &units,
+         const AtRestart    restart = AtRestart::same);
+
+    /// Numbers, separated by commas.
+    void
+    bind(const std::string   &path,
+         std::vector<double> &variable,
+         const Pattern       &pattern,
+         const std::string   &documentation,
+         const std::string   &units,
+         const AtRestart      restart = AtRestart::same);
+
+    /// Any names, separated by commas.
+    void
+    bind(const std::string     &path,
+         std::set<std::string> &variable,
+         const std::string     &documentation,
+         const AtRestart        restart = AtRestart::same);
+
+    /// "true" or "false".
+    void
+    bind(const std::string &path,
+         bool              &variable,
+         const std::string &documentation,
+         const AtRestart    restart = AtRestart::same);
+
+    /// One of the @p choices, each a name and the value it stands for.
+    template <typename T>
+    void
+    bind_choice(const std::string                            &path,
+                T                                            &variable,
+                const std::vector<std::pair<std::string, T>> &choices,
+                const std::string                            &documentation,
+                const AtRestart restart = AtRestart::same);
+
+    /// Lets scenes set entries "Section/Name WORDS" beside those declared: what
+    /// @p path, "Section/Name", is to be followed by is not known beforehand.
+    /// parse() writes those that are not empty into @p variable, by their
+    /// WORDS.
+    void
+    bind_family(const std::string                  &path,
+                std::map<std::string, std::string> &variable,
+                const Pattern                      &pattern,
+                const std::string                  &documentation,
+                const std::string                  &units);
+
+    /// Declares an entry that @p reader takes. Without one it is a member of a
+    /// family, known beforehand.
     void
     declare(const std::string &path,
             const std::string &default_value,
             const Pattern     &pattern,
             const std::string &documentation,
-            const std::string &units);
-
-    /// Lets scenes set entries "Section/Name WORDS" beside those declared: what
-    /// @p path, "Section/Name", is to be followed by is not known beforehand.
-    /// Their default is nothing.
-    void
-    declare_family(const std::string &path,
-                   const Pattern     &pattern,
-                   const std::string &documentation,
-                   const std::string &units);
-
-    /// The WORDS of the entries of a family, declared and set ones.
-    std::vector<std::string>
-    family(const std::string &path) const;
+            const std::string &units,
+            const Reader      &reader  = {},
+            const AtRestart    restart = AtRestart::same);
 
     /// Reads a scene in ParameterHandler's format ("subsection", "set", "end",
     /// comments from '#', continuation by '\'). "include FILE" outside of
@@ -57,29 +135,22 @@ namespace Debond
     void
     assign(const std::string &assignment);
 
+    /// Writes all variables, in the order in which they were bound. An entry
+    /// whose value was not allowed counts as left out.
+    void
+    parse();
+
+    /// The value as it was written.
     std::string
     get(const std::string &path) const;
 
-    double
-    get_double(const std::string &path) const;
-
-    unsigned int
-    get_unsigned(const std::string &path) const;
-
-    bool
-    get_bool(const std::string &path) const;
-
-    /// Comma-separated values, without blanks around them.
-    std::vector<std::string>
-    get_list(const std::string &path) const;
-
-    /// All values by path, as they were written.
+    /// All values that have to be the same at a restart, by path.
     std::map<std::string, std::string>
-    values() const;
+    values_of_state() const;
 
-    /// Where the entry was set, "FILE:LINE"; the file if it was not.
-    std::string
-    location(const std::string &path) const;
+    /// Where each entry was set, "FILE:LINE"; the file if it was not.
+    std::map<std::string, std::string>
+    locations() const;
 
     /// Adds @p message to errors(), with the file and line of the entry @p
     /// path, unless the value of it, or of one of @p others, of which the
@@ -110,12 +181,25 @@ namespace Debond
     print(std::ostream &out, const bool documentation) const;
 
   private:
+    struct Entry
+    {
+      std::string expected; ///< in words
+      AtRestart   restart;
+    };
+
     struct Family
     {
-      Pattern     pattern;
-      std::string documentation;
-      std::string units;
+      Pattern                             pattern;
+      std::string                         documentation;
+      std::string                         units;
+      std::map<std::string, std::string> *variable;
     };
+
+    std::string
+    location(const std::string &path) const;
+
+    std::vector<std::string>
+    known_entries() const;
 
     /// Declares @p path if it belongs to a family; otherwise returns false.
     bool
@@ -132,15 +216,51 @@ namespace Debond
                   const std::string &location);
 
     dealii::ParameterHandler           handler;
-    std::map<std::string, std::string> expected;  ///< by path, in words
-    std::map<std::string, Family>      families;  ///< by path
-    std::map<std::string, std::string> locations; ///< by path, where set
+    std::map<std::string, Entry>       entries;  ///< by path
+    std::map<std::string, Family>      families; ///< by path
+    std::map<std::string, std::string> set_at;   ///< by path
     std::set<std::string>              rejected;
     std::set<std::string>              unknown_sections;
     std::vector<std::string>           lines;
     std::string                        file_name;
     std::vector<std::string>           reading; ///< files that include others
+
+    /// By path, in the order of their declaration.
+    std::vector<std::pair<std::string, Reader>> readers;
   };
+
+
+
+  template <typename T>
+  void
+  ParameterTable::bind_choice(
+    const std::string                            &path,
+    T                                            &variable,
+    const std::vector<std::pair<std::string, T>> &choices,
+    const std::string                            &documentation,
+    const AtRestart                               restart)
+  {
+    std::vector<std::string> names;
+    std::string              default_name;
+    for (const auto &[name, value] : choices)
+      {
+        names.push_back(name);
+        if (value == variable)
+          default_name = name;
+      }
+    declare(
+      path,
+      default_name,
+      one_of(names),
+      documentation,
+      "none",
+      [&variable, choices](const std::string &text) {
+        for (const auto &[name, value] : choices)
+          if (name == text)
+            variable = value;
+      },
+      restart);
+  }
 } // namespace Debond
 
 #endif

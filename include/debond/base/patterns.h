@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,24 @@ namespace Debond
     std::string                              text;
     std::function<bool(const std::string &)> predicate;
   };
+
+  /// What @p parse takes without throwing std::invalid_argument.
+  template <typename Parser>
+  Pattern
+  parsed_by(const std::string &text, const Parser &parse)
+  {
+    return Pattern(text, [parse](const std::string &value) {
+      try
+        {
+          parse(value);
+          return true;
+        }
+      catch (const std::invalid_argument &)
+        {
+          return false;
+        }
+    });
+  }
 
   /// Reads a finite number. Returns false if the text is anything else.
   bool

@@ -5,6 +5,8 @@
 #include <debond/optimization/branch_minimum.h>
 #include <debond/optimization/interval.h>
 
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -91,31 +93,43 @@ namespace Debond
     std::string               data; ///< in words, empty if there is none
   };
 
+  /// Makes a law of entries that have been read. What is wrong with them is
+  /// added to the table's errors, and then the result does not matter.
+  using LawMaker = std::function<ContactLawParameters(ParameterTable &)>;
+
   /// A kind of law that scenes can have: one for each file in laws/.
   struct LawKind
   {
     std::string name;
     std::string description; ///< a part of a sentence, the name in front of it
 
-    /// Declares its own entries.
-    void (*declare)(ParameterTable &table);
-
-    /// Reads them. What is wrong with them is added to the table's errors, and
-    /// then the result does not matter.
-    ContactLawParameters (*read)(ParameterTable &table);
+    /// Binds its own entries to variables of the maker.
+    LawMaker (*bind)(ParameterTable &table);
   };
 
   /// The names of all kinds, for messages.
   std::vector<std::string>
   law_names();
 
-  /// Declares the entry Contact law/Law and those of all kinds.
-  void
-  declare_laws(ParameterTable &table);
 
-  /// The law of a scene.
-  ContactLawParameters
-  read_law(ParameterTable &table);
+
+  /// The entry Contact law/Law of a scene and those of all kinds.
+  class LawSection
+  {
+  public:
+    LawSection();
+
+    void
+    bind(ParameterTable &table);
+
+    /// After table.parse().
+    ContactLawParameters
+    make_law(ParameterTable &table) const;
+
+  private:
+    std::string                     name;
+    std::map<std::string, LawMaker> makers; ///< by name
+  };
 } // namespace Debond
 
 #endif

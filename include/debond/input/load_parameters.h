@@ -27,23 +27,26 @@ namespace Debond
   Pattern
   vector_expression();
 
-  /// Declares the section Loads.
+  /// The section Loads.
   void
-  declare_loads(ParameterTable &table);
+  bind_loads(LoadParameters &loads, ParameterTable &table);
 
-  /// Takes the section out of the table; what is wrong is left there as an
-  /// error. Expressions may use the constants of the material.
-  LoadParameters
-  read_loads(const unsigned int dimension,
-             const Material    &material,
-             ParameterTable    &table);
+  /// Adds the constants of the material, which expressions may use, and checks
+  /// these; what is wrong is left in the table as an error.
+  void
+  complete_loads(const unsigned int dimension,
+                 const Material    &material,
+                 LoadParameters    &loads,
+                 ParameterTable    &table);
 
-  /// The text of an expression for a vector, empty for none.
-  std::string
-  read_expression(ParameterTable                      &table,
-                  const std::string                   &path,
-                  const unsigned int                   dimension,
-                  const std::map<std::string, double> &constants);
+  /// Rejects the entry @p path if the @p expression for a vector that it has is
+  /// not one. An empty one stands for none.
+  void
+  check_expression(const std::string                   &path,
+                   const std::string                   &expression,
+                   const unsigned int                   dimension,
+                   const std::map<std::string, double> &constants,
+                   ParameterTable                      &table);
 } // namespace Debond
 
 #endif

@@ -35,13 +35,9 @@ namespace Debond
   std::vector<double>
   parse_load_factors(const std::string &text);
 
-  /// Declares the section Load path.
+  /// The section Load path.
   void
-  declare_load_path(ParameterTable &table);
-
-  /// Takes it out of the table; what is wrong is left there as an error.
-  LoadPathParameters
-  read_load_path(ParameterTable &table);
+  bind_load_path(LoadPathParameters &load_path, ParameterTable &table);
 } // namespace Debond
 
 #endif

@@ -3,21 +3,23 @@
 #define debond_input_mesh_parameters_h
 
 #include <debond/base/parameter_table.h>
-#include <debond/mesh/body.h>
+#include <debond/mesh/make_body.h>
 
 #include <memory>
 #include <string>
 
 namespace Debond
 {
+  /// The section Mesh.
   void
-  declare_mesh(ParameterTable &table);
+  bind_mesh(BodyParameters &body, ParameterTable &table);
 
   /// The body, a Body<dimension>, of the file @p scene. Adds an error to the
   /// table and returns null if there is none.
   std::shared_ptr<const BodyDescription>
-  read_body(const std::string &scene,
+  make_body(const std::string &scene,
             const unsigned int dimension,
+            BodyParameters     body,
             ParameterTable    &table);
 } // namespace Debond
 

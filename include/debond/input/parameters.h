@@ -8,13 +8,15 @@
 #include <debond/elasticity/material.h>
 #include <debond/input/load_parameters.h>
 #include <debond/input/load_path_parameters.h>
-#include <debond/mesh/body.h>
+#include <debond/input/output_parameters.h>
+#include <debond/mesh/make_body.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 
 #include <map>
+#include <memory>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -29,22 +31,6 @@ namespace Debond
     explicit BadInput(const std::vector<std::string> &errors);
 
     const std::vector<std::string> lines;
-  };
-
-
-
-  struct OutputParameters
-  {
-    std::string directory;
-    bool        body_vtu         = true;
-    bool        contact_vtu      = true;
-    bool        contact_profile  = true;
-    bool        history          = true;
-    bool        displacement     = false;
-    bool        path_plots       = true;
-    bool        path_body_vtu    = false;
-    bool        path_contact_vtu = true;
-    bool        machine_details  = true;
   };
 
 
@@ -92,18 +78,18 @@ namespace Debond
     unsigned int                           dimension = 2;
     std::shared_ptr<const BodyDescription> body;
     Material                               material;
-    std::set<std::string>                  clamped_boundaries;
-    std::set<std::string>                  contact_boundaries;
-    bool                                   tangential_displacement_fixed = true;
-    LoadParameters                         loads;
-    LoadPathParameters                     load_path;
-    ContactLawParameters                   law;
-    ContactQuadratureParameters            quadrature;
-    std::string                            quadrature_name;
-    std::string                            method;
-    std::string                            linear_solver;
-    double                   memory_limit = 0.; ///< bytes, 0: what is there
-    ProximalBundleParameters bundle;
+    std::set<std::string>       clamped_boundaries = {"left", "right"};
+    std::set<std::string>       contact_boundaries = {"bottom"};
+    bool                        tangential_displacement_fixed = true;
+    LoadParameters              loads;
+    LoadPathParameters          load_path;
+    ContactLawParameters        law;
+    ContactQuadratureParameters quadrature;
+    std::string                 quadrature_name = "nodal";
+    std::string                 method          = "automatic";
+    std::string                 linear_solver   = "automatic";
+    double                      memory_limit = 0.; ///< bytes, 0: what is there
+    ProximalBundleParameters    bundle;
 
     /// File with the first iterate of the Euclidean bundle; empty for zero.
     std::string start;
@@ -130,25 +116,41 @@ namespace Debond
     /// The scene with all entries that it leaves to their defaults.
     std::string effective_scene;
 
-    /// The same by path, and where they were set.
-    std::map<std::string, std::string> values, locations;
+    /// The values that have to be the same at a restart, by path.
+    std::map<std::string, std::string> values_of_state;
+
+    /// Where entries were set, by path.
+    std::map<std::string, std::string> locations;
   };
 
-  /// Declares all entries with defaults (the paper's benchmark on the mesh
-  /// 40x4), patterns and documentation.
-  void
-  declare_parameters(ParameterTable &table);
 
-  /// Reads the file @p scene over the defaults into a table from
-  /// declare_parameters(). Throws BadInput if the file cannot be read at all;
-  /// errors in it are left in the table.
+
+  /**
+   * The table of all entries of a scene, with the paper's benchmark on the mesh
+   * 40x4 as defaults.
+   */
+  class SceneTable : public ParameterTable
+  {
+  public:
+    SceneTable();
+
+    /// The values of what has been read, @p scene being the path of its file.
+    /// Throws BadInput with the errors of the table and those of values that
+    /// do not fit together.
+    Parameters
+    parameters(const std::string &scene);
+
+  private:
+    Parameters     p;
+    BodyParameters body;
+    LawSection     laws;
+  };
+
+  /// Reads the file @p scene over the values that the table has. Throws
+  /// BadInput if the file cannot be read at all; errors in it are left in the
+  /// table.
   void
   read_scene(const std::string &scene, ParameterTable &table);
-
-  /// Takes the values out of the table. Throws BadInput with the errors of the
-  /// table and those of values that do not fit together.
-  Parameters
-  to_parameters(const std::string &scene, ParameterTable &table);
 } // namespace Debond
 
 #endif

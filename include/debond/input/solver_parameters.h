@@ -6,14 +6,13 @@
 
 namespace Debond
 {
-  /// Declares the section Solver.
+  /// The section Solver.
   void
-  declare_solver(ParameterTable &table);
+  bind_solver(Parameters &p, ParameterTable &table);
 
-  /// Takes the section out of the table into @p p; what does not fit together
-  /// is left in the table as an error.
+  /// What its patterns leave to be checked.
   void
-  read_solver(ParameterTable &table, Parameters &p);
+  check_solver(const Parameters &p, ParameterTable &table);
 } // namespace Debond
 
 #endif

@@ -4,6 +4,7 @@
 
 #include <debond/base/parameter_table.h>
 
+#include <array>
 #include <map>
 #include <string>
 #include <utility>
@@ -31,13 +32,13 @@ namespace Debond
   struct ReferenceParameters
   {
     std::string file; ///< CSV with a line of titles; empty for none
-    std::string label;
+    std::string label = "reference";
 
     /// Which rows count: the text that a column has to have.
     std::map<std::string, std::string> rows;
 
     /// The column that holds the value of the first sweep.
-    std::string key;
+    std::string key = "value";
 
     /// By the column of the study, the column of the file. Where the column
     /// of the study is an "error", the file has the functional.
@@ -65,8 +66,8 @@ namespace Debond
     std::string file;
     std::string title;
     std::string description;
-    std::string scene;     ///< the base scene's path
-    std::string directory; ///< of the output
+    std::string scene; ///< the base scene's path
+    std::string directory = "output/{study}";
 
     /// "Section/Entry=value", for all cases.
     std::vector<std::string> settings;
@@ -75,9 +76,17 @@ namespace Debond
     std::vector<std::string> preparation;
 
     std::vector<Sweep>       sweeps; ///< the last one may be the method
-    std::vector<std::string> columns;
-    std::vector<std::string> accepted_statuses;
-    bool                     fields = false;
+    std::vector<std::string> columns           = {"status",
+                                                  "iterations",
+                                                  "long",
+                                                  "short",
+                                                  "null",
+                                                  "J",
+                                                  "error",
+                                                  "law violation",
+                                                  "seconds"};
+    std::vector<std::string> accepted_statuses = {"success"};
+    bool                     fields            = false;
 
     /// Between these relative errors the rate of convergence is fitted.
     double fit_from = 1e-3;
@@ -87,17 +96,25 @@ namespace Debond
     ReferenceParameters reference;
   };
 
-  /// Declares the entries of a study.
-  void
-  declare_study_parameters(ParameterTable &table);
+  /// The table of all entries of a study.
+  class StudyTable : public ParameterTable
+  {
+  public:
+    StudyTable();
 
-  /**
-   * Takes the values out of a table that has read @p file, and checks that the
-   * base scene exists and knows the parameters and values that it is given.
-   * Throws BadInput with the errors of the table and these.
-   */
-  StudyParameters
-  to_study_parameters(const std::string &file, ParameterTable &table);
+    /**
+     * The values of what has been read, @p file being its path. Checks that the
+     * base scene exists and knows the parameters and values that it is given.
+     * Throws BadInput with the errors of the table and these.
+     */
+    StudyParameters
+    parameters(const std::string &file);
+
+  private:
+    StudyParameters          study;
+    std::array<Sweep, 2>     sweeps;
+    std::vector<std::string> methods;
+  };
 
   /// The values of "a | b | c", or of "geometric FIRST LAST COUNT". Throws
   /// std::invalid_argument if it is neither.

@@ -14,9 +14,8 @@ namespace Debond
   LawKind
   no_adhesion_kind()
   {
-    return {"none",
-            "has no adhesion",
-            [](ParameterTable &) {},
-            [](ParameterTable &) { return no_adhesion(); }};
+    return {"none", "has no adhesion", [](ParameterTable &) -> LawMaker {
+              return [](ParameterTable &) { return no_adhesion(); };
+            }};
   }
 } // namespace Debond

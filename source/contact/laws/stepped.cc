@@ -3,6 +3,7 @@
 #include <debond/contact/laws/stepped.h>
 
 #include <cmath>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 
@@ -10,11 +11,6 @@ namespace Debond
 {
   namespace
   {
-    const std::string stiffnesses_entry = "Contact law/Stepped/Stiffnesses";
-    const std::string thresholds_entry  = "Contact law/Stepped/Thresholds";
-
-
-
     void
     require_steps(const bool holds, const std::string &reason)
     {
@@ -22,16 +18,6 @@ namespace Debond
         throw std::invalid_argument("a stepped law needs " + reason);
     }
 
-
-
-    std::vector<double>
-    read_numbers(const ParameterTable &table, const std::string &entry)
-    {
-      std::vector<double> numbers;
-      for (const std::string &text : table.get_list(entry))
-        read_number(text, numbers.emplace_back());
-      return numbers;
-    }
   } // namespace
 
 
@@ -83,31 +69,37 @@ namespace Debond
       "stepped",
       "breaks in steps, from each of the stiffnesses of its section to the next "
       "one at the thresholds, and holds nothing after the last",
-      [](ParameterTable &table) {
-        table.declare(stiffnesses_entry,
-                      "69, 23",
-                      list_of(quantity()),
-                      "a_1, a_2, ..., which fall from step to step",
-                      "force per volume");
-        table.declare(
-          thresholds_entry,
-          "0.001, 0.003",
-          list_of(quantity()),
-          "M_1, M_2, ..., the displacement at which each step ends, "
-          "which rise",
-          "length");
-      },
-      [](ParameterTable &table) {
-        try
-          {
-            return stepped_law(read_numbers(table, stiffnesses_entry),
-                               read_numbers(table, thresholds_entry));
-          }
-        catch (const std::invalid_argument &error)
-          {
-            table.reject(stiffnesses_entry, error.what(), {thresholds_entry});
-            return ContactLawParameters();
-          }
+      [](ParameterTable &table) -> LawMaker {
+        struct Entries
+        {
+          std::vector<double> stiffnesses = {69., 23.};
+          std::vector<double> thresholds  = {0.001, 0.003};
+        };
+        const auto        law         = std::make_shared<Entries>();
+        const std::string stiffnesses = "Contact law/Stepped/Stiffnesses";
+        const std::string thresholds  = "Contact law/Stepped/Thresholds";
+        table.bind(stiffnesses,
+                   law->stiffnesses,
+                   list_of(quantity()),
+                   "a_1, a_2, ..., which fall from step to step",
+                   "force per volume");
+        table.bind(thresholds,
+                   law->thresholds,
+                   list_of(quantity()),
+                   "M_1, M_2, ..., the displacement at which each step ends, "
+                   "which rise",
+                   "length");
+        return [=](ParameterTable &entries) {
+          try
+            {
+              return stepped_law(law->stiffnesses, law->thresholds);
+            }
+          catch (const std::invalid_argument &error)
+            {
+              entries.reject(stiffnesses, error.what(), {thresholds});
+              return ContactLawParameters();
+            }
+        };
       }};
   }
 } // namespace Debond

@@ -3,6 +3,7 @@
 #include <debond/contact/laws/winkler.h>
 
 #include <cmath>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 
@@ -52,22 +53,25 @@ namespace Debond
     return {"winkler",
             "is the paper's, with bonds that pull in proportion to the "
             "displacement and break at the threshold",
-            [](ParameterTable &table) {
-              table.declare("Contact law/Bond stiffness",
-                            "69",
-                            quantity(true),
-                            "a",
-                            "force per volume");
-              table.declare("Contact law/Bond threshold",
-                            "0.002",
-                            quantity(),
-                            "M, the displacement at which bonds break",
-                            "length");
-            },
-            [](ParameterTable &table) {
-              return winkler_law(table.get_double("Contact law/Bond stiffness"),
-                                 table.get_double(
-                                   "Contact law/Bond threshold"));
+            [](ParameterTable &table) -> LawMaker {
+              struct Entries
+              {
+                double stiffness = 69., threshold = 0.002;
+              };
+              const auto law = std::make_shared<Entries>();
+              table.bind("Contact law/Bond stiffness",
+                         law->stiffness,
+                         quantity(true),
+                         "a",
+                         "force per volume");
+              table.bind("Contact law/Bond threshold",
+                         law->threshold,
+                         quantity(),
+                         "M, the displacement at which bonds break",
+                         "length");
+              return [law](ParameterTable &) {
+                return winkler_law(law->stiffness, law->threshold);
+              };
             }};
   }
 } // namespace Debond

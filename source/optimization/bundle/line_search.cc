@@ -111,21 +111,6 @@ namespace Debond
 
 
 
-  DescentRule
-  parse_descent_rule(const std::string &name)
-  {
-    if (name == "largest")
-      return DescentRule::largest;
-    if (name == "halving")
-      return DescentRule::halving;
-    if (name == "minimum")
-      return DescentRule::minimum;
-    throw std::invalid_argument("Line search '" + name +
-                                "' must be largest, halving or minimum.");
-  }
-
-
-
   template <typename VectorType>
   LineSearchResult
   line_search(const LineRestriction<VectorType> &line,

@@ -28,11 +28,6 @@ namespace Debond
     minimum  ///< on along that sequence while J falls, then a parabola
   };
 
-  /// Throws std::invalid_argument if the name is none of "largest",
-  /// "halving", "minimum".
-  DescentRule
-  parse_descent_rule(const std::string &name);
-
 
 
   /// The constants of the line search, with the paper's symbols.
