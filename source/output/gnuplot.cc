@@ -112,6 +112,18 @@ namespace Debond
 
 
 
+  std::vector<std::string>
+  plot_files(const std::vector<std::string> &names)
+  {
+    std::vector<std::string> files;
+    for (const std::string &name : names)
+      for (const char *ending : {".dat", ".gp", ".png", ".svg", ".log"})
+        files.push_back(name + ending);
+    return files;
+  }
+
+
+
   bool
   has_points(const Plot &plot)
   {

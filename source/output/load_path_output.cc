@@ -2,6 +2,7 @@
 #include <deal.II/base/data_out_base.h>
 
 #include <debond/base/atomic_file.h>
+#include <debond/output/load_path.h>
 #include <debond/output/load_path_output.h>
 #include <debond/output/load_path_plots.h>
 #include <debond/output/vtu.h>
@@ -15,48 +16,40 @@ namespace Debond
   namespace
   {
     const std::string directory_of_steps = "load_path";
-
-
-
-    const char *const table    = "load_path.csv";
-    const char *const bodies   = "load_path_body.pvd";
-    const char *const contacts = "load_path_contact.pvd";
-
-
-
-    /// What a load path may have left, but nothing else.
-    void
-    remove_old_files(const std::filesystem::path &directory)
-    {
-      std::vector<std::filesystem::path> old = {directory / table,
-                                                directory / bodies,
-                                                directory / contacts};
-      for (const std::string &plot : load_path_plot_names())
-        for (const char *ending : {".dat", ".gp", ".png", ".svg", ".log"})
-          old.push_back(directory / (plot + ending));
-      std::error_code error;
-      for (const auto &entry :
-           std::filesystem::directory_iterator(directory / directory_of_steps,
-                                               error))
-        if (entry.path().extension() == ".vtu")
-          old.push_back(entry.path());
-      for (const std::filesystem::path &file : old)
-        if (std::filesystem::is_regular_file(file, error))
-          std::filesystem::remove(file, error);
-      if (std::filesystem::is_empty(directory / directory_of_steps, error))
-        std::filesystem::remove(directory / directory_of_steps, error);
-    }
   } // namespace
 
 
 
   template <int dim>
-  LoadPathOutput<dim>::LoadPathOutput(const OutputParameters    &output,
-                                      const ElasticProblem<dim> &problem)
+  LoadPathOutput<dim>::LoadPathOutput(
+    const OutputParameters               &output,
+    const ElasticProblem<dim>            &problem,
+    const std::vector<LoadPathStep<dim>> &steps,
+    std::string                          &note)
     : output(output)
     , problem(problem)
+    , steps(steps)
+    , note(note)
+  {}
+
+
+
+  template <int dim>
+  void
+  LoadPathOutput<dim>::remove_steps() const
   {
-    remove_old_files(output.directory);
+    std::vector<std::filesystem::path> old;
+    std::error_code                    unreadable;
+    for (const auto &entry :
+         std::filesystem::directory_iterator(path(directory_of_steps),
+                                             unreadable))
+      if (entry.path().extension() == ".vtu" &&
+          entry.is_regular_file(unreadable))
+        old.push_back(entry.path());
+    for (const std::filesystem::path &file : old)
+      std::filesystem::remove(file, unreadable);
+    if (std::filesystem::is_empty(path(directory_of_steps), unreadable))
+      std::filesystem::remove(path(directory_of_steps), unreadable);
   }
 
 
@@ -77,13 +70,13 @@ namespace Debond
           {
             const std::string name = name_of_step("body", step.step);
             write_body_vtu(problem, u, path(name));
-            body_record.emplace_back(step.step, name);
+            bodies.emplace_back(step.step, name);
           }
         if (output.path_contact_vtu)
           {
             const std::string name = name_of_step("contact", step.step);
             write_contact_vtu(problem, u, verification, path(name));
-            contact_record.emplace_back(step.step, name);
+            contacts.emplace_back(step.step, name);
           }
       }
     catch (const std::runtime_error &exception)
@@ -95,39 +88,52 @@ namespace Debond
 
 
   template <int dim>
-  std::vector<std::string>
-  LoadPathOutput<dim>::finish(const std::vector<LoadPathStep<dim>> &steps,
-                              std::string                          &note)
+  std::vector<OutputFile>
+  LoadPathOutput<dim>::files()
   {
-    std::vector<std::string> files = {path(table)};
-    write_load_path(steps, files.back());
+    const auto has_steps = [this]() { return !steps.empty(); };
+    return {{{"load_path.csv"},
+             has_steps,
+             [this](const std::string &file) { write_load_path(steps, file); }},
+            series_file("load_path_body.pvd", bodies),
+            series_file("load_path_contact.pvd", contacts),
+            {plot_files(load_path_plot_names()),
+             has_steps,
+             [this](const std::string & /*file*/) {
+               draw();
+               if (!error.empty())
+                 throw std::runtime_error(error);
+             }}};
+  }
 
-    for (const auto &[name, record] :
-         {std::make_pair(bodies, body_record),
-          std::make_pair(contacts, contact_record)})
-      if (!record.empty())
-        {
-          files.push_back(path(name));
-          write_atomically(files.back(), [&record = record](std::ostream &out) {
-            dealii::DataOutBase::write_pvd_record(out, record);
-          });
-        }
 
+
+  template <int dim>
+  OutputFile
+  LoadPathOutput<dim>::series_file(const std::string &name,
+                                   const Series      &series) const
+  {
+    return {{name},
+            [&series]() { return !series.empty(); },
+            [&series](const std::string &file) {
+              write_atomically(file, [&series](std::ostream &out) {
+                dealii::DataOutBase::write_pvd_record(out, series);
+              });
+            }};
+  }
+
+
+
+  template <int dim>
+  void
+  LoadPathOutput<dim>::draw() const
+  {
     for (const Plot &plot : load_path_plots(steps))
       {
         write_gnuplot(plot, output.directory);
-        for (const char *ending : {".dat", ".gp"})
-          files.push_back(path(plot.name + ending));
-        if (!output.path_plots || !note.empty())
-          continue;
-        note = run_gnuplot(plot, output.directory);
-        if (note.empty())
-          for (const char *ending : {".png", ".svg"})
-            files.push_back(path(plot.name + ending));
+        if (output.path_plots && note.empty())
+          note = run_gnuplot(plot, output.directory);
       }
-    if (!error.empty())
-      throw std::runtime_error(error);
-    return files;
   }
 
 

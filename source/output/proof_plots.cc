@@ -5,13 +5,22 @@
 
 namespace Debond
 {
+  std::vector<std::string>
+  proof_plot_names()
+  {
+    return {"proof_time", "proof_nodes"};
+  }
+
+
+
   std::vector<Plot>
   proof_plots(const std::vector<ProofProgress> &history)
   {
     if (history.empty() || history.back().nodes <= 1)
       return {};
-    Plot  time  = {"proof_time", "", "s", "gap relative to J", false, true};
-    Plot  nodes = {"proof_nodes", "", "nodes", "gap relative to J", true, true};
+    const std::vector<std::string> names = proof_plot_names();
+    Plot  time  = {names[0], "", "s", "gap relative to J", false, true};
+    Plot  nodes = {names[1], "", "nodes", "gap relative to J", true, true};
     Curve against_time, against_nodes;
     against_time.title = against_nodes.title = "gap";
     for (const ProofProgress &step : history)

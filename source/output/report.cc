@@ -2,7 +2,6 @@
 #include <debond/base/text.h>
 #include <debond/base/version.h>
 #include <debond/output/report.h>
-#include <debond/solve/method_choice.h>
 
 #include <cmath>
 #include <iomanip>
@@ -12,15 +11,18 @@ namespace Debond
 {
   namespace
   {
-    constexpr int label_width = 22;
+    using Json = Record::Json;
 
 
 
-    std::ostream &
-    line(std::ostream &out, const std::string &label)
+    /// All of them one after the other.
+    template <typename... Parts>
+    std::string
+    words(const Parts &...parts)
     {
-      return out << "  " << std::left << std::setw(label_width) << label
-                 << std::right;
+      std::ostringstream text;
+      (text << ... << parts);
+      return text.str();
     }
 
 
@@ -28,9 +30,15 @@ namespace Debond
     std::string
     scientific(const double value, const int digits)
     {
-      std::ostringstream text;
-      text << std::scientific << std::setprecision(digits) << value;
-      return text.str();
+      return words(std::scientific, std::setprecision(digits), value);
+    }
+
+
+
+    std::string
+    fixed(const double value, const int digits)
+    {
+      return words(std::fixed, std::setprecision(digits), value);
     }
 
 
@@ -50,278 +58,552 @@ namespace Debond
 
 
 
-    template <int dim>
-    std::string
-    vector_text(const dealii::Tensor<1, dim> &vector)
+    void
+    report_change(const std::string               &name,
+                  const std::string               &label,
+                  const std::optional<BondChange> &change,
+                  Record                          &record)
     {
-      std::string text = "(";
-      for (unsigned int d = 0; d < dim; ++d)
-        text += (d == 0 ? "" : ", ") + scientific(vector[d], 6);
-      return text + ")";
+      const std::string pointer = "/load_path/" + name;
+      if (!change)
+        {
+          record.add(pointer, nullptr);
+          return;
+        }
+      record.add(pointer,
+                 {{"step", change->step},
+                  {"factor", change->factor},
+                  {"change_factor",
+                   change->change_factor ? Json(*change->change_factor) :
+                                           Json(nullptr)},
+                  {"broken_before", change->broken_before},
+                  {"broken_after", change->broken_after}});
+      record.line(label,
+                  words("at factor ",
+                        change->factor,
+                        ", step ",
+                        change->step,
+                        ", broken part ",
+                        change->broken_before,
+                        " to ",
+                        change->broken_after) +
+                    (change->change_factor ? words(", from ",
+                                                   std::setprecision(10),
+                                                   *change->change_factor,
+                                                   " on") :
+                                             ""));
+    }
+
+
+
+    /// The steps at which most bonds break and close, and how far the path is
+    /// from the global branch.
+    void
+    report_load_path(const LoadPathTotals &path, Record &record)
+    {
+      record.heading("Load path");
+      record.add("/load_path/factors", path.factors);
+      record.add("/load_path/steps", path.steps);
+      record.add("/load_path/last_factor", path.last_factor);
+      record.line("factors",
+                  words(path.steps,
+                        " of ",
+                        path.factors,
+                        ", the last one ",
+                        path.last_factor));
+      report_change("largest_break",
+                    "most bonds break",
+                    path.largest_break,
+                    record);
+      report_change("largest_closing",
+                    "most bonds close",
+                    path.largest_closing,
+                    record);
+
+      record.add("/load_path/compared_with_global_branch", path.compared);
+      record.add("/load_path/above_global_branch", path.above_global);
+      record.add("/load_path/largest_excess", path.largest_excess);
+      if (path.compared > 0)
+        record.line(
+          "above global branch",
+          words("at ", path.above_global, " of ", path.compared, " factors") +
+            (path.above_global > 0 ?
+               words(", by ", 100. * path.largest_excess, " % of |J| at most") :
+               ""));
+    }
+
+
+
+    template <int dim>
+    void
+    report_status(const RunResult<dim> &result, Record &record)
+    {
+      record.heading(result.path.empty() ? "Result" :
+                                           "Result at the last load factor");
+      record.add("/status", result.status);
+      record.add("/message", result.message);
+      record.add("/notes", result.notes);
+      record.line("status",
+                  (result.is_success() ? "" : "NOT CONVERGED: ") +
+                    result.status);
+      if (!result.is_success())
+        record.line("", result.message);
+      for (const std::string &note : result.notes)
+        record.line("note", note);
+
+      const SolveResult &solve = result.solve;
+      record.add("/functional", solve.functional);
+      record.line("J", scientific(solve.functional, 10));
+      if (solve.functional_from_start)
+        record.add("/functional_from_start", *solve.functional_from_start);
+      if (solve.is_replaced)
+        record.line(
+          "J from start",
+          scientific(*solve.functional_from_start, 10) +
+            ", of the state that loading leads to; the lower one above was found"
+            " beside it");
+    }
+
+
+
+    /// @p n_nodes: all contact nodes.
+    void
+    report_minimum(const WhichMinimum &minimum,
+                   const bool          is_success,
+                   const unsigned int  n_nodes,
+                   Record             &record)
+    {
+      const bool        details = record.has_details();
+      const std::string kind    = is_success ? to_string(minimum.kind) : "";
+      record.add("/minimum/state", kind);
+      record.add("/minimum/search_trials", minimum.search_trials);
+      record.add("/minimum/search_improvements", minimum.search_improvements);
+      record.add("/minimum/search_failures", minimum.search_failures);
+      record.add("/minimum/search_nodes", minimum.search_nodes);
+      record.add("/minimum/closed_nodes", minimum.closed_nodes);
+      if (is_success)
+        {
+          std::string text = kind;
+          if (details && minimum.search_trials > 0)
+            text +=
+              words(", ", minimum.search_trials, " states searched") +
+              (minimum.search_nodes < n_nodes ?
+                 words(" on ", minimum.search_nodes, " of the contact nodes") :
+                 "");
+          if (details && minimum.closed_nodes > 0)
+            text += words(", the minimum on ",
+                          minimum.closed_nodes,
+                          " coarser ones leads here");
+          if (minimum.search_failures > 0)
+            text += words(", ",
+                          minimum.search_failures,
+                          " of them led to no minimum");
+          record.line("minimum", text);
+        }
+
+      if (!minimum.proof_attempted)
+        return;
+      const std::string status = to_string(minimum.proof_status);
+      record.add("/proof/status", status);
+      record.add("/proof/nodes", minimum.proof_nodes);
+      record.add("/proof/lower_bound", minimum.lower_bound);
+      record.add("/proof/relative_gap", minimum.relative_gap);
+      record.line("proof",
+                  status + (details ?
+                              words(" after ",
+                                    minimum.proof_nodes,
+                                    " nodes, gap ",
+                                    scientific(minimum.relative_gap, 1),
+                                    " of what the bonds can change in J, J >= ",
+                                    scientific(minimum.lower_bound, 10)) :
+                              ""));
     }
 
 
 
     void
-    report_timings(const Summary &summary, std::ostream &out)
+    report_iterations(const SolveResult &result,
+                      const std::string &method,
+                      Record            &record)
     {
-      out << "Wall time in s\n" << std::fixed << std::setprecision(4);
-      for (const std::string part :
-           {"mesh", "assembly", "solve", "verification", "output", "total"})
+      const bool is_bundle = method != SolverMethod::majorise_minimise;
+      record.add("/iterations/total", result.iterations);
+      record.add("/iterations/long", result.long_steps);
+      record.add("/iterations/short", result.short_steps);
+      record.add("/iterations/null", result.null_steps);
+      record.add("/stop_criterion", result.criterion);
+      record.add("/largest_qp_residual", result.largest_qp_residual);
+      record.add("/linear_iterations", result.linear_iterations);
+      if (result.condition_estimate)
+        record.add("/condition_estimate", *result.condition_estimate);
+      if (!record.has_details())
+        return;
+      record.line("iterations",
+                  words(result.iterations) + (is_bundle ?
+                                                words(" (long ",
+                                                      result.long_steps,
+                                                      ", short ",
+                                                      result.short_steps,
+                                                      ", null ",
+                                                      result.null_steps,
+                                                      ")") :
+                                                ""));
+      record.line(is_bundle ? "last v_k" : "optimality residual",
+                  scientific(result.criterion, 3));
+    }
+
+
+
+    template <int dim>
+    void
+    report_state(const Verification<dim> &verification,
+                 const LargestValues     &largest,
+                 Record                  &record)
+    {
+      Json                     states = Json::object();
+      std::vector<std::string> texts;
+      for (unsigned int k = 0; k < verification.state_names.size(); ++k)
         {
-          const auto time = summary.timings_s.find(part);
-          if (time == summary.timings_s.end())
-            continue;
-          line(out, part) << time->second << '\n';
-          const std::string prefix = part + "/";
-          for (const auto &[name, seconds] : summary.timings_s)
-            if (name.compare(0, prefix.size(), prefix) == 0)
-              line(out, "  " + name.substr(prefix.size())) << seconds << '\n';
+          const auto         state = static_cast<BondState>(k);
+          const unsigned int count = verification.count(state);
+          if (state != BondState::held)
+            states[verification.name(state)] = count;
+          if (count > 0)
+            texts.push_back(words(verification.name(state), " ", count));
         }
-      out << std::defaultfloat;
+      record.add("/bond_states", states);
+      record.line("contact nodes", join(texts, ", "));
+
+      record.add("/largest_displacement", largest.displacement);
+      record.add("/largest_displacement_gradient", largest.gradient);
+      record.add("/largest_von_mises", largest.von_mises);
+      record.line("largest",
+                  "displacement " + scientific(largest.displacement, 3) +
+                    ", its gradient " + scientific(largest.gradient, 1) +
+                    ", von Mises stress " + scientific(largest.von_mises, 3));
+    }
+
+
+
+    /// A resultant, Cartesian components.
+    template <int dim>
+    void
+    report_force(const std::string            &name,
+                 const std::string            &label,
+                 const dealii::Tensor<1, dim> &force,
+                 const bool                    is_logged,
+                 Record                       &record)
+    {
+      record.add("/" + name,
+                 std::vector<double>(force.begin_raw(), force.end_raw()));
+      if (!is_logged)
+        return;
+      std::vector<std::string> components;
+      for (unsigned int d = 0; d < dim; ++d)
+        components.push_back(scientific(force[d], 6));
+      record.line(label, "(" + join(components, ", ") + ")");
+    }
+
+
+
+    template <int dim>
+    void
+    report_verification(const Parameters     &parameters,
+                        const RunResult<dim> &result,
+                        Record               &record)
+    {
+      const bool               details      = record.has_details();
+      const Verification<dim> &verification = result.verification;
+      const auto               error        = [details](const double value) {
+        return details ? scientific(value, 2) : bound(value);
+      };
+      record.heading("Verification, from A u - f");
+      record.add("/law_violation", verification.law_violation);
+      record.line("law violation",
+                  error(verification.law_violation) +
+                    (parameters.law.name == "none" ?
+                       ", relative to the contact forces" :
+                       ", relative to what bonds bear and to the contact "
+                       "forces"));
+      record.add("/penetration", verification.penetration);
+      record.line("penetration", scientific(verification.penetration, 2));
+      record.add("/equilibrium_residual", verification.equilibrium_residual);
+      record.line("residual",
+                  error(verification.equilibrium_residual) +
+                    ", relative to the reactions");
+      record.add("/force_imbalance", verification.force_imbalance);
+      record.line("force imbalance",
+                  error(verification.force_imbalance) +
+                    ", relative to the forces");
+
+      if (const auto &distance = result.displacement_error; distance)
+        {
+          record.add("/displacement_error/l2", distance->l2);
+          record.add("/displacement_error/h1", distance->h1);
+          record.add("/displacement_error/energy_norm", distance->energy_norm);
+          record.add("/displacement_error/exact_energy",
+                     distance->exact_energy);
+          record.line("displacement error",
+                      scientific(distance->l2, 2) + " in L2, " +
+                        scientific(distance->h1, 2) + " in H1, " +
+                        scientific(distance->energy_norm, 2) +
+                        " in the energy norm, relative to the exact one");
+        }
+
+      report_force("applied_force",
+                   "applied force",
+                   verification.applied_force,
+                   true,
+                   record);
+      report_force("clamped_reaction",
+                   "force of clamps",
+                   verification.clamped_reaction,
+                   details,
+                   record);
+      report_force("contact_reaction",
+                   "force of foundation",
+                   verification.contact_reaction,
+                   details,
+                   record);
+      report_force("tangential_reaction",
+                   "  tangential part",
+                   verification.tangential_reaction,
+                   details && parameters.tangential_displacement_fixed,
+                   record);
+    }
+
+
+
+    void
+    report_program(Record &record)
+    {
+      record.add("/revision", git_revision());
+      record.add("/deal_ii_version", deal_ii_version());
+      record.add("/build_type", build_type());
+      record.heading("Debond " + program_version() +
+                     (record.has_details() ?
+                        ", revision " + git_revision() + ", deal.II " +
+                          deal_ii_version() + ", " + build_type() :
+                        ""));
+    }
+
+
+
+    /// As the scene says it.
+    void
+    report_data(const Parameters  &parameters,
+                const unsigned int n_contact_nodes,
+                Record            &record)
+    {
+      const auto list = [](const std::set<std::string> &names) {
+        return join({names.begin(), names.end()}, ", ");
+      };
+      const Material &material = parameters.material;
+      record.line("material",
+                  words("E = ",
+                        material.young_modulus,
+                        ", nu = ",
+                        material.poisson_ratio,
+                        parameters.dimension == 3 ? "" :
+                        material.hypothesis ==
+                            Material::Hypothesis::plane_stress ?
+                                                    ", plane stress" :
+                                                    ", plane strain"));
+      record.line("clamped", list(parameters.clamped_boundaries));
+      if (!parameters.loads.body_force.empty())
+        record.line("body force", parameters.loads.body_force);
+      for (const auto &[side, traction] : parameters.loads.tractions)
+        record.line("traction " + side, traction);
+      record.add("/contact_nodes", n_contact_nodes);
+      record.line("contact",
+                  words(list(parameters.contact_boundaries),
+                        ", ",
+                        n_contact_nodes,
+                        " nodes"));
+      record.line("contact law",
+                  parameters.law.name +
+                    (parameters.law.data.empty() ?
+                       "" :
+                       ", " + parameters.law.data + ", " +
+                         parameters.quadrature_name + " quadrature"));
     }
   } // namespace
 
 
 
+  template <int dim>
   void
-  report_problem(const Parameters  &parameters,
-                 const Summary     &summary,
-                 const std::string &reason,
-                 std::ostream      &out)
+  report_problem(const Parameters   &parameters,
+                 const Scene<dim>   &scene,
+                 const MethodChoice &choice,
+                 Record             &record)
   {
-    const bool details = parameters.output.machine_details;
+    report_program(record);
+    record.heading("Problem");
+    record.add("/scene", parameters.scene);
+    if (record.has_details())
+      record.line("scene", parameters.scene);
+    record.add("/dimension", dim);
+    record.add("/cells", scene.n_cells());
+    record.line("mesh",
+                words(scene.n_cells(),
+                      dim == 2 ? " triangles" : " tetrahedra"));
 
-    out << "Debond " << program_version();
-    if (details)
-      out << ", revision " << summary.revision << ", deal.II "
-          << summary.deal_ii_version << ", " << summary.build_type;
-    out << "\nProblem\n";
-    if (details)
-      line(out, "scene") << parameters.scene << '\n';
-    line(out, "mesh") << summary.cells
-                      << (summary.dimension == 2 ? " triangles\n" :
-                                                   " tetrahedra\n");
-    line(out, "unknowns") << summary.degrees_of_freedom
-                          << (parameters.tangential_displacement_fixed ?
-                                ", with fixed tangential ones " +
-                                  std::to_string(
-                                    summary.degrees_of_freedom_paper) :
-                                "")
-                          << '\n';
-    line(out, "material") << "E = " << parameters.material.young_modulus
-                          << ", nu = " << parameters.material.poisson_ratio
-                          << (summary.dimension == 3 ? "" :
-                              parameters.material.hypothesis ==
-                                  Material::Hypothesis::plane_stress ?
-                                                       ", plane stress" :
-                                                       ", plane strain")
-                          << '\n';
-    const auto list = [](const std::set<std::string> &names) {
-      return join(std::vector<std::string>(names.begin(), names.end()), ", ");
-    };
-    line(out, "clamped") << list(parameters.clamped_boundaries) << '\n';
-    if (!parameters.loads.body_force.empty())
-      line(out, "body force") << parameters.loads.body_force << '\n';
-    for (const auto &[side, traction] : parameters.loads.tractions)
-      line(out, "traction " + side) << traction << '\n';
-    line(out, "contact") << list(parameters.contact_boundaries) << ", "
-                         << summary.contact_nodes << " nodes\n";
-    line(out, "contact law") << parameters.law.name;
-    if (!parameters.law.data.empty())
-      out << ", " << parameters.law.data << ", " << parameters.quadrature_name
-          << " quadrature";
-    out << '\n';
-    line(out, "method") << summary.method;
-    if (summary.linear_solver != LinearSolver::none)
-      out << ", " << summary.linear_solver << " linear solver";
-    if (summary.method == SolverMethod::euclidean_bundle)
-      out << ", u_k = " << parameters.bundle.u;
-    if (!reason.empty())
-      out << ", chosen since " << reason;
-    out << '\n' << std::flush;
+    const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
+    const unsigned int          n_dofs   = unknowns.n_free_dofs();
+    const unsigned int          n_nodes  = unknowns.contact().size();
+    // The paper counts the tangential displacements of the contact nodes,
+    // although they are fixed: 710 on its mesh 40x4.
+    const unsigned int n_dofs_paper =
+      n_dofs +
+      (parameters.tangential_displacement_fixed ? (dim - 1) * n_nodes : 0);
+    record.add("/degrees_of_freedom", n_dofs);
+    record.add("/degrees_of_freedom_paper", n_dofs_paper);
+    record.line("unknowns",
+                words(n_dofs) +
+                  (parameters.tangential_displacement_fixed ?
+                     words(", with fixed tangential ones ", n_dofs_paper) :
+                     ""));
+    report_data(parameters, n_nodes, record);
+
+    record.add("/method", choice.method);
+    record.add("/linear_solver", choice.linear_solver);
+    record.line("method",
+                choice.method +
+                  (choice.linear_solver != LinearSolver::none ?
+                     ", " + choice.linear_solver + " linear solver" :
+                     "") +
+                  (choice.method == SolverMethod::euclidean_bundle ?
+                     words(", u_k = ", parameters.bundle.u) :
+                     "") +
+                  (choice.reason.empty() ? "" :
+                                           ", chosen since " + choice.reason));
   }
 
 
 
   template <int dim>
   void
-  report_result(const Parameters        &parameters,
-                const Summary           &summary,
-                const Verification<dim> &verification,
-                std::ostream            &out)
+  report_result(const Parameters     &parameters,
+                const Scene<dim>     &scene,
+                const MethodChoice   &choice,
+                const RunResult<dim> &result,
+                Record               &record)
   {
-    const bool details = parameters.output.machine_details;
-    const auto error   = [details](const double value) {
-      return details ? scientific(value, 2) : bound(value);
-    };
-
-    if (summary.load_path)
-      report_load_path(*summary.load_path, out);
-    out << "Result" << (summary.load_path ? " at the last load factor" : "")
-        << '\n';
-    const bool success = summary.status == to_string(SolverStatus::success);
-    line(out, "status") << (success ? "" : "NOT CONVERGED: ") << summary.status
-                        << '\n';
-    if (!success)
-      line(out, "") << summary.message << '\n';
-    for (const std::string &note : summary.notes)
-      line(out, "note") << note << '\n';
-    line(out, "J") << scientific(summary.functional, 10) << '\n';
-    if (summary.is_replaced)
-      line(out, "J from start")
-        << scientific(*summary.functional_from_start, 10)
-        << ", of the state that loading leads to; the lower one above was found"
-           " beside it\n";
-    if (!summary.minimum.empty())
-      {
-        line(out, "minimum") << summary.minimum;
-        if (details && summary.search_trials > 0)
-          out << ", " << summary.search_trials << " states searched"
-              << (summary.search_nodes < summary.contact_nodes ?
-                    " on " + std::to_string(summary.search_nodes) +
-                      " of the contact nodes" :
-                    "");
-        if (details && summary.closed_nodes > 0)
-          out << ", the minimum on " << summary.closed_nodes
-              << " coarser ones leads here";
-        if (summary.search_failures > 0)
-          out << ", " << summary.search_failures
-              << " of them led to no minimum";
-        out << '\n';
-      }
-    if (!summary.proof.empty())
-      {
-        line(out, "proof") << summary.proof;
-        if (details)
-          out << " after " << summary.proof_nodes << " nodes, gap "
-              << scientific(summary.relative_gap, 1)
-              << " of what the bonds can change in J, J >= "
-              << scientific(summary.lower_bound, 10);
-        out << '\n';
-      }
-    if (details)
-      {
-        line(out, "iterations") << summary.total_iterations;
-        if (summary.method == SolverMethod::majorise_minimise)
-          out << "\n";
-        else
-          out << " (long " << summary.long_steps << ", short "
-              << summary.short_steps << ", null " << summary.null_steps
-              << ")\n";
-        line(out,
-             summary.method == SolverMethod::majorise_minimise ?
-               "optimality residual" :
-               "last v_k")
-          << scientific(summary.stop_criterion, 3) << '\n';
-      }
-
-    std::string states;
-    for (unsigned int k = 0; k < verification.state_names.size(); ++k)
-      if (const unsigned int count =
-            verification.count(static_cast<BondState>(k));
-          count > 0)
-        states += (states.empty() ? "" : ", ") + verification.state_names[k] +
-                  " " + std::to_string(count);
-    line(out, "contact nodes") << states << '\n';
-    line(out, "largest") << "displacement "
-                         << scientific(summary.largest.displacement, 3)
-                         << ", its gradient "
-                         << scientific(summary.largest.gradient, 1)
-                         << ", von Mises stress "
-                         << scientific(summary.largest.von_mises, 3) << '\n';
-
-    out << "Verification, from A u - f\n";
-    line(out, "law violation")
-      << error(summary.law_violation)
-      << (parameters.law.name == "none" ?
-            ", relative to the contact forces\n" :
-            ", relative to what bonds bear and to the contact forces\n");
-    line(out, "penetration") << scientific(summary.penetration, 2) << '\n';
-    line(out, "residual") << error(summary.equilibrium_residual)
-                          << ", relative to the reactions\n";
-    line(out, "force imbalance")
-      << error(summary.force_imbalance) << ", relative to the forces\n";
-    if (summary.displacement_error)
-      line(out, "displacement error")
-        << scientific(summary.displacement_error->l2, 2) << " in L2, "
-        << scientific(summary.displacement_error->h1, 2) << " in H1, "
-        << scientific(summary.displacement_error->energy_norm, 2)
-        << " in the energy norm, relative to the exact one\n";
-    line(out, "applied force")
-      << vector_text<dim>(verification.applied_force) << '\n';
-    if (details)
-      {
-        line(out, "force of clamps")
-          << vector_text<dim>(verification.clamped_reaction) << '\n';
-        line(out, "force of foundation")
-          << vector_text<dim>(verification.contact_reaction) << '\n';
-        if (parameters.tangential_displacement_fixed)
-          line(out, "  tangential part")
-            << vector_text<dim>(verification.tangential_reaction) << '\n';
-        report_timings(summary, out);
-        out << "Memory in MB\n" << std::fixed << std::setprecision(0);
-        line(out, "peak") << summary.peak_memory / 1e6 << ", estimated "
-                          << summary.memory_estimate / 1e6 << '\n'
-                          << std::defaultfloat;
-      }
-    out << std::flush;
+    if (!result.path.empty())
+      report_load_path(load_path_totals(result.path,
+                                        static_cast<unsigned int>(
+                                          parameters.load_path.factors.size())),
+                       record);
+    report_status(result, record);
+    report_minimum(result.solve.minimum,
+                   result.is_success(),
+                   scene.problem().unknowns().contact().size(),
+                   record);
+    report_iterations(result.solve, choice.method, record);
+    report_state(result.verification, result.largest, record);
+    report_verification(parameters, result, record);
   }
 
 
 
+  template <int dim>
   void
-  report_load_path(const LoadPathTotals &path, std::ostream &out)
+  report_cost(const RunResult<dim> &result,
+              const MethodChoice   &choice,
+              const double          peak_memory,
+              Record               &record)
   {
-    out << "Load path\n";
-    line(out, "factors") << path.steps << " of " << path.factors
-                         << ", the last one " << path.last_factor << '\n';
-    const auto report_change = [&out](const std::string               &label,
-                                      const std::optional<BondChange> &change) {
-      if (!change)
-        return;
-      line(out, label) << "at factor " << change->factor << ", step "
-                       << change->step << ", broken part "
-                       << change->broken_before << " to "
-                       << change->broken_after;
-      if (change->change_factor)
-        out << ", from " << std::setprecision(10) << *change->change_factor
-            << std::setprecision(6) << " on";
-      out << '\n';
+    const auto log = [&record](const std::string &label, const double seconds) {
+      if (record.has_details())
+        record.line(label, fixed(seconds, 4));
     };
-    report_change("most bonds break", path.largest_break);
-    report_change("most bonds close", path.largest_closing);
-    if (path.compared > 0)
+    if (record.has_details())
+      record.heading("Wall time in s");
+    const auto &solve_parts = result.solve.parts;
+    for (const auto &[part, seconds] : result.times)
       {
-        line(out, "above global branch") << "at " << path.above_global << " of "
-                                         << path.compared << " factors";
-        if (path.above_global > 0)
-          out << ", by " << 100. * path.largest_excess << " % of |J| at most";
-        out << '\n';
+        record.add("/timings_s/" + part, seconds);
+        log(part, seconds);
+        if (part == "solve")
+          for (const auto &[name, seconds_of_it] : solve_parts)
+            log("  " + name, seconds_of_it);
+      }
+    record.add("/timings_s/solve_parts",
+               solve_parts.empty() ? Json::object() : Json(solve_parts));
+
+    record.add("/memory_estimate_bytes", choice.memory);
+    record.add("/peak_memory_bytes", peak_memory);
+    if (record.has_details())
+      {
+        record.heading("Memory in MB");
+        record.line("peak",
+                    fixed(peak_memory / 1e6, 0) + ", estimated " +
+                      fixed(choice.memory / 1e6, 0));
       }
   }
 
 
 
   void
-  report_files(const std::vector<std::string> &files, std::ostream &out)
+  report_checkpoints(const RunCheckpoints &checkpoints, Record &record)
   {
-    out << "Written\n";
-    for (const std::string &file : files)
-      out << "  " << file << '\n';
-    out << std::flush;
+    const std::string description = checkpoints.description();
+    if (!record.has_details() || description.empty())
+      return;
+    record.heading("Checkpoints");
+    record.heading("  " + description);
+  }
+
+
+
+  void
+  report_files(const std::vector<std::string> &files,
+               const std::string              &no_pictures,
+               Record                         &record)
+  {
+    if (record.has_details())
+      {
+        record.heading("Written");
+        for (const std::string &file : files)
+          record.heading("  " + file);
+      }
+    if (!no_pictures.empty())
+      record.heading("No pictures: " + no_pictures);
   }
 
 
 
   template void
-  report_result<2>(const Parameters &,
-                   const Summary &,
-                   const Verification<2> &,
-                   std::ostream &);
+  report_problem(const Parameters &,
+                 const Scene<2> &,
+                 const MethodChoice &,
+                 Record &);
   template void
-  report_result<3>(const Parameters &,
-                   const Summary &,
-                   const Verification<3> &,
-                   std::ostream &);
+  report_problem(const Parameters &,
+                 const Scene<3> &,
+                 const MethodChoice &,
+                 Record &);
+  template void
+  report_result(const Parameters &,
+                const Scene<2> &,
+                const MethodChoice &,
+                const RunResult<2> &,
+                Record &);
+  template void
+  report_result(const Parameters &,
+                const Scene<3> &,
+                const MethodChoice &,
+                const RunResult<3> &,
+                Record &);
+  template void
+  report_cost(const RunResult<2> &,
+              const MethodChoice &,
+              const double,
+              Record &);
+  template void
+  report_cost(const RunResult<3> &,
+              const MethodChoice &,
+              const double,
+              Record &);
 } // namespace Debond

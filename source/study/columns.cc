@@ -12,8 +12,9 @@ namespace Debond
 {
   namespace
   {
+    /// Short names of numbers in summary.json.
     const std::map<std::string, std::string> &
-    counts()
+    short_names()
     {
       static const std::map<std::string, std::string> pointers = {
         {"iterations", "/iterations/total"},
@@ -21,16 +22,7 @@ namespace Debond
         {"short", "/iterations/short"},
         {"null", "/iterations/null"},
         {"unknowns", "/degrees_of_freedom"},
-        {"contact nodes", "/contact_nodes"}};
-      return pointers;
-    }
-
-
-
-    const std::map<std::string, std::string> &
-    numbers()
-    {
-      static const std::map<std::string, std::string> pointers = {
+        {"contact nodes", "/contact_nodes"},
         {"v", "/stop_criterion"},
         {"law violation", "/law_violation"},
         {"seconds", "/timings_s/total"}};
@@ -73,13 +65,8 @@ namespace Debond
     Column column(name);
     if (name == "status")
       return column;
-    if (const auto entry = counts().find(name); entry != counts().end())
-      {
-        column.kind    = Kind::count;
-        column.pointer = entry->second;
-        return column;
-      }
-    if (const auto entry = numbers().find(name); entry != numbers().end())
+    if (const auto entry = short_names().find(name);
+        entry != short_names().end())
       {
         column.kind    = Kind::number;
         column.pointer = entry->second;
@@ -147,8 +134,6 @@ namespace Debond
       return {};
     switch (kind)
       {
-        case Kind::count:
-          return std::lround(result.number(pointer));
         case Kind::number:
           if (result.numbers.count(pointer) == 0)
             return {};

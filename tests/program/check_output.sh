@@ -25,6 +25,27 @@ for file in "${files[@]}"; do
 done
 grep -q '"status": "success"' output/bar/summary.json || fail "no success"
 
+# Scripts read the summary by its keys.
+keys=$(sed -n 's/^ *"\([a-z][a-z0-9_ ]*\)":.*/\1/p' output/bar/summary.json |
+  LC_ALL=C sort -u | tr '\n' ' ')
+expected="applied_force assembly bond_states bonded broken build_type cells\
+ clamped_reaction closed_nodes condition_estimate contact contact_nodes\
+ contact_reaction deal_ii_version degrees_of_freedom degrees_of_freedom_paper\
+ dimension equilibrium_residual force_imbalance functional\
+ functional_from_start iterations kink largest_displacement\
+ largest_displacement_gradient largest_qp_residual largest_von_mises\
+ law_violation linear_iterations linear_solver long memory_estimate_bytes mesh\
+ message method minimum notes null output peak_memory_bytes penetration\
+ revision scene search_failures search_improvements search_nodes search_trials\
+ short solve solve_parts state status stop_criterion tangential_reaction\
+ timings_s total verification "
+for key in $expected; do
+  case " $keys" in
+    *" $key "*) ;;
+    *) fail "summary.json has no $key, but: $keys" ;;
+  esac
+done
+
 # The effective parameters give the same result, in the same directory.
 mv output/bar first
 "$debond" first/parameters.prm >/dev/null

@@ -36,6 +36,11 @@ namespace Debond
   bool
   has_points(const Plot &plot);
 
+  /// The files that plots of these names can have: data, script, pictures, and
+  /// the words of gnuplot if it failed.
+  std::vector<std::string>
+  plot_files(const std::vector<std::string> &names);
+
   /// Writes NAME.dat and NAME.gp into the directory. Throws std::runtime_error
   /// naming the file that cannot be written.
   void

@@ -3,7 +3,8 @@
 #define debond_output_load_path_output_h
 
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/input/parameters.h>
+#include <debond/input/output_parameters.h>
+#include <debond/output/output_file.h>
 #include <debond/solve/load_path_steps.h>
 
 #include <string>
@@ -20,23 +21,28 @@ namespace Debond
   class LoadPathOutput
   {
   public:
-    /// Keeps references. Removes files of an earlier run.
-    LoadPathOutput(const OutputParameters    &output,
-                   const ElasticProblem<dim> &problem);
+    /// Keeps references: the @p steps need not be there yet. What hinders
+    /// gnuplot, if it is wanted, is told in @p note.
+    LoadPathOutput(const OutputParameters               &output,
+                   const ElasticProblem<dim>            &problem,
+                   const std::vector<LoadPathStep<dim>> &steps,
+                   std::string                          &note);
+
+    /// Those that an earlier run left in load_path/.
+    void
+    remove_steps() const;
 
     /// Writes the files of one factor. A file that cannot be written ends
-    /// no path: finish() throws for it.
+    /// no path: the last of files() throws for it.
     void
     add(const LoadPathStep<dim>      &step,
         const dealii::Vector<double> &u,
         const Verification<dim>      &verification);
 
-    /// Writes the table, the records of the files above and the plots; returns
-    /// the names of all but those in load_path/. What hinders gnuplot, if it
-    /// is wanted, is told in @p note. Throws std::runtime_error naming the
-    /// first file that could not be written.
-    std::vector<std::string>
-    finish(const std::vector<LoadPathStep<dim>> &steps, std::string &note);
+    /// All but those in load_path/: the table, the records of the files above
+    /// and the plots.
+    std::vector<OutputFile>
+    files();
 
   private:
     std::string
@@ -45,13 +51,22 @@ namespace Debond
     std::string
     name_of_step(const std::string &body, const unsigned int step) const;
 
-    using Record = std::vector<std::pair<double, std::string>>;
+    void
+    draw() const;
 
-    const OutputParameters    &output;
-    const ElasticProblem<dim> &problem;
-    Record                     body_record;
-    Record                     contact_record;
-    std::string                error;
+    /// Times with the files that belong to them.
+    using Series = std::vector<std::pair<double, std::string>>;
+
+    OutputFile
+    series_file(const std::string &name, const Series &series) const;
+
+    const OutputParameters               &output;
+    const ElasticProblem<dim>            &problem;
+    const std::vector<LoadPathStep<dim>> &steps;
+    std::string                          &note;
+    Series                                bodies;
+    Series                                contacts;
+    std::string                           error;
   };
 } // namespace Debond
 

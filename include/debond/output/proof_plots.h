@@ -9,6 +9,10 @@
 
 namespace Debond
 {
+  /// Of the files.
+  std::vector<std::string>
+  proof_plot_names();
+
   /// The gap relative to the best value against time and against nodes; nothing
   /// for a proof of one node. The energies are those of the history.
   std::vector<Plot>

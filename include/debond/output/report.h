@@ -2,39 +2,53 @@
 #ifndef debond_output_report_h
 #define debond_output_report_h
 
-#include <debond/check/verification.h>
 #include <debond/input/parameters.h>
-#include <debond/output/summary.h>
+#include <debond/output/record.h>
+#include <debond/output/run_result.h>
+#include <debond/solve/method_choice.h>
+#include <debond/solve/run_checkpoints.h>
+#include <debond/solve/scene.h>
 
-#include <ostream>
 #include <string>
 #include <vector>
 
 namespace Debond
 {
-  /// The log's head: program, scene, problem size and method.
-  void
-  report_problem(const Parameters  &parameters,
-                 const Summary     &summary,
-                 const std::string &reason,
-                 std::ostream      &out);
-
-  /// The log's end: status, result, verification and times.
+  /// Program, scene, size of the problem and method.
   template <int dim>
   void
-  report_result(const Parameters        &parameters,
-                const Summary           &summary,
-                const Verification<dim> &verification,
-                std::ostream            &out);
+  report_problem(const Parameters   &parameters,
+                 const Scene<dim>   &scene,
+                 const MethodChoice &choice,
+                 Record             &record);
 
-  /// The steps at which most bonds break and close, and how far the path is
-  /// from the global branch.
+  /// How the run goes on from a checkpoint, if it does.
   void
-  report_load_path(const LoadPathTotals &path, std::ostream &out);
+  report_checkpoints(const RunCheckpoints &checkpoints, Record &record);
 
-  /// The paths of the files written.
+  /// Status, result and verification.
+  template <int dim>
   void
-  report_files(const std::vector<std::string> &files, std::ostream &out);
+  report_result(const Parameters     &parameters,
+                const Scene<dim>     &scene,
+                const MethodChoice   &choice,
+                const RunResult<dim> &result,
+                Record               &record);
+
+  /// Times and memory, @p peak_memory in bytes.
+  template <int dim>
+  void
+  report_cost(const RunResult<dim> &result,
+              const MethodChoice   &choice,
+              const double          peak_memory,
+              Record               &record);
+
+  /// The paths of the files written, and why there are no pictures if there
+  /// should be.
+  void
+  report_files(const std::vector<std::string> &files,
+               const std::string              &no_pictures,
+               Record                         &record);
 } // namespace Debond
 
 #endif

@@ -65,7 +65,6 @@ namespace Debond
     enum class Kind
     {
       status,
-      count,
       number,
       functional,
       minimum,

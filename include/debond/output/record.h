@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_output_record_h
+#define debond_output_record_h
+
+#include <nlohmann/json.hpp>
+
+#include <ostream>
+#include <sstream>
+#include <string>
+
+namespace Debond
+{
+  /**
+   * What a run says: numbers and words for summary.json, and the lines of the
+   * log, so that both are written down in one place (report.cc).
+   */
+  class Record
+  {
+  public:
+    using Json = nlohmann::ordered_json;
+
+    /// @p details: whether the log has what differs between machines.
+    explicit Record(const bool details);
+
+    bool
+    has_details() const;
+
+    /// An entry of summary.json by its JSON pointer, such as
+    /// "/iterations/total"; studies find it by the same one.
+    void
+    add(const std::string &pointer, const Json &value);
+
+    /// A line of the log that has no label.
+    void
+    heading(const std::string &text);
+
+    void
+    line(const std::string &label, const std::string &text);
+
+    /// Prints the lines since the last call.
+    void
+    print(std::ostream &out);
+
+    /// Writes summary.json. Numbers that are not finite become null. Throws
+    /// std::runtime_error naming the file if it cannot be written.
+    void
+    write(const std::string &file_name) const;
+
+  private:
+    const bool         details;
+    Json               json;
+    std::ostringstream log;
+  };
+} // namespace Debond
+
+#endif

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_output_run_result_h
+#define debond_output_run_result_h
+
+#include <debond/check/displacement_error.h>
+#include <debond/check/largest_values.h>
+#include <debond/solve/load_path_steps.h>
+#include <debond/solve/solve.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace Debond
+{
+  /// What a run computed, for its log and its files.
+  template <int dim>
+  struct RunResult
+  {
+    /// In words what the solver and the verification make of it.
+    std::string status;
+    std::string message; ///< why it is no success
+
+    /// What did not go as it should, and did not decide on the status.
+    std::vector<std::string> notes;
+
+    SolveResult       solve;
+    Verification<dim> verification;
+    LargestValues     largest;
+
+    /// If the exact displacement is known.
+    std::optional<DisplacementError> displacement_error;
+
+    /// If the scene has a load path; all the rest is of its last step.
+    std::vector<LoadPathStep<dim>> path;
+
+    /// Wall seconds of the parts of the run, in their order.
+    std::vector<std::pair<std::string, double>> times;
+
+    /// Whether the solver is content and the verification too.
+    bool
+    is_success() const
+    {
+      return status == to_string(SolverStatus::success);
+    }
+  };
+} // namespace Debond
+
+#endif

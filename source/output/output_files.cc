@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/output/output_files.h>
+#include <debond/output/proof_plots.h>
+#include <debond/output/tables.h>
+#include <debond/output/vtu.h>
+#include <debond/solve/displacement.h>
+
+namespace Debond
+{
+  namespace
+  {
+    void
+    write_iterations(const SolveResult &result, const std::string &path)
+    {
+      const std::optional<double> found =
+        result.is_replaced ? std::make_optional(result.functional) :
+                             std::nullopt;
+      if (result.majorise_history.empty())
+        write_history(result.bundle_history, found, path);
+      else
+        write_history(result.majorise_history, found, path);
+    }
+
+
+
+    void
+    draw_proof(const std::vector<ProofProgress> &history,
+               const std::string                &directory,
+               std::string                      &note)
+    {
+      for (const Plot &plot : proof_plots(history))
+        {
+          write_gnuplot(plot, directory);
+          note = run_gnuplot(plot, directory);
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::vector<OutputFile>
+  output_files(const OutputParameters &output,
+               const Scene<dim>       &scene,
+               const RunResult<dim>   &result,
+               std::string            &note)
+  {
+    const auto has_proof = [&]() {
+      return output.history && !result.solve.minimum.proof_history.empty();
+    };
+    return {
+      {{"body.vtu"},
+       [&]() { return output.body_vtu; },
+       [&](const std::string &path) {
+         write_body_vtu(scene.problem(), result.solve.u, path);
+       }},
+      {{"contact.vtu"},
+       [&]() { return output.contact_vtu; },
+       [&](const std::string &path) {
+         write_contact_vtu(scene.problem(),
+                           result.solve.u,
+                           result.verification,
+                           path);
+       }},
+      {{"contact_profile.csv"},
+       [&]() { return output.contact_profile; },
+       [&](const std::string &path) {
+         write_contact_profile(scene.problem().unknowns().contact().boundary(),
+                               result.verification,
+                               path);
+       }},
+      {{"history.csv"},
+       [&]() { return output.history; },
+       [&](const std::string &path) { write_iterations(result.solve, path); }},
+      {{"displacement.txt"},
+       [&]() { return output.displacement; },
+       [&](const std::string &path) {
+         write_displacement(result.solve.u, path);
+       }},
+      {{"proof.csv"},
+       has_proof,
+       [&](const std::string &path) {
+         write_history(result.solve.minimum.proof_history, path);
+       }},
+      {plot_files(proof_plot_names()),
+       has_proof,
+       [&](const std::string & /*path*/) {
+         draw_proof(result.solve.minimum.proof_history, output.directory, note);
+       }}};
+  }
+
+
+
+  template std::vector<OutputFile>
+  output_files(const OutputParameters &,
+               const Scene<2> &,
+               const RunResult<2> &,
+               std::string &);
+  template std::vector<OutputFile>
+  output_files(const OutputParameters &,
+               const Scene<3> &,
+               const RunResult<3> &,
+               std::string &);
+} // namespace Debond

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/atomic_file.h>
+#include <debond/output/record.h>
+
+#include <iomanip>
+
+namespace Debond
+{
+  Record::Record(const bool details)
+    : details(details)
+  {}
+
+
+
+  bool
+  Record::has_details() const
+  {
+    return details;
+  }
+
+
+
+  void
+  Record::add(const std::string &pointer, const Json &value)
+  {
+    json[Json::json_pointer(pointer)] = value;
+  }
+
+
+
+  void
+  Record::heading(const std::string &text)
+  {
+    log << text << '\n';
+  }
+
+
+
+  void
+  Record::line(const std::string &label, const std::string &text)
+  {
+    constexpr int label_width = 22;
+    log << "  " << std::left << std::setw(label_width) << label << std::right
+        << text << '\n';
+  }
+
+
+
+  void
+  Record::print(std::ostream &out)
+  {
+    out << log.str() << std::flush;
+    log.str("");
+  }
+
+
+
+  void
+  Record::write(const std::string &file_name) const
+  {
+    // A path need not be valid UTF-8; that is no reason to lose the summary.
+    const std::string text =
+      json.dump(2, ' ', false, Json::error_handler_t::replace);
+    write_atomically(file_name,
+                     [&](std::ostream &out) { out << text << '\n'; });
+  }
+} // namespace Debond
