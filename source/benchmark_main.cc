@@ -3,6 +3,7 @@
 
 #include <debond/benchmark/benchmarks.h>
 #include <debond/input/parameters.h>
+#include <debond/linear_algebra/blas_threads.h>
 
 #include <exception>
 #include <iostream>
@@ -22,6 +23,7 @@ main(int argc, char *argv[])
 
   // Scenes are solved on one core, as by debond.
   dealii::MultithreadInfo::set_thread_limit(1);
+  Debond::use_one_blas_thread();
   try
     {
       return static_cast<int>(Debond::run_benchmarks(argv[1]));

@@ -3,6 +3,7 @@
 
 #include <debond/base/version.h>
 #include <debond/input/parameters.h>
+#include <debond/linear_algebra/blas_threads.h>
 #include <debond/program/command_line.h>
 #include <debond/program/run.h>
 #include <debond/solve/method_choice.h>
@@ -175,6 +176,7 @@ namespace Debond
     // The problem is solved on one core; more threads of deal.II's vector
     // operations would only change rounding.
     dealii::MultithreadInfo::set_thread_limit(1);
+    use_one_blas_thread();
 
     try
       {
