@@ -60,7 +60,7 @@ namespace Debond
     {
       std::ostringstream log;
       Parameters         with_method = parameters;
-      with_method.method             = method;
+      with_method.solver.method      = method;
       return solve(choose_method(with_method),
                    with_method,
                    scene,
@@ -119,7 +119,7 @@ namespace Debond
       std::vector<Iterate> iterates;
       Vector               x(scene.problem().unknowns().n_dofs());
       dealii::Timer        timer;
-      ProximalBundle<Vector>(parameters.bundle)
+      ProximalBundle<Vector>(parameters.solver.bundle)
         .minimize(scene.functional(),
                   scene.problem().unknowns().contact().bounds(),
                   x,

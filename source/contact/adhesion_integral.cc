@@ -2,6 +2,7 @@
 #include <debond/contact/adhesion_integral.h>
 
 #include <algorithm>
+#include <functional>
 
 namespace Debond
 {
@@ -172,21 +173,38 @@ namespace Debond
 
 
   template <int dim>
+  bool
+  AdhesionIntegral<dim>::Point::is_on_a_node() const
+  {
+    return n_nodes == 1 && shape[0] == 1.;
+  }
+
+
+
+  template <int dim>
+  bool
+  AdhesionIntegral<dim>::is_separable() const
+  {
+    return !quadrature.depends_on_trace() &&
+           std::all_of(point_list.begin(),
+                       point_list.end(),
+                       std::mem_fn(&Point::is_on_a_node));
+  }
+
+
+
+  template <int dim>
   void
   AdhesionIntegral<dim>::lump_nodal_points()
   {
-    const auto on_a_node = [](const Point &point) {
-      return point.n_nodes == 1 && point.shape[0] == 1.;
-    };
-
     std::vector<double> weights(boundary.nodes.size(), 0.);
     for (const Point &point : point_list)
-      if (on_a_node(point))
+      if (point.is_on_a_node())
         weights[point.nodes[0]] += point.weight;
 
     point_list.erase(std::remove_if(point_list.begin(),
                                     point_list.end(),
-                                    on_a_node),
+                                    std::mem_fn(&Point::is_on_a_node)),
                      point_list.end());
 
     for (unsigned int node = 0; node < weights.size(); ++node)

@@ -59,18 +59,19 @@ namespace Debond
 
 
     void
-    bind_verification(Parameters &p, ParameterTable &table)
+    bind_verification(VerificationParameters &verification,
+                      ParameterTable         &table)
     {
       table.bind(
         "Verification/Tolerance",
-        p.verification_tolerance,
+        verification.tolerance,
         positive_number(),
         "The program returns 3 if the equilibrium residual, the force imbalance (both relative to the forces) or the violation of the contact law of the result is larger, whatever the solver says",
         "none",
         AtRestart::any);
       table.bind(
         "Verification/Exact displacement",
-        p.exact_displacement,
+        verification.exact_displacement,
         vector_expression(),
         "If the displacement is known, expressions for it with the names of the loads: the log and summary.json then have the relative errors of u in the norms of L2, H1 and the energy",
         "length",
@@ -91,8 +92,8 @@ namespace Debond
     bind_load_path(p.load_path, *this);
     laws.bind(*this);
     bind_contact(p, *this);
-    bind_solver(p, *this);
-    bind_verification(p, *this);
+    bind_solver(p.solver, p.checkpoints, *this);
+    bind_verification(p.verification, *this);
     bind_output(p.output, *this);
   }
 
@@ -161,9 +162,13 @@ namespace Debond
     check_exact_displacement(const Parameters &p, ParameterTable &table)
     {
       const std::string path = "Verification/Exact displacement";
-      check_expression(
-        path, p.exact_displacement, p.dimension, p.loads.constants, table);
-      if (!p.exact_displacement.empty() && !p.load_path.factors.empty())
+      check_expression(path,
+                       p.verification.exact_displacement,
+                       p.dimension,
+                       p.loads.constants,
+                       table);
+      if (!p.verification.exact_displacement.empty() &&
+          !p.load_path.factors.empty())
         table.reject(path,
                      "belongs to the given loads, not to those of a load path",
                      {"Load path/Factors"});
@@ -183,7 +188,7 @@ namespace Debond
     complete_output(scene, p.output, *this);
 
     // What depends on more than one entry.
-    check_solver(p, *this);
+    check_solver(p.solver, *this);
     check_boundaries(p, *this);
     check_material(p.dimension, p.material, *this);
     check_exact_displacement(p, *this);
@@ -192,9 +197,9 @@ namespace Debond
 
     std::ostringstream effective;
     print(effective, false);
-    p.effective_scene = effective.str();
-    p.values_of_state = values_of_state();
-    p.locations       = locations();
+    p.effective_scene   = effective.str();
+    p.checkpoints.state = values_of_state();
+    p.locations         = locations();
     return p;
   }
 } // namespace Debond

@@ -172,11 +172,11 @@ namespace Debond
 
 
     void
-    bind_search(Parameters &p, ParameterTable &table)
+    bind_search(SolverParameters &solver, ParameterTable &table)
     {
       table.bind_choice(
         "Solver/Search",
-        p.search,
+        solver.search,
         {{"automatic", BondSearchChoice::automatic},
          {"none", BondSearchChoice::none},
          {"quick", BondSearchChoice::quick},
@@ -189,7 +189,9 @@ namespace Debond
         list_of({"starts", "shifts", "flips", "splits"}),
         "The moves of Search = full: starts from rest and from all bonds broken; shifts of the edges of broken patches; flips, which break or close a patch; splits of patches",
         "none",
-        [&p](const std::string &text) { p.full_search = search_with(text); },
+        [&solver](const std::string &text) {
+          solver.full_search = search_with(text);
+        },
         AtRestart::any);
     }
 
@@ -249,11 +251,13 @@ namespace Debond
 
 
   void
-  bind_solver(Parameters &p, ParameterTable &table)
+  bind_solver(SolverParameters     &solver,
+              CheckpointParameters &checkpoints,
+              ParameterTable       &table)
   {
     table.bind(
       "Solver/Method",
-      p.method,
+      solver.method,
       one_of({"automatic",
               "euclidean bundle",
               "energy bundle",
@@ -263,7 +267,7 @@ namespace Debond
       AtRestart::any);
     table.bind(
       "Solver/Linear solver",
-      p.linear_solver,
+      solver.linear_solver,
       one_of({"automatic", "direct", "multigrid"}),
       "How the linear systems of energy bundle and majorise minimise are solved: direct factorises A once and goes on with the contact normals alone, multigrid (majorise minimise only) iterates on all unknowns, starting from the solutions on coarser meshes, and takes less memory in large scenes; automatic chooses by size and memory. euclidean bundle needs none",
       "none",
@@ -279,36 +283,36 @@ namespace Debond
               }),
       "The memory that a scene may take by the program's estimate; available is what the system can give at the start",
       "GiB",
-      [&p](const std::string &text) {
+      [&solver](const std::string &text) {
         double limit = 0.;
         if (text != "available")
           read_number(text, limit);
-        p.memory_limit = limit * (1 << 30);
+        solver.memory_limit = limit * (1 << 30);
       },
       AtRestart::any);
     table.bind(
       "Solver/Checkpoint interval",
-      p.checkpoint_interval,
+      checkpoints.interval,
       number(">= 0", is_not_negative),
       "Wall time after which the bundle methods write their state again, into the file checkpoint in the output directory, and when they end without success; 'debond SCENE.prm --restart' goes on from it with the same iterates. 0 writes none",
       "seconds",
       AtRestart::any);
-    bind_euclidean_bundle(p.bundle, p.start, table);
-    bind_energy_bundle(p.energy_bundle, table);
-    bind_majorise_minimise(p.majorise_minimise, table);
-    bind_search(p, table);
-    bind_proof(p.prove, p.proof, table);
+    bind_euclidean_bundle(solver.bundle, solver.start, table);
+    bind_energy_bundle(solver.energy_bundle, table);
+    bind_majorise_minimise(solver.majorise_minimise, table);
+    bind_search(solver, table);
+    bind_proof(solver.prove, solver.proof, table);
   }
 
 
 
   void
-  check_solver(const Parameters &p, ParameterTable &table)
+  check_solver(const SolverParameters &solver, ParameterTable &table)
   {
     // Only m_L < m_R is left.
     try
       {
-        p.bundle.validate();
+        solver.bundle.validate();
       }
     catch (const std::invalid_argument &error)
       {

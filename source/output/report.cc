@@ -474,7 +474,7 @@ namespace Debond
                      ", " + choice.linear_solver + " linear solver" :
                      "") +
                   (choice.method == SolverMethod::euclidean_bundle ?
-                     words(", u_k = ", parameters.bundle.u) :
+                     words(", u_k = ", parameters.solver.bundle.u) :
                      "") +
                   (choice.reason.empty() ? "" :
                                            ", chosen since " + choice.reason));

@@ -161,7 +161,7 @@ namespace Debond
       const bool only_validate = options.count("validate") > 0;
       Parameters parameters =
         table.parameters(options["scene"].as<std::string>());
-      parameters.restart = options.count("restart") > 0;
+      parameters.checkpoints.restart = options.count("restart") > 0;
       return parameters.dimension == 2 ?
                run_or_validate<2>(parameters, only_validate) :
                run_or_validate<3>(parameters, only_validate);

@@ -51,14 +51,14 @@ namespace Debond
              const ElasticProblem<dim>    &problem,
              const dealii::Vector<double> &u)
     {
-      if (parameters.exact_displacement.empty())
+      if (parameters.verification.exact_displacement.empty())
         return {};
       try
         {
           return displacement_error(
             problem,
             u,
-            *make_function<dim>(parameters.exact_displacement,
+            *make_function<dim>(parameters.verification.exact_displacement,
                                 parameters.loads.constants));
         }
       catch (const std::invalid_argument &error)
@@ -110,9 +110,9 @@ namespace Debond
         if (!step.message.empty())
           return step.message;
       const double error = result.verification.error();
-      return error <= parameters.verification_tolerance ?
+      return error <= parameters.verification.tolerance ?
                "" :
-               verification_failure(error, parameters.verification_tolerance);
+               verification_failure(error, parameters.verification.tolerance);
     }
 
 
@@ -249,7 +249,9 @@ namespace Debond
     error_of(parameters,
              scene.problem(),
              dealii::Vector<double>(scene.problem().unknowns().n_dofs()));
-    RunCheckpoints checkpoints(parameters, choice);
+    RunCheckpoints checkpoints(parameters.checkpoints,
+                               parameters.output.directory,
+                               choice);
 
     RunResult<dim>          result;
     std::string             no_pictures;
@@ -288,10 +290,12 @@ namespace Debond
         solve(choice, parameters, scene, out, terminal, &checkpoints);
     else
       result.solve = follow_load_path<dim>(
-        parameters,
+        parameters.load_path,
+        parameters.solver,
+        parameters.verification.tolerance,
         scene,
         [&](const auto &...step) { path_output.add(step...); },
-        out,
+        record.has_details() ? &out : nullptr,
         result.path);
     result.times.emplace_back("solve", timer.wall_time());
     check_result(parameters, scene, result);

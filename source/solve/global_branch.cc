@@ -11,11 +11,11 @@ namespace Debond
     class BranchSearch
     {
     public:
-      BranchSearch(const Parameters            &scene_parameters,
+      BranchSearch(const SolverParameters      &solver_parameters,
                    const Scene<dim>            &scene,
                    const std::function<bool()> &may_go_on,
                    Condensation                &condensed)
-        : parameters(scene_parameters)
+        : parameters(solver_parameters)
         , scene(scene)
         , may_go_on(may_go_on)
         , condensed(condensed)
@@ -39,7 +39,7 @@ namespace Debond
       {
         if (point.which.kind == MinimumKind::global)
           return;
-        Parameters proof       = parameters;
+        SolverParameters proof = parameters;
         proof.search           = BondSearchChoice::none;
         proof.prove            = true;
         const MinimumKind kind = point.which.kind;
@@ -73,7 +73,9 @@ namespace Debond
 
     private:
       WhichMinimum
-      improve(const Parameters &what, const double factor, BranchPoint &point)
+      improve(const SolverParameters &what,
+              const double            factor,
+              BranchPoint            &point)
       {
         condensed.scale_load(factor);
         const WhichMinimum which =
@@ -89,7 +91,7 @@ namespace Debond
         return which;
       }
 
-      Parameters                   parameters;
+      SolverParameters             parameters;
       const Scene<dim>            &scene;
       const std::function<bool()> &may_go_on;
       Condensation                &condensed;
@@ -116,7 +118,8 @@ namespace Debond
 
   template <int dim>
   Branch
-  global_branch(const Parameters            &parameters,
+  global_branch(const GlobalBranch           wanted,
+                const SolverParameters      &parameters,
                 const Scene<dim>            &scene,
                 const Branch                &start,
                 const std::function<bool()> &may_go_on,
@@ -124,8 +127,7 @@ namespace Debond
                 Condensation                &condensed)
   {
     BranchSearch<dim> search(parameters, scene, may_go_on, condensed);
-    const bool        proves =
-      parameters.load_path.global_branch == GlobalBranch::prove;
+    const bool        proves = wanted == GlobalBranch::prove;
 
     Branch             branch;
     const BranchPoint *last = nullptr;
@@ -163,14 +165,16 @@ namespace Debond
 
 
   template Branch
-  global_branch(const Parameters &,
+  global_branch(const GlobalBranch,
+                const SolverParameters &,
                 const Scene<2> &,
                 const Branch &,
                 const std::function<bool()> &,
                 const BranchMonitor &,
                 Condensation &);
   template Branch
-  global_branch(const Parameters &,
+  global_branch(const GlobalBranch,
+                const SolverParameters &,
                 const Scene<3> &,
                 const Branch &,
                 const std::function<bool()> &,

@@ -20,11 +20,15 @@ namespace Debond
     class PathFollower
     {
     public:
-      PathFollower(const Parameters               &parameters,
+      PathFollower(const LoadPathParameters       &parameters,
+                   const SolverParameters         &solver,
+                   const double                    tolerance,
                    const Scene<dim>               &scene,
-                   std::ostream                   &out,
+                   std::ostream                   *out,
                    std::vector<LoadPathStep<dim>> &steps)
         : parameters(parameters)
+        , solver_parameters(solver)
+        , tolerance(tolerance)
         , scene(scene)
         , out(out)
         , steps(steps)
@@ -40,7 +44,7 @@ namespace Debond
       {
         timer.restart();
         print_titles("broken part");
-        for (const double factor : parameters.load_path.factors)
+        for (const double factor : parameters.factors)
           {
             if (!steps.empty() && guard.requested())
               {
@@ -86,13 +90,13 @@ namespace Debond
               entry->second = point;
           }
 
-        if (parameters.output.machine_details)
-          out << "  global branch\n";
-        const bool proves =
-          parameters.load_path.global_branch == GlobalBranch::prove;
+        if (out != nullptr)
+          *out << "  global branch\n";
+        const bool proves = parameters.global_branch == GlobalBranch::prove;
         print_titles(proves ? "gap" : "states tried");
         const Branch branch = global_branch(
-          parameters,
+          parameters.global_branch,
+          solver_parameters,
           scene,
           followed,
           [this]() { return !guard.requested(); },
@@ -137,7 +141,8 @@ namespace Debond
                                  scene.adhesion(),
                                  s);
         const MajoriseMinimiseResult minimum =
-          MajoriseMinimise(parameters.majorise_minimise).minimize(problem);
+          MajoriseMinimise(solver_parameters.majorise_minimise)
+            .minimize(problem);
         result.status    = minimum.status;
         result.criterion = minimum.residual;
         for (MajoriseMinimiseIteration iteration : minimum.history)
@@ -212,14 +217,13 @@ namespace Debond
       bool
       is_verified(const Verification<dim> &verification) const
       {
-        return verification.error() <= parameters.verification_tolerance;
+        return verification.error() <= tolerance;
       }
 
       std::string
       failure(const Verification<dim> &verification) const
       {
-        return verification_failure(verification.error(),
-                                    parameters.verification_tolerance);
+        return verification_failure(verification.error(), tolerance);
       }
 
       static std::string
@@ -243,8 +247,7 @@ namespace Debond
         for (unsigned int k = 0; k < branches.size(); ++k)
           has_slope = has_slope || branches[k].slope != 0.;
         if (branches.size() == 1 || has_slope || last_factor == 0. ||
-            parameters.quadrature.rule !=
-              ContactQuadratureParameters::Rule::nodal)
+            !scene.adhesion().is_separable())
           return {};
 
         double     first     = factor / last_factor;
@@ -293,8 +296,8 @@ namespace Debond
               // The followed state is this one, or as good.
               if (step.message.empty() &&
                   step.state.functional <=
-                    state.functional +
-                      parameters.proof.tolerance * std::abs(state.functional))
+                    state.functional + solver_parameters.proof.tolerance *
+                                         std::abs(state.functional))
                 {
                   kinds[k]           = point.which.kind;
                   step.state.minimum = state.minimum;
@@ -312,9 +315,9 @@ namespace Debond
       void
       print_titles(const std::string &third) const
       {
-        if (parameters.output.machine_details)
-          out << std::setw(11) << "factor" << std::setw(17) << "J"
-              << std::setw(14) << third << "  state" << std::endl;
+        if (out != nullptr)
+          *out << std::setw(11) << "factor" << std::setw(17) << "J"
+               << std::setw(14) << third << "  state" << std::endl;
       }
 
       void
@@ -323,16 +326,18 @@ namespace Debond
             const double       number,
             const std::string &word) const
       {
-        if (parameters.output.machine_details)
-          out << std::setw(11) << factor << std::scientific
-              << std::setprecision(8) << std::setw(17) << functional
-              << std::defaultfloat << std::setprecision(3) << std::setw(14)
-              << number << std::setprecision(6) << "  " << word << std::endl;
+        if (out != nullptr)
+          *out << std::setw(11) << factor << std::scientific
+               << std::setprecision(8) << std::setw(17) << functional
+               << std::defaultfloat << std::setprecision(3) << std::setw(14)
+               << number << std::setprecision(6) << "  " << word << std::endl;
       }
 
-      const Parameters               &parameters;
+      const LoadPathParameters       &parameters;
+      const SolverParameters         &solver_parameters;
+      const double                    tolerance; ///< of the verification
       const Scene<dim>               &scene;
-      std::ostream                   &out;
+      std::ostream                   *out;
       std::vector<LoadPathStep<dim>> &steps;
       const InterruptGuard            guard;
       dealii::Timer                   timer;
@@ -350,15 +355,18 @@ namespace Debond
 
   template <int dim>
   SolveResult
-  follow_load_path(const Parameters               &parameters,
+  follow_load_path(const LoadPathParameters       &parameters,
+                   const SolverParameters         &solver,
+                   const double                    verification_tolerance,
                    const Scene<dim>               &scene,
                    const LoadPathObserver<dim>    &observer,
-                   std::ostream                   &out,
+                   std::ostream                   *out,
                    std::vector<LoadPathStep<dim>> &steps)
   {
-    PathFollower<dim> path(parameters, scene, out, steps);
+    PathFollower<dim> path(
+      parameters, solver, verification_tolerance, scene, out, steps);
     path.follow(observer);
-    if (parameters.load_path.global_branch != GlobalBranch::none &&
+    if (parameters.global_branch != GlobalBranch::none &&
         steps.back().message.empty())
       path.find_global_branch();
     return path.take_result();
@@ -367,15 +375,19 @@ namespace Debond
 
 
   template SolveResult
-  follow_load_path(const Parameters &,
+  follow_load_path(const LoadPathParameters &,
+                   const SolverParameters &,
+                   const double,
                    const Scene<2> &,
                    const LoadPathObserver<2> &,
-                   std::ostream &,
+                   std::ostream *,
                    std::vector<LoadPathStep<2>> &);
   template SolveResult
-  follow_load_path(const Parameters &,
+  follow_load_path(const LoadPathParameters &,
+                   const SolverParameters &,
+                   const double,
                    const Scene<3> &,
                    const LoadPathObserver<3> &,
-                   std::ostream &,
+                   std::ostream *,
                    std::vector<LoadPathStep<3>> &);
 } // namespace Debond

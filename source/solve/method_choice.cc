@@ -40,7 +40,7 @@ namespace Debond
 
 
     double
-    memory_limit(const Parameters &parameters)
+    memory_limit(const SolverParameters &parameters)
     {
       return parameters.memory_limit > 0. ? parameters.memory_limit :
                                             available_memory();
@@ -65,7 +65,7 @@ namespace Debond
         refuse("Factors",
                "needs Solver/Linear solver = direct, not " +
                  choice.linear_solver);
-      if (parameters.prove)
+      if (parameters.solver.prove)
         refuse("Factors",
                "follows minima that need not be global: in place of "
                "Solver/Prove = true use Load path/Global branch = prove");
@@ -81,15 +81,13 @@ namespace Debond
 
 
   double
-  memory_left(const Parameters &parameters)
+  memory_left(const double limit)
   {
-    if (parameters.memory_limit == 0.)
+    if (limit == 0.)
       return available_memory();
     dealii::Utilities::System::MemoryStats memory;
     dealii::Utilities::System::get_memory_stats(memory);
-    return std::max(0.,
-                    parameters.memory_limit -
-                      1024. * static_cast<double>(memory.VmRSS));
+    return std::max(0., limit - 1024. * static_cast<double>(memory.VmRSS));
   }
 
 
@@ -97,17 +95,18 @@ namespace Debond
   MethodChoice
   choose_method(const Parameters &parameters)
   {
-    const SceneSize    size          = scene_size(parameters);
-    const unsigned int dim           = parameters.dimension;
-    const double       limit         = memory_limit(parameters);
-    const double       direct_memory = memory_with_factorisation(size, dim);
+    const SolverParameters &solver = parameters.solver;
+    const SceneSize         size   = scene_size(parameters);
+    const unsigned int      dim    = parameters.dimension;
+    const double            limit  = memory_limit(solver);
+    const double direct_memory     = memory_with_factorisation(size, dim);
 
-    MethodChoice choice = {parameters.method, parameters.linear_solver, "", 0.};
+    MethodChoice choice = {solver.method, solver.linear_solver, "", 0.};
     if (choice.method == SolverMethod::euclidean_bundle)
       {
         choice.linear_solver = LinearSolver::none;
         choice.memory =
-          memory_with_bundle(size, dim, parameters.bundle.bundle_size);
+          memory_with_bundle(size, dim, solver.bundle.bundle_size);
       }
     else
       {
@@ -162,15 +161,15 @@ namespace Debond
 
     if (!parameters.load_path.factors.empty())
       check_load_path(parameters, choice);
-    const bool searches = parameters.search == BondSearchChoice::quick ||
-                          parameters.search == BondSearchChoice::full;
-    if ((searches || parameters.prove) &&
+    const bool searches = solver.search == BondSearchChoice::quick ||
+                          solver.search == BondSearchChoice::full;
+    if ((searches || solver.prove) &&
         choice.linear_solver != LinearSolver::direct)
       throw BadInput(
         {parameters.scene + ": Solver/" + (searches ? "Search" : "Prove") +
          " needs a method with a direct linear solver, not " + choice.method +
          " with the linear solver " + choice.linear_solver});
-    if (parameters.prove &&
+    if (solver.prove &&
         parameters.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
       throw BadInput({parameters.scene +
                       ": Solver/Prove needs Contact law/Quadrature = nodal, "

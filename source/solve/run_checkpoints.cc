@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/version.h>
+#include <debond/input/parameters.h>
 #include <debond/solve/run_checkpoints.h>
 
 #include <filesystem>
@@ -21,14 +22,14 @@ namespace Debond
 
 
 
-  RunCheckpoints::RunCheckpoints(const Parameters   &parameters,
-                                 const MethodChoice &choice)
-    : path((std::filesystem::path(parameters.output.directory) / "checkpoint")
-             .string())
-    , interval(parameters.checkpoint_interval)
+  RunCheckpoints::RunCheckpoints(const CheckpointParameters &parameters,
+                                 const std::string          &directory,
+                                 const MethodChoice         &choice)
+    : path((std::filesystem::path(directory) / "checkpoint").string())
+    , interval(parameters.interval)
     , method_has_states(choice.method != SolverMethod::majorise_minimise)
   {
-    origin.settings = parameters.values_of_state;
+    origin.settings = parameters.state;
     // What was chosen, not how.
     origin.settings["the method"] = choice.method;
     origin.revision               = git_revision();

@@ -145,10 +145,10 @@ namespace Debond
         add_contact(parameters, storage);
         entry = "Solver/Euclidean bundle/Start";
         // A run that restarts has its start already.
-        if (parameters.start.empty() || parameters.restart)
+        if (parameters.solver.start.empty() || parameters.checkpoints.restart)
           first_iterate.reinit(elastic_problem->unknowns().n_dofs());
         else
-          first_iterate = read_start(parameters.start, *elastic_problem);
+          first_iterate = read_start(parameters.solver.start, *elastic_problem);
       }
     catch (const std::invalid_argument &error)
       {

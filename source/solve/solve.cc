@@ -141,15 +141,15 @@ namespace Debond
 
     template <int dim>
     void
-    solve_by_euclidean_bundle(const Parameters &parameters,
-                              const Scene<dim> &scene,
-                              Checkpoints      *checkpoints,
-                              Watch            &watch,
-                              SolveResult      &result)
+    solve_by_euclidean_bundle(const ProximalBundleParameters &parameters,
+                              const Scene<dim>               &scene,
+                              Checkpoints                    *checkpoints,
+                              Watch                          &watch,
+                              SolveResult                    &result)
     {
       result.u = scene.start();
       add_bundle_result(
-        ProximalBundle<Vector>(parameters.bundle)
+        ProximalBundle<Vector>(parameters)
           .minimize(scene.functional(),
                     scene.problem().unknowns().contact().bounds(),
                     result.u,
@@ -162,13 +162,13 @@ namespace Debond
 
     template <int dim>
     void
-    solve_by_energy_bundle(const Parameters   &parameters,
-                           const Scene<dim>   &scene,
-                           const Condensation &condensed,
-                           Checkpoints        *checkpoints,
-                           Watch              &watch,
-                           Vector             &s,
-                           SolveResult        &result)
+    solve_by_energy_bundle(ProximalBundleParameters bundle,
+                           const Scene<dim>        &scene,
+                           const Condensation      &condensed,
+                           Checkpoints             *checkpoints,
+                           Watch                   &watch,
+                           Vector                  &s,
+                           SolveResult             &result)
     {
       // The condensed functional has the same form on the normals alone.
       const ContactSpace<dim> contact =
@@ -179,7 +179,6 @@ namespace Debond
         contact,
         scene.adhesion());
 
-      ProximalBundleParameters bundle = parameters.energy_bundle;
       // Without loads any tolerance will do.
       bundle.epsilon_s =
         std::max(bundle.epsilon_s * condensed.energy_without_contact(),
@@ -217,14 +216,13 @@ namespace Debond
 
     template <int dim>
     void
-    solve_by_majorise_minimise(const Parameters   &parameters,
-                               const Scene<dim>   &scene,
-                               const Condensation &condensed,
-                               Watch              &watch,
-                               Vector             &s,
-                               SolveResult        &result)
+    solve_by_majorise_minimise(const MajoriseMinimise &method,
+                               const Scene<dim>       &scene,
+                               const Condensation     &condensed,
+                               Watch                  &watch,
+                               Vector                 &s,
+                               SolveResult            &result)
     {
-      const MajoriseMinimise method(parameters.majorise_minimise);
       s = coarse_start(condensed.schur_complement(),
                        condensed.load(),
                        scene.adhesion(),
@@ -282,12 +280,12 @@ namespace Debond
 
     template <int dim>
     void
-    solve_condensed(const std::string &method,
-                    const Parameters  &parameters,
-                    const Scene<dim>  &scene,
-                    Checkpoints       *checkpoints,
-                    Watch             &watch,
-                    SolveResult       &result)
+    solve_condensed(const std::string      &method,
+                    const SolverParameters &parameters,
+                    const Scene<dim>       &scene,
+                    Checkpoints            *checkpoints,
+                    Watch                  &watch,
+                    SolveResult            &result)
     {
       dealii::Timer              timer;
       const ElasticProblem<dim> &problem = scene.problem();
@@ -301,11 +299,21 @@ namespace Debond
       Vector s(problem.unknowns().contact().size());
       // If no contact node is free, there is no metric either.
       if (method == SolverMethod::energy_bundle && s.size() > 0)
-        solve_by_energy_bundle(
-          parameters, scene, condensed, checkpoints, watch, s, result);
+        solve_by_energy_bundle(parameters.energy_bundle,
+                               scene,
+                               condensed,
+                               checkpoints,
+                               watch,
+                               s,
+                               result);
       else
-        solve_by_majorise_minimise(
-          parameters, scene, condensed, watch, s, result);
+        solve_by_majorise_minimise(MajoriseMinimise(
+                                     parameters.majorise_minimise),
+                                   scene,
+                                   condensed,
+                                   watch,
+                                   s,
+                                   result);
       result.parts["contact"] = timer.wall_time();
 
       if (can_be_verified(result.status))
@@ -367,8 +375,8 @@ namespace Debond
       if (!coarse_body)
         return Vector(scene.problem().unknowns().n_dofs());
       Parameters coarse = parameters;
-      coarse.start.clear(); // belongs to the finest mesh
-      coarse.prove = false;
+      coarse.solver.start.clear(); // belongs to the finest mesh
+      coarse.solver.prove = false;
 
       const bool factorised =
         scene_size(*coarse_body, dim, coarse.contact_boundaries).unknowns <=
@@ -381,7 +389,7 @@ namespace Debond
       SolveResult      result;
       if (factorised)
         solve_condensed(SolverMethod::majorise_minimise,
-                        coarse,
+                        coarse.solver,
                         coarse_scene,
                         nullptr,
                         watch,
@@ -443,7 +451,7 @@ namespace Debond
                                     multigrid,
                                     result.u,
                                     [&watch]() { return watch.may_go_on(); });
-      add_majorise_result(MajoriseMinimise(parameters.majorise_minimise)
+      add_majorise_result(MajoriseMinimise(parameters.solver.majorise_minimise)
                             .minimize(problem, std::ref(watch)),
                           result);
       result.parts["contact"] = timer.wall_time();
@@ -482,12 +490,12 @@ namespace Debond
                                      std::make_unique<Watch>(guard);
       if (choice.method == SolverMethod::euclidean_bundle)
         solve_by_euclidean_bundle(
-          parameters, scene, checkpoints, *watch, result);
+          parameters.solver.bundle, scene, checkpoints, *watch, result);
       else if (choice.linear_solver == LinearSolver::multigrid)
         solve_by_multigrid(parameters, scene, guard, *watch, result);
       else
         solve_condensed(
-          choice.method, parameters, scene, checkpoints, *watch, result);
+          choice.method, parameters.solver, scene, checkpoints, *watch, result);
     }
     if (choice.linear_solver != LinearSolver::direct)
       result.minimum.kind =

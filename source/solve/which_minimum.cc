@@ -33,7 +33,7 @@ namespace Debond
 
 
     BranchSearchParameters
-    search_parameters(const Parameters &parameters)
+    search_parameters(const SolverParameters &parameters)
     {
       if (parameters.search == BondSearchChoice::full)
         return parameters.full_search;
@@ -47,21 +47,11 @@ namespace Debond
 
 
     bool
-    wants_search(const Parameters &parameters)
+    wants_search(const SolverParameters &parameters)
     {
       return parameters.search == BondSearchChoice::automatic ?
                parameters.method == SolverMethod::automatic :
                parameters.search != BondSearchChoice::none;
-    }
-
-
-
-    /// Whether each contact node has a multiple of the law for its own.
-    bool
-    is_separable(const Parameters &parameters)
-    {
-      return parameters.quadrature.rule ==
-             ContactQuadratureParameters::Rule::nodal;
     }
 
 
@@ -118,11 +108,12 @@ namespace Debond
 
 
     GuidedSearchParameters
-    guided_search_parameters(const Parameters &parameters, const double energy)
+    guided_search_parameters(const SolverParameters &parameters,
+                             const double            energy)
     {
       GuidedSearchParameters guided;
       guided.tolerance     = parameters.proof.tolerance * energy;
-      guided.maximum_bytes = memory_left(parameters);
+      guided.maximum_bytes = memory_left(parameters.memory_limit);
       guided.n_threads     = parameters.proof.n_threads;
       return guided;
     }
@@ -152,7 +143,7 @@ namespace Debond
     class MinimumSearch
     {
     public:
-      MinimumSearch(const Parameters            &parameters,
+      MinimumSearch(const SolverParameters      &parameters,
                     const ContactBoundary<dim>  &boundary,
                     const AdhesiveLaw           &law,
                     const AdhesionIntegral<dim> &adhesion,
@@ -172,7 +163,7 @@ namespace Debond
         , graph(neighbours(boundary))
         , lumped(lumped_branches(adhesion, s.size(), law.branches()))
         , energy(energy_of_bonds(condensed, lumped))
-        , separable(is_separable(parameters))
+        , separable(adhesion.is_separable())
       {
         result.search_nodes = s.size();
       }
@@ -330,7 +321,7 @@ namespace Debond
         return is_closed;
       }
 
-      const Parameters            &parameters;
+      const SolverParameters      &parameters;
       const ContactBoundary<dim>  &boundary;
       const AdhesiveLaw           &law;
       const AdhesionIntegral<dim> &adhesion;
@@ -349,7 +340,7 @@ namespace Debond
 
     template <int dim>
     void
-    prove(const Parameters            &parameters,
+    prove(const SolverParameters      &parameters,
           const AdhesiveLaw           &law,
           const AdhesionIntegral<dim> &adhesion,
           const Condensation          &condensed,
@@ -362,7 +353,7 @@ namespace Debond
       const double functional = condensed_functional(condensed, adhesion, s);
       BranchAndBoundParameters proof_parameters = parameters.proof;
       proof_parameters.tolerance *= energy_of_bonds(condensed, lumped);
-      proof_parameters.maximum_bytes = memory_left(parameters);
+      proof_parameters.maximum_bytes = memory_left(parameters.memory_limit);
       const BranchAndBoundResult proof =
         BranchAndBound(proof_parameters)
           .minimize(condensed.schur_complement(),
@@ -427,7 +418,7 @@ namespace Debond
 
   template <int dim>
   WhichMinimum
-  find_better_minimum(const Parameters            &parameters,
+  find_better_minimum(const SolverParameters      &parameters,
                       const ContactBoundary<dim>  &boundary,
                       const AdhesiveLaw           &law,
                       const AdhesionIntegral<dim> &adhesion,
@@ -444,12 +435,11 @@ namespace Debond
         (wants_search(parameters) || parameters.prove))
       {
         // The nodes' multiples of the law are known by their curvature at 0.
-        const std::string reason = "needs a law with a curvature at 0, which " +
-                                   parameters.law.name + " does not have";
+        const std::string reason = "needs a law with a curvature at 0";
         if (parameters.prove)
-          throw BadInput({parameters.scene + ": Solver/Prove " + reason});
+          throw BadInput({"Solver/Prove " + reason});
         if (parameters.search != BondSearchChoice::automatic)
-          throw BadInput({parameters.scene + ": Solver/Search " + reason});
+          throw BadInput({"Solver/Search " + reason});
         result.notes.push_back("no search for a lower minimum: that " + reason);
         return result;
       }
@@ -485,7 +475,7 @@ namespace Debond
                       const AdhesionIntegral<3> &,
                       const dealii::Vector<double> &);
   template WhichMinimum
-  find_better_minimum(const Parameters &,
+  find_better_minimum(const SolverParameters &,
                       const ContactBoundary<2> &,
                       const AdhesiveLaw &,
                       const AdhesionIntegral<2> &,
@@ -493,7 +483,7 @@ namespace Debond
                       const std::function<bool()> &,
                       dealii::Vector<double> &);
   template WhichMinimum
-  find_better_minimum(const Parameters &,
+  find_better_minimum(const SolverParameters &,
                       const ContactBoundary<3> &,
                       const AdhesiveLaw &,
                       const AdhesionIntegral<3> &,

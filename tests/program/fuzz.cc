@@ -163,14 +163,15 @@ namespace
         if (counts.read % 4 == 0 &&
             choice.linear_solver == LinearSolver::direct)
           {
-            parameters.method        = SolverMethod::majorise_minimise;
-            parameters.linear_solver = LinearSolver::multigrid;
-            parameters.prove         = false;
+            parameters.solver.method        = SolverMethod::majorise_minimise;
+            parameters.solver.linear_solver = LinearSolver::multigrid;
+            parameters.solver.prove         = false;
             ++counts.multigrid;
           }
 
         parameters.output.directory = directory;
-        for (auto *method : {&parameters.bundle, &parameters.energy_bundle})
+        for (auto *method :
+             {&parameters.solver.bundle, &parameters.solver.energy_bundle})
           method->maximum_iterations =
             std::min(method->maximum_iterations, 50U);
         std::ostringstream log;

@@ -51,10 +51,15 @@ namespace
     const Parameters   parameters = parameters_of(assignments);
     const MethodChoice choice     = choose_method(parameters);
     const Scene<dim>   scene(parameters, matrix_storage(choice));
-    std::ostringstream log;
     Path<dim>          path;
     path.result = follow_load_path<dim>(
-      parameters, scene, [](const auto &...) {}, log, path.steps);
+      parameters.load_path,
+      parameters.solver,
+      parameters.verification.tolerance,
+      scene,
+      [](const auto &...) {},
+      nullptr,
+      path.steps);
     return path;
   }
 

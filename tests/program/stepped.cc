@@ -174,10 +174,15 @@ namespace
                      "Load path/Global branch=prove"});
     const MethodChoice           choice = choose_method(parameters);
     const Scene<2>               scene(parameters, matrix_storage(choice));
-    std::ostringstream           log;
     std::vector<LoadPathStep<2>> steps;
     const SolveResult            result = follow_load_path<2>(
-      parameters, scene, [](const auto &...) {}, log, steps);
+      parameters.load_path,
+      parameters.solver,
+      parameters.verification.tolerance,
+      scene,
+      [](const auto &...) {},
+      nullptr,
+      steps);
 
     double       gap = 0., sum = 0.;
     bool         all_global = true, partly_broken = false, named = true;

@@ -387,7 +387,7 @@ namespace
         try
           {
             const WhichMinimum result = find_better_minimum(
-              parameters,
+              parameters.solver,
               scene.problem().unknowns().contact().boundary(),
               law,
               scene.adhesion(),

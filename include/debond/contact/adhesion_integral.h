@@ -56,6 +56,11 @@ namespace Debond
     force_intervals(const dealii::Vector<double> &s,
                     const std::vector<double>    &delta) const;
 
+    /// Whether each node has a multiple of the law for its own, as with nodal
+    /// quadrature.
+    bool
+    is_separable() const;
+
   private:
     /// A quadrature point on Gamma_C: the trace there is the sum of shape[k]
     /// s[nodes[k]], k < n_nodes.
@@ -65,6 +70,9 @@ namespace Debond
       std::array<unsigned int, dim> nodes;
       std::array<double, dim>       shape;
       double                        weight; ///< length or area
+
+      bool
+      is_on_a_node() const;
 
       double
       trace(const dealii::Vector<double> &s) const;

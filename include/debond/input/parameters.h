@@ -9,11 +9,8 @@
 #include <debond/input/load_parameters.h>
 #include <debond/input/load_path_parameters.h>
 #include <debond/input/output_parameters.h>
+#include <debond/input/solver_parameters.h>
 #include <debond/mesh/make_body.h>
-#include <debond/optimization/bundle/proximal_bundle.h>
-#include <debond/optimization/global/branch_and_bound.h>
-#include <debond/optimization/global/branch_search.h>
-#include <debond/optimization/majorise/majorise_minimise.h>
 
 #include <map>
 #include <memory>
@@ -35,39 +32,14 @@ namespace Debond
 
 
 
-  /// How much a better minimum is searched for.
-  enum class BondSearchChoice
+  struct VerificationParameters
   {
-    automatic, ///< what it takes if the method is automatic, else none
-    none,
-    quick,
-    full
+    /// Largest Verification::error() of a result that counts.
+    double tolerance = 1e-3;
+
+    /// An expression with the constants of the loads; empty if unknown.
+    std::string exact_displacement;
   };
-
-
-
-  /// The proof's tolerance is relative to what the bonds can change in J.
-  inline BranchAndBoundParameters
-  proof_defaults()
-  {
-    BranchAndBoundParameters parameters;
-    parameters.tolerance       = 1e-9;
-    parameters.maximum_seconds = 600.;
-    return parameters;
-  }
-
-
-
-  /// In the energy norm the method needs few iterations and little choice.
-  inline ProximalBundleParameters
-  energy_bundle_defaults()
-  {
-    ProximalBundleParameters parameters;
-    parameters.epsilon_s          = 1e-13;
-    parameters.bundle_size        = 50;
-    parameters.maximum_iterations = 1000;
-    return parameters;
-  }
 
 
 
@@ -86,38 +58,13 @@ namespace Debond
     ContactLawParameters        law;
     ContactQuadratureParameters quadrature;
     std::string                 quadrature_name = "nodal";
-    std::string                 method          = "automatic";
-    std::string                 linear_solver   = "automatic";
-    double                      memory_limit = 0.; ///< bytes, 0: what is there
-    ProximalBundleParameters    bundle;
-
-    /// File with the first iterate of the Euclidean bundle; empty for zero.
-    std::string start;
-
-    /// epsilon_s relative to the energy of the body without contact; u is
-    /// not used.
-    ProximalBundleParameters energy_bundle = energy_bundle_defaults();
-
-    MajoriseMinimiseParameters majorise_minimise;
-    double                     checkpoint_interval = 0.; ///< s, 0 for none
-    bool                       restart = false;          ///< from a checkpoint
-    BondSearchChoice           search  = BondSearchChoice::automatic;
-    BranchSearchParameters     full_search;
-    bool                       prove = false;
-    BranchAndBoundParameters   proof = proof_defaults();
-    OutputParameters           output;
-
-    /// Largest Verification::error() of a result that counts.
-    double verification_tolerance = 1e-3;
-
-    /// An expression with the constants of the loads; empty if unknown.
-    std::string exact_displacement;
+    SolverParameters            solver;
+    CheckpointParameters        checkpoints;
+    VerificationParameters      verification;
+    OutputParameters            output;
 
     /// The scene with all entries that it leaves to their defaults.
     std::string effective_scene;
-
-    /// The values that have to be the same at a restart, by path.
-    std::map<std::string, std::string> values_of_state;
 
     /// Where entries were set, by path.
     std::map<std::string, std::string> locations;

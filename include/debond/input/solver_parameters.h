@@ -2,17 +2,95 @@
 #ifndef debond_input_solver_parameters_h
 #define debond_input_solver_parameters_h
 
-#include <debond/input/parameters.h>
+#include <debond/base/parameter_table.h>
+#include <debond/optimization/bundle/proximal_bundle.h>
+#include <debond/optimization/global/branch_and_bound.h>
+#include <debond/optimization/global/branch_search.h>
+#include <debond/optimization/majorise/majorise_minimise.h>
+
+#include <map>
+#include <string>
 
 namespace Debond
 {
+  /// How much a better minimum is searched for.
+  enum class BondSearchChoice
+  {
+    automatic, ///< what it takes if the method is automatic, else none
+    none,
+    quick,
+    full
+  };
+
+
+
+  /// The proof's tolerance is relative to what the bonds can change in J.
+  inline BranchAndBoundParameters
+  proof_defaults()
+  {
+    BranchAndBoundParameters parameters;
+    parameters.tolerance       = 1e-9;
+    parameters.maximum_seconds = 600.;
+    return parameters;
+  }
+
+
+
+  /// In the energy norm the method needs few iterations and little choice.
+  inline ProximalBundleParameters
+  energy_bundle_defaults()
+  {
+    ProximalBundleParameters parameters;
+    parameters.epsilon_s          = 1e-13;
+    parameters.bundle_size        = 50;
+    parameters.maximum_iterations = 1000;
+    return parameters;
+  }
+
+
+
+  struct SolverParameters
+  {
+    std::string method        = "automatic";
+    std::string linear_solver = "automatic";
+    double      memory_limit  = 0.; ///< bytes, 0: what is there
+
+    ProximalBundleParameters bundle;
+
+    /// File with the first iterate of the Euclidean bundle; empty for zero.
+    std::string start;
+
+    /// epsilon_s relative to the energy of the body without contact; u is
+    /// not used.
+    ProximalBundleParameters energy_bundle = energy_bundle_defaults();
+
+    MajoriseMinimiseParameters majorise_minimise;
+    BondSearchChoice           search = BondSearchChoice::automatic;
+    BranchSearchParameters     full_search;
+    bool                       prove = false;
+    BranchAndBoundParameters   proof = proof_defaults();
+  };
+
+
+
+  struct CheckpointParameters
+  {
+    double interval = 0.; ///< seconds, 0 for none
+    bool   restart  = false;
+
+    /// The values that have to be the same at a restart, by path.
+    std::map<std::string, std::string> state;
+  };
+
   /// The section Solver.
   void
-  bind_solver(Parameters &p, ParameterTable &table);
+  bind_solver(SolverParameters     &solver,
+              CheckpointParameters &checkpoints,
+              ParameterTable       &table);
 
   /// What its patterns leave to be checked.
   void
-  check_solver(const Parameters &p, ParameterTable &table);
+  check_solver(const SolverParameters &solver, ParameterTable &table);
 } // namespace Debond
 
 #endif

@@ -2,7 +2,8 @@
 #ifndef debond_solve_global_branch_h
 #define debond_solve_global_branch_h
 
-#include <debond/input/parameters.h>
+#include <debond/input/load_path_parameters.h>
+#include <debond/input/solver_parameters.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/which_minimum.h>
@@ -30,13 +31,14 @@ namespace Debond
   /**
    * The lowest minima that are known at the factors of @p start, which holds a
    * minimum for each: the search of the scene, with starts from the neighbours
-   * with more and with less load, and the proof if the scene wants one. No
+   * with more and with less load, and the proof if it is @p wanted. No
    * point is above the one in @p start. Factors that were not reached when
    * @p may_go_on returned false are left out.
    */
   template <int dim>
   Branch
-  global_branch(const Parameters            &parameters,
+  global_branch(const GlobalBranch           wanted,
+                const SolverParameters      &parameters,
                 const Scene<dim>            &scene,
                 const Branch                &start,
                 const std::function<bool()> &may_go_on,

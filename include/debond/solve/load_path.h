@@ -2,7 +2,8 @@
 #ifndef debond_solve_load_path_h
 #define debond_solve_load_path_h
 
-#include <debond/input/parameters.h>
+#include <debond/input/load_path_parameters.h>
+#include <debond/input/solver_parameters.h>
 #include <debond/solve/load_path_steps.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve.h>
@@ -28,14 +29,17 @@ namespace Debond
    * The path ends early with a factor that is not solved or whose result is not
    * verified, and after the current factor if a signal arrives. Then comes the
    * global branch. The result is that of the last factor; its status is success
-   * if all factors were solved, whether or not all of them are verified.
+   * if all factors were solved, whether or not all of them are verified. A
+   * table of the factors is printed to @p out unless that is null.
    */
   template <int dim>
   SolveResult
-  follow_load_path(const Parameters               &parameters,
+  follow_load_path(const LoadPathParameters       &parameters,
+                   const SolverParameters         &solver,
+                   const double                    verification_tolerance,
                    const Scene<dim>               &scene,
                    const LoadPathObserver<dim>    &observer,
-                   std::ostream                   &out,
+                   std::ostream                   *out,
                    std::vector<LoadPathStep<dim>> &steps);
 } // namespace Debond
 

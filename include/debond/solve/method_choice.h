@@ -50,9 +50,10 @@ namespace Debond
 
 
 
-  /// What the scene may still take of its memory limit, in bytes.
+  /// What the program may still take of a memory limit, 0 for what is there, in
+  /// bytes.
   double
-  memory_left(const Parameters &parameters);
+  memory_left(const double limit);
 } // namespace Debond
 
 #endif

@@ -6,7 +6,7 @@
 
 #include <debond/base/checkpoint.h>
 #include <debond/base/checkpoints.h>
-#include <debond/input/parameters.h>
+#include <debond/input/solver_parameters.h>
 #include <debond/solve/method_choice.h>
 
 #include <memory>
@@ -26,7 +26,9 @@ namespace Debond
   public:
     /// Throws BadInput if the run restarts and there is no checkpoint that it
     /// can go on from.
-    RunCheckpoints(const Parameters &parameters, const MethodChoice &choice);
+    RunCheckpoints(const CheckpointParameters &parameters,
+                   const std::string          &directory,
+                   const MethodChoice         &choice);
 
     /// What the log says of it, empty if there is nothing to say.
     std::string

@@ -3,7 +3,7 @@
 #define debond_solve_which_minimum_h
 
 #include <debond/contact/adhesion_integral.h>
-#include <debond/input/parameters.h>
+#include <debond/input/solver_parameters.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/optimization/global/branch_and_bound.h>
 
@@ -65,12 +65,12 @@ namespace Debond
                       const AdhesionIntegral<dim>  &adhesion,
                       const dealii::Vector<double> &s);
 
-  /// The search and the proof that the scene asks for, from the stationary
-  /// point @p s, which moves if they find a better one. Throws BadInput if the
-  /// scene asks for what cannot be done with the law.
+  /// The search and the proof that are asked for, from the stationary point
+  /// @p s, which moves if they find a better one. Throws BadInput if they
+  /// cannot be done with the law.
   template <int dim>
   WhichMinimum
-  find_better_minimum(const Parameters            &parameters,
+  find_better_minimum(const SolverParameters      &parameters,
                       const ContactBoundary<dim>  &boundary,
                       const AdhesiveLaw           &law,
                       const AdhesionIntegral<dim> &adhesion,
