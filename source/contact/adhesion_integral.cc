@@ -185,10 +185,13 @@ namespace Debond
   bool
   AdhesionIntegral<dim>::is_separable() const
   {
+    // Points on clamped vertices have no node.
     return !quadrature.depends_on_trace() &&
            std::all_of(point_list.begin(),
                        point_list.end(),
-                       std::mem_fn(&Point::is_on_a_node));
+                       [](const Point &point) {
+                         return point.n_nodes == 0 || point.is_on_a_node();
+                       });
   }
 
 
