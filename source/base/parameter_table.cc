@@ -480,6 +480,14 @@ namespace Debond
 
 
 
+  bool
+  ParameterTable::is_set(const std::string &path) const
+  {
+    return set_at.count(path) > 0;
+  }
+
+
+
   std::string
   ParameterTable::get(const std::string &path) const
   {

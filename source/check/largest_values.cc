@@ -8,10 +8,11 @@ namespace Debond
   template <int dim>
   LargestValues
   largest_values(const ElasticProblem<dim>    &problem,
-                 const dealii::Vector<double> &u)
+                 const dealii::Vector<double> &u,
+                 const double                  load_factor)
   {
     const dealii::Vector<double> displacement =
-      problem.unknowns().cartesian_displacement(u);
+      problem.unknowns().cartesian_displacement(u, load_factor);
 
     LargestValues largest;
     for (const auto &cell :
@@ -39,7 +40,11 @@ namespace Debond
 
 
   template LargestValues
-  largest_values(const ElasticProblem<2> &, const dealii::Vector<double> &);
+  largest_values(const ElasticProblem<2> &,
+                 const dealii::Vector<double> &,
+                 const double);
   template LargestValues
-  largest_values(const ElasticProblem<3> &, const dealii::Vector<double> &);
+  largest_values(const ElasticProblem<3> &,
+                 const dealii::Vector<double> &,
+                 const double);
 } // namespace Debond

@@ -51,12 +51,12 @@ namespace Debond
     for (unsigned int i = 0; i < nodes.size(); ++i)
       {
         const ContactNodeState &node = verification.nodes[i];
-        s(i)                         = node.u_nu;
+        s(i)                         = node.s;
         measure += nodes[i].measure;
         part(node.state == BondState::contact ? node.state : node.branch) +=
           nodes[i].measure;
-        state.mean_gap -= nodes[i].measure * node.u_nu;
-        state.largest_gap = std::max(state.largest_gap, -node.u_nu);
+        state.mean_gap -= nodes[i].measure * node.s;
+        state.largest_gap = std::max(state.largest_gap, -node.s);
         state.normal_force += node.normal_force;
       }
     if (measure > 0.)
@@ -70,9 +70,9 @@ namespace Debond
           other /= measure;
       }
 
-    state.elastic_energy  = problem.fields().elastic_functional(u, 0.);
-    state.adhesion_energy = adhesion.value(s);
-    state.unit_load_work  = problem.load() * u;
+    state.elastic_energy  = problem.fields().strain_energy(u, factor);
+    state.adhesion_energy = adhesion.energy(s);
+    state.unit_load_work  = problem.fields().load_work(u, factor);
     state.functional =
       problem.fields().elastic_functional(u, factor) + state.adhesion_energy;
 

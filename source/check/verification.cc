@@ -67,6 +67,11 @@ namespace Debond
 
 
 
+    /// Forces that are less than so many times their rounding are not resolved.
+    constexpr double digits_above_rounding = 1e4;
+
+
+
     /// What the displacement and the force of a node are compared with, see
     /// Verification::law_violation.
     struct LawScale
@@ -81,6 +86,7 @@ namespace Debond
     template <int dim>
     std::vector<LawScale>
     law_scales(const AdhesiveLaw                   &law,
+               const AdhesionIntegral<dim>         &adhesion,
                const ContactBoundary<dim>          &boundary,
                const std::vector<ContactNodeState> &nodes,
                const dealii::Vector<double>        &rounding,
@@ -88,20 +94,20 @@ namespace Debond
                const double                         largest_displacement)
     {
       constexpr double smallest_contact_force = 1e-3;
-      constexpr double digits_above_rounding  = 1e4;
 
       double largest_force = smallest_contact_force * largest_reaction;
       for (const ContactNodeState &node : nodes)
         largest_force = std::max(largest_force, std::abs(node.normal_force));
 
-      const double threshold = first_threshold(law);
-      const bool   has_bonds = threshold > 0. && law.bond_strength() > 0.;
       std::vector<LawScale> scales;
       for (unsigned int i = 0; i < nodes.size(); ++i)
         {
-          const double strength =
-            law.bond_strength() * boundary.nodes[i].measure;
-          LawScale scale = {largest_displacement, largest_force};
+          const BondScale bonds     = adhesion.bonds_at(i);
+          const double    threshold = first_threshold(law) * bonds.stretch;
+          const double    strength  = law.bond_strength() * bonds.energy /
+                                  bonds.stretch * boundary.nodes[i].measure;
+          const bool has_bonds = threshold > 0. && strength > 0.;
+          LawScale   scale     = {largest_displacement, largest_force};
           if (has_bonds)
             scale.force = std::min(scale.force, strength);
           scale.force =
@@ -131,14 +137,18 @@ namespace Debond
     void
     set_state(const AdhesiveLaw              &law,
               const std::vector<std::string> &names,
+              const BondScale                &bonds,
               const LawScale                 &scale,
               const double                    largest_displacement,
               const double                    tolerance,
               ContactNodeState               &node)
     {
       const BranchMinimum &branches = law.branches();
-      node.branch = state_of_branch(law, names, branches.index(node.u_nu));
-      const double threshold = first_threshold(law);
+      node.branch =
+        bonds.energy == 0. ?
+          BondState::free :
+          state_of_branch(law, names, branches.index(node.s / bonds.stretch));
+      const double threshold = first_threshold(law) * bonds.stretch;
       const double no_gap =
         tolerance * (threshold > 0. ?
                        std::min(threshold, largest_displacement) :
@@ -148,17 +158,17 @@ namespace Debond
       constexpr double largest_gap = 1e-3;
       const double     gap =
         std::max(tolerance, std::min(largest_gap, 1.01 * node.violation));
-      if (node.u_nu >= -no_gap ||
-          (node.normal_force > 0. && node.u_nu >= -gap * scale.length))
+      if (node.s >= -no_gap ||
+          (node.normal_force > 0. && node.s >= -gap * scale.length))
         {
           node.state = BondState::contact;
           return;
         }
       node.state = node.branch;
-      for (unsigned int k = 1; k < branches.size(); ++k)
+      for (unsigned int k = 1; k < branches.size() && bonds.energy > 0.; ++k)
         {
-          const double kink = branches[k].upper;
-          if (std::abs(node.u_nu - kink) <= tolerance * std::abs(kink))
+          const double kink = branches[k].upper * bonds.stretch;
+          if (std::abs(node.s - kink) <= tolerance * std::abs(kink))
             {
               node.state  = BondState::kink;
               node.branch = state_of_branch(law, names, k - 1);
@@ -285,7 +295,9 @@ namespace Debond
     void
     compute_force_balance(const ElasticProblem<dim>    &problem,
                           const dealii::Vector<double> &residual,
+                          const std::vector<double>    &held_forces,
                           const double                  load_factor,
+                          const double                  smallest_force,
                           Verification<dim>            &result)
     {
       const auto       &normals = problem.unknowns().contact().normals();
@@ -299,8 +311,12 @@ namespace Debond
         }
 
       // What the supports and the foundation exert is the residual at their
-      // degrees of freedom; all of it at a vertex with a contact node comes
-      // from the foundation.
+      // degrees of freedom; what supports do not bear at a vertex with a
+      // contact node comes from the foundation.
+      const ElasticUnknowns<dim> &unknowns = problem.unknowns();
+      std::vector<bool>           is_supported(unknowns.n_dofs(), false);
+      for (const auto &[dof, unused] : unknowns.supported())
+        is_supported[dof] = true;
       dealii::Vector<double>    clamped(problem.unknowns().n_dofs());
       dealii::Vector<double>    contact(problem.unknowns().n_dofs());
       std::vector<unsigned int> component(problem.unknowns().n_dofs());
@@ -319,7 +335,8 @@ namespace Debond
                 const auto dof = cell->vertex_dof_index(v, d);
                 component[dof] = d;
                 if (is_normal[dof] || problem.unknowns().is_constrained(dof))
-                  (has_contact_node ? contact : clamped)(dof) = residual(dof);
+                  (has_contact_node && !is_supported[dof] ? contact : clamped)(
+                    dof) = residual(dof);
                 if (is_normal[dof])
                   for (unsigned int e = 0; e < dim; ++e)
                     vertex_dofs_of_node[node_of_dof[dof]][e] =
@@ -339,6 +356,26 @@ namespace Debond
       result.applied_force    = load_factor * problem.fields().total_load();
       result.clamped_reaction = resultant(clamped);
       result.contact_reaction = resultant(contact);
+
+      const std::vector<std::string> &names = unknowns.support_names();
+      for (unsigned int k = 0; k < names.size(); ++k)
+        {
+          dealii::Vector<double> of_support(unknowns.n_dofs());
+          for (const auto &[dof, support] : unknowns.supported())
+            if (support == k)
+              of_support(dof) = residual(dof);
+          result.reactions[names[k]] += resultant(of_support);
+        }
+      // Bonds of vertices that a support moves pull at it.
+      const auto &held = unknowns.contact().boundary().held_vertices;
+      for (unsigned int k = 0; k < held.size(); ++k)
+        {
+          const dealii::Tensor<1, dim> force = held_forces[k] * held[k].normal;
+          result.clamped_reaction += force;
+          result.contact_reaction -= force;
+          if (held[k].support < names.size())
+            result.reactions[names[held[k].support]] += force;
+        }
 
       dealii::Vector<double> tangential = contact;
       for (const auto normal : normals)
@@ -362,7 +399,8 @@ namespace Debond
       const double imbalance = (result.applied_force + result.clamped_reaction +
                                 result.contact_reaction)
                                  .norm();
-      result.force_imbalance = imbalance > 0. ? imbalance / scale : 0.;
+      result.force_imbalance =
+        imbalance > 0. ? imbalance / std::max(scale, smallest_force) : 0.;
     }
   } // namespace
 
@@ -398,38 +436,57 @@ namespace Debond
     for (unsigned int i = 0; i < s.size(); ++i)
       {
         ContactNodeState node;
-        node.u_nu          = s(i);
+        node.s             = s(i);
+        node.u_nu          = s(i) + contact.boundary().nodes[i].gap;
         node.normal_force  = -normal_residual(i);
         node.allowed_force = unbounded_above_if(s(i) >= 0., forces[i]);
         result.nodes.push_back(node);
         result.penetration = std::max(result.penetration, s(i));
       }
 
-    const LargestResiduals       largest = largest_residuals(problem, residual);
+    dealii::Vector<double> displacement = u;
+    if (problem.unknowns().has_lifting())
+      displacement += problem.unknowns().lifting(load_factor);
+    const double           largest_displacement = displacement.linfty_norm();
+    const LargestResiduals largest = largest_residuals(problem, residual);
     const dealii::Vector<double> rounding =
-      contact.trace(problem.fields().residual_rounding(u, load_factor));
+      problem.fields().residual_rounding(u, load_factor);
     const std::vector<LawScale> scales = law_scales(law,
+                                                    adhesion,
                                                     contact.boundary(),
                                                     result.nodes,
-                                                    rounding,
+                                                    contact.trace(rounding),
                                                     largest.supported,
-                                                    u.linfty_norm());
+                                                    largest_displacement);
     compute_violations(adhesion, s, scales, result.nodes);
 
     result.law_violation = 0.;
     for (unsigned int i = 0; i < result.nodes.size(); ++i)
       {
         ContactNodeState &node = result.nodes[i];
-        set_state(
-          law, result.state_names, scales[i], s.linfty_norm(), tolerance, node);
+        set_state(law,
+                  result.state_names,
+                  adhesion.bonds_at(i),
+                  scales[i],
+                  s.linfty_norm(),
+                  tolerance,
+                  node);
         result.law_violation = std::max(result.law_violation, node.violation);
       }
 
     result.equilibrium_residual =
       largest.free > 0. ?
-        largest.free / std::max(largest.free, largest.supported) :
+        largest.free /
+          std::max({largest.free,
+                    largest.supported,
+                    digits_above_rounding * rounding.linfty_norm()}) :
         0.;
-    compute_force_balance(problem, residual, load_factor, result);
+    compute_force_balance(problem,
+                          residual,
+                          adhesion.held_forces(s),
+                          load_factor,
+                          digits_above_rounding * rounding.linfty_norm(),
+                          result);
     return result;
   }
 

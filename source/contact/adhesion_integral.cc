@@ -10,17 +10,68 @@ namespace Debond
   AdhesionIntegral<dim>::AdhesionIntegral(
     const ContactBoundary<dim>   &contact_boundary,
     const AdhesiveLaw            &adhesive_law,
-    const ContactQuadrature<dim> &quadrature_rule)
+    const ContactQuadrature<dim> &quadrature_rule,
+    const BondField<dim>         *bond_field)
     : boundary(contact_boundary)
     , law(adhesive_law)
     , quadrature(quadrature_rule)
+    , field(bond_field)
   {
+    update_points();
+  }
+
+
+
+  template <int dim>
+  void
+  AdhesionIntegral<dim>::update_points()
+  {
+    const dealii::Vector<double> zero(
+      static_cast<unsigned int>(boundary.nodes.size()));
     if (!quadrature.depends_on_trace())
       {
-        collect_points(dealii::Vector<double>(
-          static_cast<unsigned int>(boundary.nodes.size())));
+        collect_points(zero);
         lump_nodal_points();
       }
+    if (!boundary.held_vertices.empty())
+      phi_at_zero = energy(zero);
+  }
+
+
+
+  template <int dim>
+  void
+  AdhesionIntegral<dim>::scale_load(const double factor)
+  {
+    load_factor = factor;
+    if (!boundary.held_vertices.empty())
+      update_points();
+  }
+
+
+
+  template <int dim>
+  double
+  AdhesionIntegral<dim>::energy_at_zero(const double factor) const
+  {
+    if (boundary.held_vertices.empty())
+      return 0.;
+    AdhesionIntegral other(*this);
+    other.scale_load(factor);
+    return other.phi_at_zero;
+  }
+
+
+
+  template <int dim>
+  double
+  AdhesionIntegral<dim>::energy(const dealii::Vector<double> &s) const
+  {
+    double sum = 0.;
+    for (const Point &point : points(s))
+      sum += point.weight * point.bonds.energy *
+             law.value(point.trace(s) / point.bonds.stretch);
+    return sum;
   }
 
 
@@ -29,10 +80,7 @@ namespace Debond
   double
   AdhesionIntegral<dim>::value(const dealii::Vector<double> &s) const
   {
-    double sum = 0.;
-    for (const Point &point : points(s))
-      sum += point.weight * law.value(point.trace(s));
-    return sum;
+    return energy(s) - phi_at_zero;
   }
 
 
@@ -47,7 +95,9 @@ namespace Debond
     xi = 0.;
     for (const Point &point : points(s))
       {
-        const double force = point.weight * law.derivative(point.trace(s));
+        const double force =
+          point.weight * point.bonds.energy / point.bonds.stretch *
+          law.derivative(point.trace(s) / point.bonds.stretch);
         for (unsigned int k = 0; k < point.n_nodes; ++k)
           xi(point.nodes[k]) += point.shape[k] * force;
       }
@@ -62,7 +112,10 @@ namespace Debond
     std::vector<Eigen::Triplet<double>> entries;
     for (const Point &point : points(s))
       {
-        const double curvature = point.weight * law.curvature(point.trace(s));
+        const double stretch   = point.bonds.stretch;
+        const double curvature = point.weight * point.bonds.energy /
+                                 (stretch * stretch) *
+                                 law.curvature(point.trace(s) / stretch);
         if (curvature != 0.)
           for (unsigned int k = 0; k < point.n_nodes; ++k)
             for (unsigned int l = 0; l < point.n_nodes; ++l)
@@ -98,13 +151,15 @@ namespace Debond
     std::vector<Interval> forces(boundary.nodes.size(), Interval{0., 0.});
     for (const Point &point : points(s))
       {
-        const double trace = point.trace(s);
+        const double stretch = point.bonds.stretch;
+        const double trace   = point.trace(s) / stretch;
         for (unsigned int k = 0; k < point.n_nodes; ++k)
           {
             const unsigned int node = point.nodes[k];
             const Interval     traction =
-              law.goldstein_interval(trace, delta[node]);
-            const double measure = point.weight * point.shape[k];
+              law.goldstein_interval(trace, delta[node] / stretch);
+            const double measure =
+              point.weight * point.shape[k] * point.bonds.energy / stretch;
             forces[node].lower += measure * traction.lower;
             forces[node].upper += measure * traction.upper;
           }
@@ -118,7 +173,7 @@ namespace Debond
   double
   AdhesionIntegral<dim>::Point::trace(const dealii::Vector<double> &s) const
   {
-    double sum = 0.;
+    double sum = offset;
     for (unsigned int k = 0; k < n_nodes; ++k)
       sum += shape[k] * s(nodes[k]);
     return sum;
@@ -149,7 +204,7 @@ namespace Debond
         std::array<double, dim> trace;
         for (unsigned int k = 0; k < dim; ++k)
           trace[k] = face.nodes[k] == dealii::numbers::invalid_unsigned_int ?
-                       0. :
+                       held_trace(face, k) :
                        s(face.nodes[k]);
 
         for (const auto &quadrature_point : quadrature.points(trace))
@@ -157,9 +212,12 @@ namespace Debond
             Point point   = {};
             point.n_nodes = 0;
             point.weight  = quadrature_point.weight * face.measure;
+            point.bonds   = bonds_of(face, quadrature_point.barycentric);
             for (unsigned int k = 0; k < dim; ++k)
-              if (face.nodes[k] != dealii::numbers::invalid_unsigned_int &&
-                  quadrature_point.barycentric[k] != 0.)
+              if (face.nodes[k] == dealii::numbers::invalid_unsigned_int)
+                point.offset +=
+                  quadrature_point.barycentric[k] * held_trace(face, k);
+              else if (quadrature_point.barycentric[k] != 0.)
                 {
                   point.nodes[point.n_nodes] = face.nodes[k];
                   point.shape[point.n_nodes] = quadrature_point.barycentric[k];
@@ -200,10 +258,14 @@ namespace Debond
   void
   AdhesionIntegral<dim>::lump_nodal_points()
   {
-    std::vector<double> weights(boundary.nodes.size(), 0.);
+    std::vector<double>    weights(boundary.nodes.size(), 0.);
+    std::vector<BondScale> bonds(boundary.nodes.size());
     for (const Point &point : point_list)
       if (point.is_on_a_node())
-        weights[point.nodes[0]] += point.weight;
+        {
+          weights[point.nodes[0]] += point.weight;
+          bonds[point.nodes[0]] = point.bonds;
+        }
 
     point_list.erase(std::remove_if(point_list.begin(),
                                     point_list.end(),
@@ -218,8 +280,97 @@ namespace Debond
           point.nodes[0] = node;
           point.shape[0] = 1.;
           point.weight   = weights[node];
+          point.bonds    = bonds[node];
           point_list.push_back(point);
         }
+  }
+
+
+
+  template <int dim>
+  double
+  AdhesionIntegral<dim>::held_trace(
+    const typename ContactBoundary<dim>::Face &face,
+    const unsigned int                         vertex) const
+  {
+    if (boundary.held_vertices.empty())
+      return 0.;
+    const auto &held = boundary.held_vertices[face.held[vertex]];
+    return load_factor * held.normal_displacement - held.gap;
+  }
+
+
+
+  template <int dim>
+  BondScale
+  AdhesionIntegral<dim>::bonds_of(
+    const typename ContactBoundary<dim>::Face &face,
+    const std::array<double, dim>             &barycentric) const
+  {
+    if (field == nullptr)
+      return {};
+    dealii::Point<dim> position;
+    for (unsigned int k = 0; k < dim; ++k)
+      position += barycentric[k] * face.vertices[k];
+    return field->at(position);
+  }
+
+
+
+  template <int dim>
+  bool
+  AdhesionIntegral<dim>::has_field() const
+  {
+    return field != nullptr;
+  }
+
+
+
+  template <int dim>
+  BondScale
+  AdhesionIntegral<dim>::bonds_at(const unsigned int node) const
+  {
+    return field == nullptr ? BondScale() :
+                              field->at(boundary.nodes[node].position);
+  }
+
+
+
+  template <int dim>
+  std::vector<double>
+  AdhesionIntegral<dim>::held_forces(const dealii::Vector<double> &s) const
+  {
+    std::vector<double> forces(boundary.held_vertices.size(), 0.);
+    if (forces.empty())
+      return forces;
+    for (const auto &face : boundary.faces)
+      {
+        std::array<double, dim> trace;
+        bool                    is_held = false;
+        for (unsigned int k = 0; k < dim; ++k)
+          {
+            const bool known =
+              face.nodes[k] == dealii::numbers::invalid_unsigned_int;
+            trace[k] = known ? held_trace(face, k) : s(face.nodes[k]);
+            is_held  = is_held || known;
+          }
+        if (!is_held)
+          continue;
+        for (const auto &point : quadrature.points(trace))
+          {
+            const BondScale bonds    = bonds_of(face, point.barycentric);
+            double          at_point = 0.;
+            for (unsigned int k = 0; k < dim; ++k)
+              at_point += point.barycentric[k] * trace[k];
+            const double force = point.weight * face.measure * bonds.energy /
+                                 bonds.stretch *
+                                 law.derivative(at_point / bonds.stretch);
+            for (unsigned int k = 0; k < dim; ++k)
+              if (face.nodes[k] == dealii::numbers::invalid_unsigned_int)
+                forces[face.held[k]] += point.barycentric[k] * force;
+          }
+      }
+    return forces;
   }
 
 

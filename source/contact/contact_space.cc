@@ -92,6 +92,29 @@ namespace Debond
 
 
   template <int dim>
+  dealii::Vector<double>
+  ContactSpace<dim>::at_rest() const
+  {
+    dealii::Vector<double> s(size());
+    for (unsigned int i = 0; i < size(); ++i)
+      s(i) = 0. - nodes_and_faces.nodes[i].gap;
+    return s;
+  }
+
+
+
+  template <int dim>
+  bool
+  ContactSpace<dim>::has_gap() const
+  {
+    return std::any_of(nodes_and_faces.nodes.begin(),
+                       nodes_and_faces.nodes.end(),
+                       [](const auto &node) { return node.gap > 0.; });
+  }
+
+
+
+  template <int dim>
   ContactSpace<dim>
   ContactSpace<dim>::condensed() const
   {

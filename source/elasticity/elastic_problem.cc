@@ -14,8 +14,9 @@ namespace Debond
   template <int dim>
   ElasticProblem<dim>::ElasticProblem(
     const dealii::Triangulation<dim> &triangulation,
-    const BoundaryConditions         &conditions)
-    : elastic_unknowns(triangulation, conditions)
+    const BoundaryConditions         &conditions,
+    const Supports<dim>              &supports)
+    : elastic_unknowns(triangulation, conditions, supports)
   {}
 
 
@@ -36,7 +37,21 @@ namespace Debond
                                                           material,
                                                           applied_forces);
 
-    system_load = elastic_unknowns.in_frames(applied_forces);
+    gap_load.reinit(0);
+    if (elastic_unknowns.has_lifting())
+      {
+        const dealii::Vector<double> zero(dofs.n_dofs());
+        system_load = elastic_fields->residual(zero);
+        system_load *= -1.;
+        if (elastic_unknowns.has_gap())
+          {
+            gap_load = elastic_fields->residual(zero, 0.);
+            gap_load *= -1.;
+            constraints.set_zero(gap_load);
+          }
+      }
+    else
+      system_load = elastic_unknowns.in_frames(applied_forces);
     constraints.set_zero(system_load);
 
     dealii::DynamicSparsityPattern pattern(dofs.n_dofs());
@@ -175,6 +190,40 @@ namespace Debond
   ElasticProblem<dim>::load() const
   {
     return system_load;
+  }
+
+
+
+  template <int dim>
+  const dealii::Vector<double> &
+  ElasticProblem<dim>::constant_load() const
+  {
+    return gap_load;
+  }
+
+
+
+  template <int dim>
+  dealii::Vector<double>
+  ElasticProblem<dim>::load_at(const double load_factor) const
+  {
+    dealii::Vector<double> load = system_load;
+    load *= load_factor;
+    if (gap_load.size() > 0)
+      load.add(1. - load_factor, gap_load);
+    return load;
+  }
+
+
+
+  template <int dim>
+  double
+  ElasticProblem<dim>::lifting_energy(const double load_factor) const
+  {
+    return elastic_unknowns.has_lifting() ?
+             elastic_fields->elastic_functional(
+               dealii::Vector<double>(elastic_unknowns.n_dofs()), load_factor) :
+             0.;
   }
 
 

@@ -78,7 +78,7 @@ namespace Debond
       }
 
     ExtendedVector result = forces;
-    for (const auto &frame : problem.unknowns().contact_frames())
+    for (const auto &frame : problem.unknowns().frames())
       for (unsigned int k = 0; k < dim; ++k)
         {
           result(frame.dofs[k]) = 0.;
@@ -124,7 +124,7 @@ namespace Debond
   ExtendedOperator<dim>::cartesian(const ExtendedVector &u) const
   {
     ExtendedVector result = u;
-    for (const auto &frame : problem.unknowns().contact_frames())
+    for (const auto &frame : problem.unknowns().frames())
       for (unsigned int d = 0; d < dim; ++d)
         {
           result(frame.dofs[d]) = 0.;

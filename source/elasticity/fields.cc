@@ -49,7 +49,7 @@ namespace Debond
                                const double                  load_factor) const
   {
     const dealii::Vector<double> displacement =
-      unknowns.cartesian_displacement(u);
+      unknowns.cartesian_displacement(u, load_factor);
 
     dealii::Vector<double> forces(unknowns.n_dofs());
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
@@ -77,7 +77,7 @@ namespace Debond
                                         const double load_factor) const
   {
     const dealii::Vector<double> displacement =
-      unknowns.cartesian_displacement(u);
+      unknowns.cartesian_displacement(u, load_factor);
     const double modulus = stiffness.norm();
 
     dealii::Vector<double> rounding(unknowns.n_dofs());
@@ -145,8 +145,52 @@ namespace Debond
   ElasticFields<dim>::elastic_functional(const dealii::Vector<double> &u,
                                          const double load_factor) const
   {
+    return energy(u, load_factor, load_factor);
+  }
+
+
+
+  template <int dim>
+  double
+  ElasticFields<dim>::strain_energy(const dealii::Vector<double> &u,
+                                    const double load_factor) const
+  {
+    return energy(u, load_factor, 0.);
+  }
+
+
+
+  template <int dim>
+  double
+  ElasticFields<dim>::load_work(const dealii::Vector<double> &u,
+                                const double                  load_factor) const
+  {
+    return unknowns.in_frames(applied_forces) * lifted(u, load_factor);
+  }
+
+
+
+  template <int dim>
+  dealii::Vector<double>
+  ElasticFields<dim>::lifted(const dealii::Vector<double> &u,
+                             const double                  load_factor) const
+  {
+    dealii::Vector<double> x = u;
+    if (unknowns.has_lifting())
+      x += unknowns.lifting(load_factor);
+    return x;
+  }
+
+
+
+  template <int dim>
+  double
+  ElasticFields<dim>::energy(const dealii::Vector<double> &u,
+                             const double                  load_factor,
+                             const double                  work_factor) const
+  {
     const dealii::Vector<double> displacement =
-      unknowns.cartesian_displacement(u);
+      unknowns.cartesian_displacement(u, load_factor);
     namespace accumulators = boost::accumulators;
     accumulators::
       accumulator_set<double, accumulators::stats<accumulators::tag::sum_kahan>>
@@ -159,8 +203,9 @@ namespace Debond
             (strain * (stiffness * strain)));
       }
     const dealii::Vector<double> load = unknowns.in_frames(applied_forces);
-    for (unsigned int i = 0; i < u.size(); ++i)
-      sum(-load_factor * load(i) * u(i));
+    const dealii::Vector<double> x    = lifted(u, load_factor);
+    for (unsigned int i = 0; i < x.size(); ++i)
+      sum(-work_factor * load(i) * x(i));
     return accumulators::sum_kahan(sum);
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/elasticity/mesh_transfer.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace Debond
@@ -36,7 +37,17 @@ namespace Debond
         for (unsigned int d = 0; d < dim; ++d)
           result[cell->vertex_dof_index(v, d)] =
             interpolated[cell->vertex_index(v)][d];
-    return target.unknowns().from_cartesian(result);
+    result = target.unknowns().from_cartesian(result);
+    if (target.unknowns().has_gap())
+      {
+        // Between nodes a gap is not what the coarser mesh sees.
+        const ContactSpace<dim> &contact = target.unknowns().contact();
+        dealii::Vector<double>   excess  = contact.trace(result);
+        for (double &s : excess)
+          s = -std::max(s, 0.);
+        contact.add_normal(excess, result);
+      }
+    return result;
   }
 
 

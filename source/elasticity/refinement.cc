@@ -150,7 +150,22 @@ namespace Debond
         terms += problem.diagonal_entry(i) * u(i) * u(i);
     if (terms == 0.)
       return 0.;
-    double energy = load_factor * (problem.load() * u);
+    const ElasticUnknowns<dim> &unknowns = problem.unknowns();
+    if (unknowns.has_lifting())
+      {
+        // Of u itself, what is large in w is not.
+        dealii::Vector<double> x = unknowns.lifting(load_factor);
+        x += u;
+        terms = 0.;
+        for (unsigned int i = 0; i < x.size(); ++i)
+          terms += problem.diagonal_entry(i) * x(i) * x(i);
+        const double energy =
+          2. * problem.fields().strain_energy(u, load_factor);
+        return energy > 0. ?
+                 std::numeric_limits<double>::epsilon() * terms / energy :
+                 std::numeric_limits<double>::infinity();
+      }
+    double energy = problem.load_at(load_factor) * u;
 
     const dealii::Vector<double> s = problem.unknowns().contact().trace(u);
     dealii::Vector<double>       xi(s.size());
@@ -188,7 +203,7 @@ namespace Debond
         , result(counts)
         , normals(problem.unknowns().contact().normals())
         , u(to_extended(start))
-        , f(load_factor * to_extended(problem.load()))
+        , f(to_extended(problem.load_at(load_factor)))
       {
         for (const double s : problem.unknowns().contact().trace(start))
           active.push_back(s == 0.);

@@ -2,6 +2,7 @@
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/fe/fe_simplex_p.h>
 
+#include <debond/contact/field_value.h>
 #include <debond/elasticity/contact_frame.h>
 #include <debond/elasticity/linear_simplex.h>
 #include <debond/elasticity/rigid_motions.h>
@@ -25,6 +26,7 @@ namespace Debond
       template <typename CellIterator>
       BoundaryFace(const CellIterator &cell, const unsigned int face_no)
       {
+        id                     = cell->face(face_no)->boundary_id();
         const auto   reference = cell->reference_cell();
         unsigned int opposite  = dim * (dim + 1) / 2;
         for (unsigned int v = 0; v < dim; ++v)
@@ -46,6 +48,7 @@ namespace Debond
         normal  = -inward / inward.norm();
       }
 
+      dealii::types::boundary_id          id;
       std::array<unsigned int, dim>       indices;
       std::array<dealii::Point<dim>, dim> vertices;
       std::array<std::array<dealii::types::global_dof_index, dim>, dim> dofs;
@@ -89,8 +92,28 @@ namespace Debond
       std::array<dealii::types::global_dof_index, dim> dofs;
       dealii::Point<dim>                               position;
       VertexNormals<dim>                               normals;
-      unsigned int first_node = dealii::numbers::invalid_unsigned_int;
+
+      /// For each group of normals the node or the held vertex.
+      std::vector<unsigned int> nodes;
+      std::vector<unsigned int> held;
     };
+
+
+
+    /// Of the foundation below a point of the boundary.
+    template <int dim>
+    double
+    gap_value(const dealii::Function<dim> &gap, const dealii::Point<dim> &point)
+    {
+      try
+        {
+          return nonnegative_value(gap, point);
+        }
+      catch (const std::invalid_argument &error)
+        {
+          throw SupportError(SupportError::Subject::gap, "", error.what());
+        }
+    }
 
 
 
@@ -120,7 +143,8 @@ namespace Debond
   template <int dim>
   ElasticUnknowns<dim>::ElasticUnknowns(
     const dealii::Triangulation<dim> &triangulation,
-    const BoundaryConditions         &conditions)
+    const BoundaryConditions         &conditions,
+    const Supports<dim>              &supports)
     : mapping_p1(dealii::FE_SimplexP<dim>(1))
     , fe(dealii::FE_SimplexP<dim>(1), dim)
     , dofs(triangulation)
@@ -145,12 +169,24 @@ namespace Debond
       return corners.first.distance(corners.second);
     }();
 
-    std::vector<Support<dim>> supports;
-    clamp(conditions, supports);
-    make_contact_boundary(conditions, diameter, supports);
+    // G of most scenes is zero, and then there is none.
+    prescribed.reinit(supports.displacements.empty() ? 0 : dofs.n_dofs());
+    gap.reinit(supports.gap ? dofs.n_dofs() : 0);
 
-    const std::vector<std::string> motions =
-      free_rigid_motions(supports, diameter);
+    std::vector<Support<dim>> held;
+    clamp(conditions, held);
+    PrescribedVertices vertices;
+    for (const PrescribedDisplacement<dim> &condition : supports.displacements)
+      prescribe(condition, conditions, vertices);
+    make_contact_boundary(conditions, supports, vertices, diameter, held);
+    for (const auto &[index, vertex] : vertices)
+      constrain(vertex, index, held);
+    if (prescribed.all_zero())
+      prescribed.reinit(0);
+    if (gap.all_zero())
+      gap.reinit(0);
+
+    const std::vector<std::string> motions = free_rigid_motions(held, diameter);
     if (!motions.empty())
       {
         std::string list = motions.front();
@@ -169,12 +205,20 @@ namespace Debond
   template <int dim>
   void
   ElasticUnknowns<dim>::clamp(const BoundaryConditions  &conditions,
-                              std::vector<Support<dim>> &supports)
+                              std::vector<Support<dim>> &held)
   {
+    std::map<std::string, unsigned int> numbers;
     for (const BoundaryFace<dim> &face :
          boundary_faces(dofs, conditions.clamped, conditions.names))
-      for (unsigned int v = 0; v < dim; ++v)
-        clamp_vertex(face.dofs[v], face.vertices[v], supports);
+      {
+        const auto [entry, is_new] =
+          numbers.emplace(boundary_name(conditions.names, face.id),
+                          static_cast<unsigned int>(names_of_supports.size()));
+        if (is_new)
+          names_of_supports.push_back(entry->first);
+        for (unsigned int v = 0; v < dim; ++v)
+          clamp_vertex(face.dofs[v], face.vertices[v], held, entry->second);
+      }
   }
 
 
@@ -184,15 +228,257 @@ namespace Debond
   ElasticUnknowns<dim>::clamp_vertex(
     const std::array<dealii::types::global_dof_index, dim> &vertex_dofs,
     const dealii::Point<dim>                               &position,
-    std::vector<Support<dim>>                              &supports)
+    std::vector<Support<dim>>                              &held,
+    const unsigned int                                      support)
   {
     if (fixed.is_constrained(vertex_dofs[0]))
       return;
     for (unsigned int d = 0; d < dim; ++d)
       {
-        fixed.add_line(vertex_dofs[d]);
-        supports.push_back({position, dealii::Point<dim>::unit_vector(d)});
+        constrain(vertex_dofs[d], 0., support);
+        held.push_back({position, dealii::Point<dim>::unit_vector(d)});
       }
+  }
+
+
+
+  template <int dim>
+  void
+  ElasticUnknowns<dim>::constrain(const dealii::types::global_dof_index dof,
+                                  const double                          value,
+                                  const unsigned int                    support)
+  {
+    fixed.add_line(dof);
+    if (value != 0.)
+      prescribed(dof) = value;
+    if (support != dealii::numbers::invalid_unsigned_int)
+      supported_dofs.push_back({dof, support});
+  }
+
+
+
+  template <int dim>
+  void
+  ElasticUnknowns<dim>::prescribe(const PrescribedDisplacement<dim> &condition,
+                                  const BoundaryConditions          &conditions,
+                                  PrescribedVertices                &vertices)
+  {
+    const auto fail = [&](const std::string &message) {
+      throw SupportError(condition.is_roller ?
+                           SupportError::Subject::roller :
+                           SupportError::Subject::displacement,
+                         condition.name,
+                         message);
+    };
+    const unsigned int support =
+      static_cast<unsigned int>(names_of_supports.size());
+    names_of_supports.push_back(condition.name);
+
+    std::vector<bool>                    is_done(frame_of_vertex.size(), false);
+    const std::vector<BoundaryFace<dim>> faces =
+      boundary_faces(dofs, condition.boundaries, conditions.names);
+    for (const BoundaryFace<dim> &face : faces)
+      {
+        constexpr double rounding = 1e-8;
+        if (condition.is_roller &&
+            (face.normal - faces[0].normal).norm() > rounding)
+          fail("a roller is flat, but the normals of " + condition.name +
+               " differ: prescribe components by Displacement " +
+               condition.name);
+        // What of the normal is not prescribed.
+        double free_part = 0.;
+        for (unsigned int d = 0; d < dim; ++d)
+          if (!condition.is_roller && !condition.components[d])
+            free_part = std::max(free_part, std::abs(face.normal[d]));
+        if (conditions.contact.count(face.id) > 0 && free_part <= rounding)
+          fail(condition.name +
+               " is a contact boundary, whose normal displacement is left to "
+               "the foundation and cannot be prescribed");
+
+        for (unsigned int v = 0; v < dim; ++v)
+          {
+            if (is_done[face.indices[v]])
+              continue;
+            is_done[face.indices[v]] = true;
+            std::vector<Row> rows;
+            if (condition.is_roller)
+              {
+                // Sides along the axes have exact normals.
+                dealii::Tensor<1, dim> normal = faces[0].normal;
+                for (unsigned int d = 0; d < dim; ++d)
+                  if (std::abs(normal[d]) < 1e-14)
+                    normal[d] = 0.;
+                rows.push_back({normal / normal.norm(), 0., support});
+              }
+            else
+              for (unsigned int d = 0; d < dim; ++d)
+                if (condition.components[d])
+                  rows.push_back({dealii::Point<dim>::unit_vector(d),
+                                  condition.values == nullptr ?
+                                    0. :
+                                    [&] {
+                                      try
+                                        {
+                                          return field_value(*condition.values,
+                                                             face.vertices[v],
+                                                             d);
+                                        }
+                                      catch (const std::invalid_argument &error)
+                                        {
+                                          fail(error.what());
+                                          return 0.;
+                                        }
+                                    }(),
+                                  support});
+            if (fixed.is_constrained(face.dofs[v][0]))
+              {
+                for (const Row &row : rows)
+                  if (row.value != 0.)
+                    fail("the displacement at " + point_text(face.vertices[v]) +
+                         " is prescribed, but the vertex is clamped: leave its "
+                         "side out of Clamped boundaries");
+                continue;
+              }
+
+            PrescribedVertex &vertex = vertices[face.indices[v]];
+            vertex.dofs              = face.dofs[v];
+            vertex.position          = face.vertices[v];
+            for (Row row : rows)
+              {
+                const double value = row.value;
+                double       size  = std::abs(value);
+                for (const Row &other : vertex.rows)
+                  {
+                    const double part = row.direction * other.direction;
+                    row.direction -= part * other.direction;
+                    row.value -= part * other.value;
+                    size = std::max(size, std::abs(other.value));
+                  }
+                const double length = row.direction.norm();
+                if (length > rounding)
+                  {
+                    row.direction /= length;
+                    row.value /= length;
+                    vertex.rows.push_back(row);
+                  }
+                else if (std::abs(row.value) > rounding * size)
+                  fail("the displacement at " + point_text(vertex.position) +
+                       " is prescribed otherwise by " +
+                       names_of_supports[vertex.rows[0].support]);
+              }
+          }
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  ElasticUnknowns<dim>::constrain(const PrescribedVertex    &vertex,
+                                  const unsigned int         index,
+                                  std::vector<Support<dim>> &held)
+  {
+    if (vertex.rows.empty() || fixed.is_constrained(vertex.dofs[0]) ||
+        frame_of_vertex[index] != dealii::numbers::invalid_unsigned_int)
+      return;
+    for (const Row &row : vertex.rows)
+      held.push_back({vertex.position, row.direction});
+
+    // Along the axes the unknowns stay Cartesian, and so they do if nothing is
+    // unknown.
+    const auto axis = [](const dealii::Tensor<1, dim> &direction) {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (std::abs(direction[d]) == 1.)
+          return d;
+      return static_cast<unsigned int>(dim);
+    };
+    if (vertex.rows.size() == dim)
+      {
+        const dealii::Tensor<1, dim> displacement = displacement_of(vertex);
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            unsigned int bearing = 0;
+            for (unsigned int k = 1; k < dim; ++k)
+              if (std::abs(vertex.rows[k].direction[d]) >
+                  std::abs(vertex.rows[bearing].direction[d]))
+                bearing = k;
+            constrain(vertex.dofs[d],
+                      displacement[d],
+                      vertex.rows[bearing].support);
+          }
+      }
+    else if (std::all_of(vertex.rows.begin(),
+                         vertex.rows.end(),
+                         [&](const Row &row) {
+                           return axis(row.direction) < dim;
+                         }))
+      for (const Row &row : vertex.rows)
+        {
+          const unsigned int d = axis(row.direction);
+          constrain(vertex.dofs[d], row.direction[d] * row.value, row.support);
+        }
+    else
+      {
+        std::vector<dealii::Tensor<1, dim>> directions;
+        for (const Row &row : vertex.rows)
+          directions.push_back(row.direction);
+        add_frame(index, vertex.dofs, directions);
+        for (unsigned int k = 0; k < vertex.rows.size(); ++k)
+          constrain(vertex.dofs[k],
+                    vertex.rows[k].value,
+                    vertex.rows[k].support);
+      }
+  }
+
+
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  ElasticUnknowns<dim>::displacement_of(const PrescribedVertex &vertex)
+  {
+    dealii::Tensor<1, dim> displacement;
+    for (const Row &row : vertex.rows)
+      displacement += row.value * row.direction;
+    return displacement;
+  }
+
+
+
+  template <int dim>
+  void
+  ElasticUnknowns<dim>::fix_rest(PrescribedVertex &vertex)
+  {
+    while (vertex.rows.size() < dim)
+      {
+        dealii::Tensor<1, dim> best;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            dealii::Tensor<1, dim> rest = dealii::Point<dim>::unit_vector(d);
+            for (const Row &row : vertex.rows)
+              rest -= row.direction[d] * row.direction;
+            if (rest.norm() > best.norm())
+              best = rest;
+          }
+        vertex.rows.push_back(
+          {best / best.norm(), 0., dealii::numbers::invalid_unsigned_int});
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  ElasticUnknowns<dim>::add_frame(
+    const unsigned int                                      index,
+    const std::array<dealii::types::global_dof_index, dim> &vertex_dofs,
+    const std::vector<dealii::Tensor<1, dim>>              &rows)
+  {
+    Frame frame;
+    frame.dofs             = vertex_dofs;
+    frame.to_frame         = contact_frame(rows);
+    frame.to_cartesian     = dealii::invert(frame.to_frame);
+    frame_of_vertex[index] = static_cast<unsigned int>(vertex_frames.size());
+    vertex_frames.push_back(frame);
   }
 
 
@@ -201,8 +487,10 @@ namespace Debond
   void
   ElasticUnknowns<dim>::make_contact_boundary(
     const BoundaryConditions  &conditions,
+    const Supports<dim>       &supports,
+    const PrescribedVertices  &prescribed_vertices,
     const double               diameter,
-    std::vector<Support<dim>> &supports)
+    std::vector<Support<dim>> &held)
   {
     constexpr unsigned int none = dealii::numbers::invalid_unsigned_int;
 
@@ -224,40 +512,98 @@ namespace Debond
               vertex.normals.add_face(faces[f].normal, faces[f].measure);
           }
 
+    const auto gap_at = [&supports](const dealii::Point<dim> &position) {
+      return supports.gap ? gap_value(*supports.gap, position) : 0.;
+    };
+
+    ContactBoundary<dim>                             boundary;
     std::vector<typename ContactBoundary<dim>::Node> nodes;
     std::vector<dealii::types::global_dof_index>     normal_dofs;
     for (auto &[index, vertex] : vertices)
       {
-        const unsigned int n_normals = vertex.normals.n_groups();
-        if (conditions.tangential_displacement_fixed && n_normals > 1)
-          {
-            clamp_vertex(vertex.dofs, vertex.position, supports);
-            continue;
-          }
-
         const std::vector<dealii::Tensor<1, dim>> normals =
           vertex.normals.normals();
-        Frame frame;
-        frame.dofs             = vertex.dofs;
-        frame.to_frame         = contact_frame(normals);
-        frame.to_cartesian     = dealii::invert(frame.to_frame);
-        frame_of_vertex[index] = static_cast<unsigned int>(frames.size());
-        frames.push_back(frame);
+        PrescribedVertex at_supports = {vertex.dofs, vertex.position, {}};
+        if (const auto entry = prescribed_vertices.find(index);
+            entry != prescribed_vertices.end())
+          at_supports = entry->second;
+        const std::vector<Row> &rows = at_supports.rows;
 
-        if (conditions.tangential_displacement_fixed)
-          for (unsigned int d = 1; d < dim; ++d)
-            {
-              fixed.add_line(vertex.dofs[d]);
-              supports.push_back({vertex.position, frame.to_frame[d]});
-            }
-
-        vertex.first_node = static_cast<unsigned int>(nodes.size());
-        for (unsigned int k = 0; k < n_normals; ++k)
+        // A normal displacement is unknown unless supports prescribe it.
+        std::vector<unsigned int> unknown;
+        for (unsigned int k = 0; k < normals.size(); ++k)
           {
-            normal_dofs.push_back(vertex.dofs[k]);
-            nodes.push_back(
-              {vertex.position, normals[k], vertex.normals.measure(k)});
+            dealii::Tensor<1, dim> rest = normals[k];
+            for (const Row &row : rows)
+              rest -= (normals[k] * row.direction) * row.direction;
+            if (rest.norm() > 1e-6)
+              unknown.push_back(k);
           }
+        if (conditions.tangential_displacement_fixed &&
+            (unknown.size() > 1 || unknown.empty()))
+          {
+            // Where normals differ, all displacements are tangential to one.
+            unknown.clear();
+            fix_rest(at_supports);
+            constrain(at_supports, index, held);
+          }
+
+        vertex.nodes.assign(normals.size(), none);
+        vertex.held.assign(normals.size(), 0);
+        std::vector<dealii::Tensor<1, dim>> directions;
+        for (const unsigned int k : unknown)
+          {
+            vertex.nodes[k] = static_cast<unsigned int>(nodes.size());
+            normal_dofs.push_back(vertex.dofs[directions.size()]);
+            const double gap_here = gap_at(vertex.position);
+            if (gap_here > 0.)
+              gap(normal_dofs.back()) = gap_here;
+            directions.push_back(normals[k]);
+            nodes.push_back({vertex.position,
+                             normals[k],
+                             vertex.normals.measure(k),
+                             gap_here});
+          }
+        for (unsigned int k = 0; k < normals.size(); ++k)
+          if (vertex.nodes[k] == none)
+            {
+              vertex.held[k] =
+                static_cast<unsigned int>(boundary.held_vertices.size());
+              boundary.held_vertices.push_back(
+                {displacement_of(at_supports) * normals[k],
+                 gap_at(vertex.position),
+                 rows.empty() ? none : rows[0].support,
+                 normals[k],
+                 vertex.position});
+            }
+        if (unknown.empty())
+          continue;
+
+        for (const Row &row : rows)
+          directions.push_back(row.direction);
+        if (directions.size() > dim)
+          throw SupportError(SupportError::Subject::displacement,
+                             names_of_supports[rows[0].support],
+                             "too much is prescribed at " +
+                               point_text(vertex.position) +
+                               ", where contact sides meet");
+        add_frame(index, vertex.dofs, directions);
+        for (unsigned int k = 0; k < rows.size(); ++k)
+          {
+            constrain(vertex.dofs[unknown.size() + k],
+                      rows[k].value,
+                      rows[k].support);
+            held.push_back({vertex.position, rows[k].direction});
+          }
+        if (conditions.tangential_displacement_fixed)
+          for (unsigned int d = static_cast<unsigned int>(directions.size());
+               d < dim;
+               ++d)
+            {
+              constrain(vertex.dofs[d], 0., none);
+              held.push_back(
+                {vertex.position, vertex_frames.back().to_frame[d]});
+            }
       }
 
     // Rounding of the coordinates, as in a turned body, must not change the
@@ -282,7 +628,6 @@ namespace Debond
                        return false;
                      });
 
-    ContactBoundary<dim>                         boundary;
     std::vector<dealii::types::global_dof_index> boundary_normals;
     std::vector<unsigned int>                    place(nodes.size());
     for (unsigned int k = 0; k < order.size(); ++k)
@@ -292,6 +637,14 @@ namespace Debond
         boundary_normals.push_back(normal_dofs[order[k]]);
       }
 
+    std::map<dealii::types::global_dof_index, unsigned int> supports_of_dofs;
+    if (supports.gap)
+      for (const Supported &supported : supported_dofs)
+        supports_of_dofs.emplace(supported.dof, supported.support);
+    const auto support_of = [&](const dealii::types::global_dof_index dof) {
+      const auto entry = supports_of_dofs.find(dof);
+      return entry == supports_of_dofs.end() ? none : entry->second;
+    };
     for (unsigned int f = 0; f < faces.size(); ++f)
       {
         typename ContactBoundary<dim>::Face face;
@@ -300,14 +653,35 @@ namespace Debond
         face.measure  = faces[f].measure;
         for (unsigned int v = 0; v < dim; ++v)
           {
-            const auto vertex = vertices.find(faces[f].indices[v]);
-            face.nodes[v] =
-              (vertex == vertices.end() || vertex->second.first_node == none) ?
-                none :
-                place[vertex->second.first_node + groups[f][v]];
+            const auto entry = vertices.find(faces[f].indices[v]);
+            if (entry == vertices.end())
+              {
+                // Clamped, as far from the foundation as at rest.
+                face.nodes[v] = none;
+                face.held[v] =
+                  static_cast<unsigned int>(boundary.held_vertices.size());
+                boundary.held_vertices.push_back(
+                  {0.,
+                   gap_at(face.vertices[v]),
+                   support_of(faces[f].dofs[v][0]),
+                   faces[f].normal,
+                   face.vertices[v]});
+                continue;
+              }
+            const ContactVertex<dim> &vertex = entry->second;
+            const unsigned int        node   = vertex.nodes[groups[f][v]];
+            face.nodes[v] = node == none ? none : place[node];
+            face.held[v]  = vertex.held[groups[f][v]];
           }
         boundary.faces.push_back(face);
       }
+    if (std::all_of(boundary.held_vertices.begin(),
+                    boundary.held_vertices.end(),
+                    [](const auto &vertex) {
+                      return vertex.normal_displacement == 0. &&
+                             vertex.gap == 0.;
+                    }))
+      boundary.held_vertices.clear();
     contact_space = ContactSpace<dim>(boundary, boundary_normals);
   }
 
@@ -342,9 +716,9 @@ namespace Debond
 
   template <int dim>
   const std::vector<typename ElasticUnknowns<dim>::Frame> &
-  ElasticUnknowns<dim>::contact_frames() const
+  ElasticUnknowns<dim>::frames() const
   {
-    return frames;
+    return vertex_frames;
   }
 
 
@@ -356,7 +730,57 @@ namespace Debond
     const unsigned int frame = frame_of_vertex[vertex_index];
     return frame == dealii::numbers::invalid_unsigned_int ?
              nullptr :
-             &frames[frame].to_cartesian;
+             &vertex_frames[frame].to_cartesian;
+  }
+
+
+
+  template <int dim>
+  const std::vector<std::string> &
+  ElasticUnknowns<dim>::support_names() const
+  {
+    return names_of_supports;
+  }
+
+
+
+  template <int dim>
+  const std::vector<typename ElasticUnknowns<dim>::Supported> &
+  ElasticUnknowns<dim>::supported() const
+  {
+    return supported_dofs;
+  }
+
+
+
+  template <int dim>
+  bool
+  ElasticUnknowns<dim>::has_lifting() const
+  {
+    return prescribed.size() > 0 || gap.size() > 0;
+  }
+
+
+
+  template <int dim>
+  bool
+  ElasticUnknowns<dim>::has_gap() const
+  {
+    return gap.size() > 0;
+  }
+
+
+
+  template <int dim>
+  dealii::Vector<double>
+  ElasticUnknowns<dim>::lifting(const double load_factor) const
+  {
+    dealii::Vector<double> G(n_dofs());
+    if (prescribed.size() > 0)
+      G.equ(load_factor, prescribed);
+    if (gap.size() > 0)
+      G += gap;
+    return G;
   }
 
 
@@ -400,11 +824,14 @@ namespace Debond
 
   template <int dim>
   dealii::Vector<double>
-  ElasticUnknowns<dim>::cartesian_displacement(
-    const dealii::Vector<double> &u) const
+  ElasticUnknowns<dim>::cartesian_displacement(const dealii::Vector<double> &w,
+                                               const double load_factor) const
   {
+    dealii::Vector<double> u = w;
+    if (has_lifting())
+      u += lifting(load_factor);
     dealii::Vector<double> result = u;
-    for (const Frame &frame : frames)
+    for (const Frame &frame : vertex_frames)
       for (unsigned int d = 0; d < dim; ++d)
         {
           result[frame.dofs[d]] = 0.;
@@ -419,18 +846,30 @@ namespace Debond
 
   template <int dim>
   dealii::Vector<double>
-  ElasticUnknowns<dim>::from_cartesian(
-    const dealii::Vector<double> &cartesian_displacement) const
+  ElasticUnknowns<dim>::to_frames(const dealii::Vector<double> &cartesian) const
   {
-    dealii::Vector<double> result = cartesian_displacement;
-    for (const Frame &frame : frames)
+    dealii::Vector<double> result = cartesian;
+    for (const Frame &frame : vertex_frames)
       for (unsigned int k = 0; k < dim; ++k)
         {
           result[frame.dofs[k]] = 0.;
           for (unsigned int d = 0; d < dim; ++d)
             result[frame.dofs[k]] +=
-              frame.to_frame[k][d] * cartesian_displacement[frame.dofs[d]];
+              frame.to_frame[k][d] * cartesian[frame.dofs[d]];
         }
+    return result;
+  }
+
+
+
+  template <int dim>
+  dealii::Vector<double>
+  ElasticUnknowns<dim>::from_cartesian(
+    const dealii::Vector<double> &cartesian_displacement) const
+  {
+    dealii::Vector<double> result = to_frames(cartesian_displacement);
+    if (has_lifting())
+      result -= lifting();
     fixed.set_zero(result);
     return result;
   }
@@ -442,7 +881,7 @@ namespace Debond
   ElasticUnknowns<dim>::in_frames(const dealii::Vector<double> &forces) const
   {
     dealii::Vector<double> result = forces;
-    for (const Frame &frame : frames)
+    for (const Frame &frame : vertex_frames)
       for (unsigned int k = 0; k < dim; ++k)
         {
           result[frame.dofs[k]] = 0.;
@@ -461,7 +900,7 @@ namespace Debond
     const dealii::Vector<double> &forces) const
   {
     dealii::Vector<double> result = forces;
-    for (const Frame &frame : frames)
+    for (const Frame &frame : vertex_frames)
       for (unsigned int d = 0; d < dim; ++d)
         {
           result[frame.dofs[d]] = 0.;
@@ -498,7 +937,10 @@ namespace Debond
               }
         }
     for (dealii::Vector<double> &mode : modes)
-      mode = from_cartesian(mode);
+      {
+        mode = to_frames(mode);
+        fixed.set_zero(mode);
+      }
     return modes;
   }
 

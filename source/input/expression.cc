@@ -39,14 +39,15 @@ namespace Debond
   template <int dim>
   std::shared_ptr<const dealii::Function<dim>>
   make_function(const std::string                   &expressions,
-                const std::map<std::string, double> &constants)
+                const std::map<std::string, double> &constants,
+                const unsigned int                   n_components)
   {
-    const std::size_t n_components =
+    const std::size_t n_expressions =
       dealii::Utilities::split_string_list(expressions, ';').size();
-    if (n_components != dim)
-      throw std::invalid_argument("expected " + std::to_string(dim) +
+    if (n_expressions != n_components)
+      throw std::invalid_argument("expected " + std::to_string(n_components) +
                                   " components separated by ';', but found " +
-                                  std::to_string(n_components));
+                                  std::to_string(n_expressions));
 
     std::map<std::string, double> all_constants = constants;
     all_constants.emplace("pi", dealii::numbers::PI);
@@ -55,13 +56,13 @@ namespace Debond
       {
         const QuietErrors quiet;
         const auto        function =
-          std::make_shared<dealii::FunctionParser<dim>>(dim);
+          std::make_shared<dealii::FunctionParser<dim>>(n_components);
         function->initialize(
           dealii::FunctionParser<dim>::default_variable_names(),
           expressions,
           all_constants);
         // FunctionParser parses when it is evaluated first.
-        for (unsigned int component = 0; component < dim; ++component)
+        for (unsigned int component = 0; component < n_components; ++component)
           function->value(dealii::Point<dim>(), component);
         return function;
       }
@@ -76,7 +77,11 @@ namespace Debond
 
 
   template std::shared_ptr<const dealii::Function<2>>
-  make_function<2>(const std::string &, const std::map<std::string, double> &);
+  make_function<2>(const std::string &,
+                   const std::map<std::string, double> &,
+                   const unsigned int);
   template std::shared_ptr<const dealii::Function<3>>
-  make_function<3>(const std::string &, const std::map<std::string, double> &);
+  make_function<3>(const std::string &,
+                   const std::map<std::string, double> &,
+                   const unsigned int);
 } // namespace Debond

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
+#include <debond/base/text.h>
 #include <debond/input/expression.h>
 #include <debond/input/load_parameters.h>
 
@@ -116,9 +117,26 @@ namespace Debond
 
 
   void
+  check_names(const std::string           &path,
+              const std::set<std::string> &names,
+              const std::set<std::string> &boundaries,
+              ParameterTable              &table)
+  {
+    const std::vector<std::string> known(boundaries.begin(), boundaries.end());
+    for (const std::string &name : names)
+      if (boundaries.count(name) == 0)
+        table.reject(path,
+                     "the body has no boundary " + name + ", but " +
+                       join(known, ", "));
+  }
+
+
+
+  void
   check_expression(const std::string                   &path,
                    const std::string                   &expression,
                    const unsigned int                   dimension,
+                   const unsigned int                   n_components,
                    const std::map<std::string, double> &constants,
                    ParameterTable                      &table)
   {
@@ -127,9 +145,9 @@ namespace Debond
     try
       {
         if (dimension == 2)
-          make_function<2>(expression, constants);
+          make_function<2>(expression, constants, n_components);
         else
-          make_function<3>(expression, constants);
+          make_function<3>(expression, constants, n_components);
       }
     catch (const std::invalid_argument &error)
       {
@@ -152,7 +170,8 @@ namespace Debond
 
     const auto check = [&](const std::string &path,
                            const std::string &expression) {
-      check_expression(path, expression, dimension, loads.constants, table);
+      check_expression(
+        path, expression, dimension, dimension, loads.constants, table);
     };
     check("Loads/Body force", loads.body_force);
     for (const auto &[boundary, traction] : loads.tractions)

@@ -91,6 +91,7 @@ namespace Debond
     bind_loads(p.loads, *this);
     bind_load_path(p.load_path, *this);
     laws.bind(*this);
+    bind_supports(p.supports, *this);
     bind_contact(p, *this);
     bind_solver(p.solver, p.checkpoints, *this);
     bind_verification(p.verification, *this);
@@ -115,24 +116,6 @@ namespace Debond
 
   namespace
   {
-    /// Checks that the body has boundaries of these names.
-    void
-    check_names(const std::string           &path,
-                const std::set<std::string> &names,
-                const std::set<std::string> &boundaries,
-                ParameterTable              &table)
-    {
-      const std::vector<std::string> known(boundaries.begin(),
-                                           boundaries.end());
-      for (const std::string &name : names)
-        if (boundaries.count(name) == 0)
-          table.reject(path,
-                       "the body has no boundary " + name + ", but " +
-                         join(known, ", "));
-    }
-
-
-
     void
     check_boundaries(const Parameters &p, ParameterTable &table)
     {
@@ -158,12 +141,36 @@ namespace Debond
 
 
 
+    /// Bonds that vary.
+    void
+    check_bonds(const Parameters &p, ParameterTable &table)
+    {
+      for (const auto &[name, expression] :
+           {std::make_pair("stiffness", p.law.stiffness),
+            std::make_pair("threshold", p.law.threshold)})
+        check_expression(std::string("Contact law/Bond ") + name,
+                         expression,
+                         p.dimension,
+                         1,
+                         p.loads.constants,
+                         table);
+      if ((!p.law.stiffness.empty() || !p.law.threshold.empty()) &&
+          p.quadrature.rule == ContactQuadratureParameters::Rule::exact)
+        table.reject("Contact law/Quadrature",
+                     "is for bonds that are the same everywhere",
+                     {"Contact law/Bond stiffness",
+                      "Contact law/Bond threshold"});
+    }
+
+
+
     void
     check_exact_displacement(const Parameters &p, ParameterTable &table)
     {
       const std::string path = "Verification/Exact displacement";
       check_expression(path,
                        p.verification.exact_displacement,
+                       p.dimension,
                        p.dimension,
                        p.loads.constants,
                        table);
@@ -190,6 +197,9 @@ namespace Debond
     // What depends on more than one entry.
     check_solver(p.solver, *this);
     check_boundaries(p, *this);
+    check_supports(
+      p.supports, p.body->boundaries(), p.dimension, p.loads.constants, *this);
+    check_bonds(p, *this);
     check_material(p.dimension, p.material, *this);
     check_exact_displacement(p, *this);
     if (!errors().empty())

@@ -52,6 +52,8 @@ namespace Debond
       cholmod_common &common;
     };
 
+
+
     using Dense  = Owned<cholmod_dense, cholmod_free_dense>;
     using Sparse = Owned<cholmod_sparse, cholmod_free_sparse>;
   } // namespace
@@ -192,7 +194,8 @@ namespace Debond
         if (static_cast<const int *>(L->Perm)[n - n_kept + k] !=
             static_cast<int>(n - n_kept + k))
           throw std::runtime_error(
-            "Condensation: the ordering did not keep the contact normals last.");
+            "Condensation: the ordering did not keep the "
+            "contact normals last.");
 
       cholmod_factorize(matrix.get(), L, &common);
       if (common.status == CHOLMOD_NOT_POSDEF)
@@ -216,8 +219,10 @@ namespace Debond
     const dealii::SparseMatrix<double>      &A,
     const dealii::Vector<double>            &f,
     const std::vector<unsigned int>         &kept,
-    const std::function<bool(unsigned int)> &is_excluded)
+    const std::function<bool(unsigned int)> &is_excluded,
+    const ConstantPart                      &constant)
     : n(f.size())
+    , constant_energy(constant.energy)
   {
     std::vector<char> is_kept(n, 0);
     for (const unsigned int i : kept)
@@ -229,33 +234,31 @@ namespace Debond
 
     factor = std::make_unique<Factor>(A, unknowns, kept.size());
 
-    y = forward(f);
-
-    const unsigned int n_eliminated =
-      static_cast<unsigned int>(unknowns.size() - kept.size());
-    given_c_0 = 0.;
-    for (unsigned int i = 0; i < n_eliminated; ++i)
-      given_c_0 -= 0.5 * y[i] * y[i];
+    given_y = forward(f);
+    if (constant.load.size() > 0)
+      constant_y = forward(constant.load);
 
     L_ss = factor->trailing_block();
     S.reinit(kept.size(), kept.size());
     if (!kept.empty())
       L_ss.mTmult(S, L_ss);
-    given_g = condensed_load(y);
-    g       = given_g;
+    scale_load(1.);
   }
 
 
 
   Condensation::~Condensation() = default;
 
-
-
   void
   Condensation::scale_load(const double factor)
   {
-    load_factor = factor;
-    g.equ(factor, given_g);
+    constant_part = constant_energy ? constant_energy(factor) : 0.;
+    y             = given_y;
+    for (double &entry : y)
+      entry *= factor;
+    for (unsigned int i = 0; i < constant_y.size(); ++i)
+      y[i] += (1. - factor) * constant_y[i];
+    g = condensed_load(y);
   }
 
 
@@ -279,7 +282,10 @@ namespace Debond
   double
   Condensation::energy_at_zero() const
   {
-    return load_factor * load_factor * given_c_0;
+    double c_0 = constant_part;
+    for (std::size_t i = 0; i < y.size() - S.m(); ++i)
+      c_0 -= 0.5 * y[i] * y[i];
+    return c_0;
   }
 
 
@@ -290,7 +296,18 @@ namespace Debond
     double sum = 0.;
     for (const double entry : y)
       sum += 0.5 * entry * entry;
-    return load_factor * load_factor * sum;
+    return sum;
+  }
+
+
+
+  double
+  Condensation::energy_of_kept() const
+  {
+    double sum = 0.;
+    for (std::size_t i = y.size() - S.m(); i < y.size(); ++i)
+      sum += 0.5 * y[i] * y[i];
+    return sum;
   }
 
 
@@ -350,15 +367,14 @@ namespace Debond
 
 
   dealii::Vector<double>
-  Condensation::backward(const double                  scale,
-                         const std::vector<double>    &reduced,
+  Condensation::backward(const std::vector<double>    &reduced,
                          const dealii::Vector<double> &s) const
   {
     const unsigned int n_eliminated =
       static_cast<unsigned int>(unknowns.size()) - s.size();
     std::vector<double> x(unknowns.size());
     for (unsigned int i = 0; i < n_eliminated; ++i)
-      x[i] = scale * reduced[i];
+      x[i] = reduced[i];
     for (unsigned int j = 0; j < s.size(); ++j)
       {
         double sum = 0.;
@@ -381,7 +397,7 @@ namespace Debond
   dealii::Vector<double>
   Condensation::expand(const dealii::Vector<double> &s) const
   {
-    return backward(load_factor, y, s);
+    return backward(y, s);
   }
 
 
@@ -393,6 +409,6 @@ namespace Debond
       &kept_unknowns) const
   {
     const std::vector<double> reduced = forward(other_f);
-    return backward(1., reduced, kept_unknowns(condensed_load(reduced)));
+    return backward(reduced, kept_unknowns(condensed_load(reduced)));
   }
 } // namespace Debond

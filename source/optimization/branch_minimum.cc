@@ -185,15 +185,20 @@ namespace Debond
 
 
   BranchMinimum
-  BranchMinimum::with_first_curvature(const double curvature) const
+  BranchMinimum::with_first_curvature(const double curvature,
+                                      const double stretch) const
   {
+    if (curvature == 0.)
+      return BranchMinimum({{0., 0., 0.L, ""}});
     BranchMinimum result;
     result.pieces      = pieces;
     const double first = pieces[0].curvature;
     for (Piece &piece : result.pieces)
       {
         piece.curvature = piece.curvature / first * curvature;
-        piece.slope     = piece.slope / first * curvature;
+        piece.slope     = piece.slope / first * curvature * stretch;
+        piece.lower *= stretch;
+        piece.upper *= stretch;
       }
     result.connect();
     return result;

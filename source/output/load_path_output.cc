@@ -69,13 +69,14 @@ namespace Debond
         if (output.path_body_vtu)
           {
             const std::string name = name_of_step("body", step.step);
-            write_body_vtu(problem, u, path(name));
+            write_body_vtu(problem, u, path(name), step.factor);
             bodies.emplace_back(step.step, name);
           }
         if (output.path_contact_vtu)
           {
             const std::string name = name_of_step("contact", step.step);
-            write_contact_vtu(problem, u, verification, path(name));
+            write_contact_vtu(
+              problem, u, verification, path(name), step.factor);
             contacts.emplace_back(step.step, name);
           }
       }

@@ -52,7 +52,10 @@ namespace Debond
       {{"body.vtu"},
        [&]() { return output.body_vtu; },
        [&](const std::string &path) {
-         write_body_vtu(scene.problem(), result.solve.u, path);
+         write_body_vtu(scene.problem(),
+                        result.solve.u,
+                        path,
+                        result.solve.load_factor);
        }},
       {{"contact.vtu"},
        [&]() { return output.contact_vtu; },
@@ -60,7 +63,8 @@ namespace Debond
          write_contact_vtu(scene.problem(),
                            result.solve.u,
                            result.verification,
-                           path);
+                           path,
+                           result.solve.load_factor);
        }},
       {{"contact_profile.csv"},
        [&]() { return output.contact_profile; },

@@ -356,10 +356,14 @@ namespace Debond
                    true,
                    record);
       report_force("clamped_reaction",
-                   "force of clamps",
+                   "force of supports",
                    verification.clamped_reaction,
                    details,
                    record);
+      record.add("/reactions", Record::Json::object());
+      for (const auto &[name, force] : verification.reactions)
+        report_force(
+          "reactions/" + name, "  of " + name, force, details, record);
       report_force("contact_reaction",
                    "force of foundation",
                    verification.contact_reaction,
@@ -410,6 +414,12 @@ namespace Debond
                                                     ", plane stress" :
                                                     ", plane strain"));
       record.line("clamped", list(parameters.clamped_boundaries));
+      if (!parameters.supports.rollers.empty())
+        record.line("roller", list(parameters.supports.rollers));
+      for (const auto &[side, displacement] : parameters.supports.displacements)
+        record.line("displacement " + side, displacement);
+      if (!parameters.supports.gap.empty())
+        record.line("initial gap", parameters.supports.gap);
       if (!parameters.loads.body_force.empty())
         record.line("body force", parameters.loads.body_force);
       for (const auto &[side, traction] : parameters.loads.tractions)

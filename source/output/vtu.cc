@@ -129,11 +129,12 @@ namespace Debond
     template <int dim>
     std::vector<dealii::Tensor<1, dim>>
     contact_displacements(const ElasticProblem<dim>    &problem,
-                          const dealii::Vector<double> &u)
+                          const dealii::Vector<double> &u,
+                          const double                  load_factor)
     {
       const auto &normals = problem.unknowns().contact().normals();
       const dealii::Vector<double> cartesian =
-        problem.unknowns().cartesian_displacement(u);
+        problem.unknowns().cartesian_displacement(u, load_factor);
 
       std::vector<unsigned int> node_of_dof(
         problem.unknowns().n_dofs(), dealii::numbers::invalid_unsigned_int);
@@ -163,13 +164,14 @@ namespace Debond
   void
   write_body_vtu(const ElasticProblem<dim>    &problem,
                  const dealii::Vector<double> &u,
-                 const std::string            &file_name)
+                 const std::string            &file_name,
+                 const double                  load_factor)
   {
     using dealii::DataComponentInterpretation::component_is_part_of_vector;
 
     const std::string            axes = "xyz";
     const dealii::Vector<double> displacement =
-      problem.unknowns().cartesian_displacement(u);
+      problem.unknowns().cartesian_displacement(u, load_factor);
 
     dealii::DataOut<dim> data_out;
     data_out.set_flags(vtk_flags());
@@ -240,13 +242,14 @@ namespace Debond
   write_contact_vtu(const ElasticProblem<dim>    &problem,
                     const dealii::Vector<double> &u,
                     const Verification<dim>      &verification,
-                    const std::string            &file_name)
+                    const std::string            &file_name,
+                    const double                  load_factor)
   {
     constexpr double            nan = std::numeric_limits<double>::quiet_NaN();
     const ContactBoundary<dim> &boundary =
       problem.unknowns().contact().boundary();
     const std::vector<dealii::Tensor<1, dim>> displacements =
-      contact_displacements(problem, u);
+      contact_displacements(problem, u, load_factor);
 
     const auto values_of = [&](const unsigned int node) {
       ContactValues<dim> values = {};
@@ -265,7 +268,7 @@ namespace Debond
           values[dim + d] = verification.tangential_forces[node][d] / measure;
         }
       values[2 * dim]     = state.u_nu;
-      values[2 * dim + 1] = -state.u_nu;
+      values[2 * dim + 1] = -state.s;
       values[2 * dim + 2] = state.normal_force / measure;
       values[2 * dim + 3] = state.violation;
       return values;
@@ -351,19 +354,23 @@ namespace Debond
   template void
   write_body_vtu(const ElasticProblem<2> &,
                  const dealii::Vector<double> &,
-                 const std::string &);
+                 const std::string &,
+                 const double);
   template void
   write_body_vtu(const ElasticProblem<3> &,
                  const dealii::Vector<double> &,
-                 const std::string &);
+                 const std::string &,
+                 const double);
   template void
   write_contact_vtu(const ElasticProblem<2> &,
                     const dealii::Vector<double> &,
                     const Verification<2> &,
-                    const std::string &);
+                    const std::string &,
+                    const double);
   template void
   write_contact_vtu(const ElasticProblem<3> &,
                     const dealii::Vector<double> &,
                     const Verification<3> &,
-                    const std::string &);
+                    const std::string &,
+                    const double);
 } // namespace Debond

@@ -171,14 +171,17 @@ namespace Debond
       result.times.emplace_back("verification", timer.wall_time());
       judge(verification_message(parameters, result), result);
 
-      result.largest = largest_values(scene.problem(), result.solve.u);
+      result.largest = largest_values(scene.problem(),
+                                      result.solve.u,
+                                      result.solve.load_factor);
       result.notes   = result.solve.notes;
       append(result.solve.minimum.notes, result.notes);
       append(plausibility_notes(
                scene.body().shape(),
                dim,
-               scene.problem().fields().applied_nodal_forces().linfty_norm() >
-                 0.,
+               scene.problem().unknowns().has_lifting() ||
+                 scene.problem().fields().applied_nodal_forces().linfty_norm() >
+                   0.,
                result.largest),
              result.notes);
       result.displacement_error =

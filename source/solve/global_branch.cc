@@ -14,10 +14,12 @@ namespace Debond
       BranchSearch(const SolverParameters      &solver_parameters,
                    const Scene<dim>            &scene,
                    const std::function<bool()> &may_go_on,
+                   AdhesionIntegral<dim>       &adhesion,
                    Condensation                &condensed)
         : parameters(solver_parameters)
         , scene(scene)
         , may_go_on(may_go_on)
+        , adhesion(adhesion)
         , condensed(condensed)
       {
         if (parameters.search != BondSearchChoice::quick)
@@ -30,7 +32,7 @@ namespace Debond
       {
         point.which = improve(parameters, factor, point);
         // Without loads no energy is negative.
-        if (factor == 0.)
+        if (factor == 0. && !scene.problem().unknowns().has_gap())
           point.which.kind = MinimumKind::global;
       }
 
@@ -54,11 +56,11 @@ namespace Debond
                  const double       factor,
                  BranchPoint       &point)
       {
-        condensed.scale_load(factor);
+        scale_load(factor);
         dealii::Vector<double>       s = neighbour.s;
         CondensedProblem             problem(condensed.schur_complement(),
                                  condensed.load(),
-                                 scene.adhesion(),
+                                 adhesion,
                                  s);
         const MajoriseMinimiseResult minimum =
           MajoriseMinimise(parameters.majorise_minimise).minimize(problem);
@@ -72,28 +74,35 @@ namespace Debond
       }
 
     private:
+      void
+      scale_load(const double factor)
+      {
+        adhesion.scale_load(factor);
+        condensed.scale_load(factor);
+      }
+
       WhichMinimum
       improve(const SolverParameters &what,
               const double            factor,
               BranchPoint            &point)
       {
-        condensed.scale_load(factor);
+        scale_load(factor);
         const WhichMinimum which =
           find_better_minimum(what,
                               scene.problem().unknowns().contact().boundary(),
                               scene.law(),
-                              scene.adhesion(),
+                              adhesion,
                               condensed,
                               may_go_on,
                               point.s);
-        point.functional =
-          condensed_functional(condensed, scene.adhesion(), point.s);
+        point.functional = condensed_functional(condensed, adhesion, point.s);
         return which;
       }
 
       SolverParameters             parameters;
       const Scene<dim>            &scene;
       const std::function<bool()> &may_go_on;
+      AdhesionIntegral<dim>       &adhesion;
       Condensation                &condensed;
     };
   } // namespace
@@ -124,9 +133,10 @@ namespace Debond
                 const Branch                &start,
                 const std::function<bool()> &may_go_on,
                 const BranchMonitor         &monitor,
+                AdhesionIntegral<dim>       &adhesion,
                 Condensation                &condensed)
   {
-    BranchSearch<dim> search(parameters, scene, may_go_on, condensed);
+    BranchSearch<dim> search(parameters, scene, may_go_on, adhesion, condensed);
     const bool        proves = wanted == GlobalBranch::prove;
 
     Branch             branch;
@@ -171,6 +181,7 @@ namespace Debond
                 const Branch &,
                 const std::function<bool()> &,
                 const BranchMonitor &,
+                AdhesionIntegral<2> &,
                 Condensation &);
   template Branch
   global_branch(const GlobalBranch,
@@ -179,5 +190,6 @@ namespace Debond
                 const Branch &,
                 const std::function<bool()> &,
                 const BranchMonitor &,
+                AdhesionIntegral<3> &,
                 Condensation &);
 } // namespace Debond

@@ -32,8 +32,9 @@ namespace Debond
         , scene(scene)
         , out(out)
         , steps(steps)
-        , condensed(condense_to_contact(scene.problem()))
-        , s(scene.problem().unknowns().contact().size())
+        , adhesion(scene.adhesion())
+        , condensed(condense_to_contact(scene.problem(), adhesion))
+        , s(scene.problem().unknowns().contact().at_rest())
       {
         result.condition_estimate    = condensed.condition_estimate();
         result.parts["condensation"] = timer.wall_time();
@@ -79,10 +80,10 @@ namespace Debond
         for (unsigned int k = 0; k < steps.size(); ++k)
           {
             const double factor = steps[k].factor;
-            condensed.scale_load(factor);
+            scale_load(factor);
             const BranchPoint point    = {points[k],
                                           condensed_functional(condensed,
-                                                            scene.adhesion(),
+                                                            adhesion,
                                                             points[k]),
                                           {}};
             const auto [entry, is_new] = followed.emplace(factor, point);
@@ -101,12 +102,13 @@ namespace Debond
           followed,
           [this]() { return !guard.requested(); },
           [&](const double factor, const BranchPoint &point) {
-            condensed.scale_load(factor);
+            scale_load(factor);
             print(factor,
                   point.functional + condensed.energy_at_zero(),
                   proves ? point.which.relative_gap : point.which.search_trials,
                   to_string(point.which.kind));
           },
+          adhesion,
           condensed);
         for (const auto &[factor, point] : branch)
           add_global(factor, point);
@@ -120,7 +122,7 @@ namespace Debond
       {
         // Numbers of the last factor; the state's word may come from the global
         // branch.
-        condensed.scale_load(steps.back().factor);
+        scale_load(steps.back().factor);
         result.load_factor  = steps.back().factor;
         result.u            = displacement(steps.back().factor, points.back());
         result.functional   = steps.back().state.functional;
@@ -130,15 +132,22 @@ namespace Debond
 
     private:
       void
+      scale_load(const double factor)
+      {
+        adhesion.scale_load(factor);
+        condensed.scale_load(factor);
+      }
+
+      void
       solve(const double factor, const LoadPathObserver<dim> &observer)
       {
         const dealii::Vector<double> last = s;
         const double last_factor = steps.empty() ? 0. : steps.back().factor;
 
-        condensed.scale_load(factor);
+        scale_load(factor);
         CondensedProblem             problem(condensed.schur_complement(),
                                  condensed.load(),
-                                 scene.adhesion(),
+                                 adhesion,
                                  s);
         const MajoriseMinimiseResult minimum =
           MajoriseMinimise(solver_parameters.majorise_minimise)
@@ -158,11 +167,11 @@ namespace Debond
         step.iterations = static_cast<unsigned int>(minimum.history.size());
         const dealii::Vector<double> u            = displacement(factor, s);
         const Verification<dim>      verification = verify(factor, u);
-        step.state                                = load_path_state(
-          scene.problem(), scene.adhesion(), factor, u, verification);
+        step.state =
+          load_path_state(scene.problem(), adhesion, factor, u, verification);
         step.change_factor = change_factor(last_factor, last, factor);
         step.status        = to_string(minimum.status);
-        kinds.push_back(kind_without_search(scene.law(), scene.adhesion(), s));
+        kinds.push_back(kind_without_search(scene.law(), adhesion, s));
         if (!can_be_verified(minimum.status))
           step.message = result.message = location(step) + minimum.message;
         else if (!is_verified(verification))
@@ -197,7 +206,7 @@ namespace Debond
         CondensedCorrection    solver(condensed);
         const std::string      note = refine_where_needed(
           scene.problem(),
-          scene.adhesion(),
+          adhesion,
           factor,
           solver,
           [this]() { return !guard.requested(); },
@@ -211,7 +220,7 @@ namespace Debond
       verify(const double factor, const dealii::Vector<double> &u) const
       {
         return Debond::verify(
-          scene.problem(), scene.adhesion(), scene.law(), u, factor);
+          scene.problem(), adhesion, scene.law(), u, factor);
       }
 
       bool
@@ -241,13 +250,14 @@ namespace Debond
                     const dealii::Vector<double> &last,
                     const double                  factor) const
       {
-        // Without a slope displacements are proportional to the factor.
+        // Without a slope and gaps displacements are proportional to the
+        // factor.
         const BranchMinimum &branches  = scene.law().branches();
         bool                 has_slope = false;
         for (unsigned int k = 0; k < branches.size(); ++k)
           has_slope = has_slope || branches[k].slope != 0.;
         if (branches.size() == 1 || has_slope || last_factor == 0. ||
-            !scene.adhesion().is_separable())
+            scene.problem().unknowns().has_gap() || !adhesion.is_separable())
           return {};
 
         double     first     = factor / last_factor;
@@ -256,11 +266,13 @@ namespace Debond
         for (unsigned int i = 0; i < last.size(); ++i)
           if (last(i) < 0.)
             {
-              const unsigned int k = branches.index(last(i));
+              const double       stretch = adhesion.bonds_at(i).stretch;
+              const unsigned int k       = branches.index(last(i) / stretch);
               if (increases ? k + 1 == branches.size() : k == 0)
                 continue;
               const double reached =
-                (increases ? branches[k].lower : branches[k].upper) / last(i);
+                stretch * (increases ? branches[k].lower : branches[k].upper) /
+                last(i);
               if (increases ? reached < first : reached > first)
                 {
                   changes = true;
@@ -275,11 +287,11 @@ namespace Debond
       void
       add_global(const double factor, const BranchPoint &point)
       {
-        condensed.scale_load(factor);
+        scale_load(factor);
         const dealii::Vector<double> u = displacement(factor, point.s);
         const Verification<dim>      verification = verify(factor, u);
-        LoadPathState<dim>           state        = load_path_state(
-          scene.problem(), scene.adhesion(), factor, u, verification);
+        LoadPathState<dim>           state =
+          load_path_state(scene.problem(), adhesion, factor, u, verification);
         const bool verified = is_verified(verification);
         if (verified)
           state.minimum = to_string(point.which.kind);
@@ -341,6 +353,7 @@ namespace Debond
       std::vector<LoadPathStep<dim>> &steps;
       const InterruptGuard            guard;
       dealii::Timer                   timer;
+      AdhesionIntegral<dim>           adhesion;
       Condensation                    condensed;
       dealii::Vector<double>          s;
       SolveResult                     result;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/contact/field_value.h>
 #include <debond/input/expression.h>
 #include <debond/solve/displacement.h>
 #include <debond/solve/scene.h>
+
+#include <cmath>
 
 namespace Debond
 {
@@ -89,6 +92,69 @@ namespace Debond
 
 
 
+    /// Components that a scene prescribes, "free" for those that it does not.
+    template <int dim>
+    PrescribedDisplacement<dim>
+    prescribed_displacement(const std::string                   &name,
+                            const std::string                   &text,
+                            const std::map<std::string, double> &constants)
+    {
+      PrescribedDisplacement<dim> result;
+      const DisplacementText      components(text);
+      result.name   = name;
+      result.values = make_function<dim>(components.expressions, constants);
+      for (unsigned int d = 0; d < dim; ++d)
+        result.components[d] = components.is_prescribed[d];
+      return result;
+    }
+
+
+
+    template <int dim>
+    Supports<dim>
+    make_supports(const Parameters &parameters, const BoundaryNames &boundaries)
+    {
+      const std::map<std::string, double> &constants =
+        parameters.loads.constants;
+      Supports<dim> supports;
+      for (const auto &[name, text] : parameters.supports.displacements)
+        {
+          supports.displacements.push_back(
+            prescribed_displacement<dim>(name, text, constants));
+          supports.displacements.back().boundaries = boundaries.at(name);
+        }
+      for (const std::string &name : parameters.supports.rollers)
+        supports.displacements.push_back({name, boundaries.at(name), true});
+      if (!parameters.supports.gap.empty())
+        supports.gap =
+          make_function<dim>(parameters.supports.gap, constants, 1);
+      return supports;
+    }
+
+
+
+    /// Throws SupportError if a support pushes a vertex into the foundation.
+    template <int dim>
+    void
+    check_held_vertices(const ElasticUnknowns<dim> &unknowns,
+                        const std::vector<double>  &load_factors)
+    {
+      constexpr double rounding = 1e-12;
+      for (const auto &vertex : unknowns.contact().boundary().held_vertices)
+        for (const double factor : load_factors)
+          {
+            const double normal = factor * vertex.normal_displacement;
+            if (normal - vertex.gap >
+                rounding * (std::abs(normal) + vertex.gap))
+              throw SupportError(SupportError::Subject::displacement,
+                                 unknowns.support_names().at(vertex.support),
+                                 "it pushes the body into the foundation at " +
+                                   point_text(vertex.position));
+          }
+    }
+
+
+
     /// Throws std::invalid_argument if the file has no displacement that the
     /// problem admits.
     template <int dim>
@@ -105,6 +171,19 @@ namespace Debond
         throw std::invalid_argument(
           file_name + " does not satisfy the scene's boundary conditions");
       return u;
+    }
+    std::string
+    entry_of(const SupportError &error)
+    {
+      switch (error.subject)
+        {
+          case SupportError::Subject::roller:
+            return "Boundary conditions/Roller boundaries";
+          case SupportError::Subject::gap:
+            return "Contact law/Initial gap";
+          default:
+            return "Boundary conditions/Displacement " + error.name;
+        }
     }
   } // namespace
 
@@ -136,7 +215,13 @@ namespace Debond
         timer.restart();
         entry           = "Boundary conditions/Clamped boundaries";
         elastic_problem = std::make_unique<ElasticProblem<dim>>(
-          triangulation, boundary_conditions(parameters, boundaries));
+          triangulation,
+          boundary_conditions(parameters, boundaries),
+          make_supports<dim>(parameters, boundaries));
+        check_held_vertices(elastic_problem->unknowns(),
+                            parameters.load_path.factors.empty() ?
+                              std::vector<double>{1.} :
+                              parameters.load_path.factors);
         entry = "Material/Poisson ratio";
         elastic_problem->assemble(parameters.material,
                                   make_loads<dim>(parameters.loads, boundaries),
@@ -146,7 +231,12 @@ namespace Debond
         entry = "Solver/Euclidean bundle/Start";
         // A run that restarts has its start already.
         if (parameters.solver.start.empty() || parameters.checkpoints.restart)
-          first_iterate.reinit(elastic_problem->unknowns().n_dofs());
+          {
+            const ContactSpace<dim> &contact =
+              elastic_problem->unknowns().contact();
+            first_iterate.reinit(elastic_problem->unknowns().n_dofs());
+            contact.add_normal(contact.at_rest(), first_iterate);
+          }
         else
           first_iterate = read_start(parameters.solver.start, *elastic_problem);
       }
@@ -157,6 +247,11 @@ namespace Debond
             load->boundary ?
               "Loads/Traction " + boundary_name(boundaries, *load->boundary) :
               "Loads/Body force";
+        if (const auto *support = dynamic_cast<const SupportError *>(&error))
+          entry = entry_of(*support);
+        if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))
+          entry = bonds->is_threshold ? "Contact law/Bond threshold" :
+                                        "Contact law/Bond stiffness";
         throw BadInput({parameters.locations.at(entry) + ": " + entry + ": " +
                         error.what()});
       }
@@ -174,10 +269,22 @@ namespace Debond
     quadrature =
       std::make_unique<ContactQuadrature<dim>>(parameters.quadrature,
                                                adhesive_law->kinks());
+    const auto field = [&](const std::string &expression) {
+      return expression.empty() ?
+               nullptr :
+               make_function<dim>(expression, parameters.loads.constants, 1);
+    };
+    if (!parameters.law.stiffness.empty() || !parameters.law.threshold.empty())
+      bond_field =
+        std::make_unique<BondField<dim>>(adhesive_law->curvature(0.),
+                                         adhesive_law->bond_threshold(),
+                                         field(parameters.law.stiffness),
+                                         field(parameters.law.threshold));
     adhesion_integral = std::make_unique<AdhesionIntegral<dim>>(
       elastic_problem->unknowns().contact().boundary(),
       *adhesive_law,
-      *quadrature);
+      *quadrature,
+      bond_field.get());
     const auto make_functional = [this](const auto &A) {
       using MatrixType = std::decay_t<decltype(A)>;
       energy           = std::make_unique<Functional<dim, MatrixType, Vector>>(

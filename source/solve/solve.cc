@@ -133,7 +133,7 @@ namespace Debond
     functional_of(const Scene<dim> &scene, const Vector &u)
     {
       return scene.problem().fields().elastic_functional(u) +
-             scene.adhesion().value(
+             scene.adhesion().energy(
                scene.problem().unknowns().contact().trace(u));
     }
 
@@ -147,6 +147,9 @@ namespace Debond
                               Watch                          &watch,
                               SolveResult                    &result)
     {
+      const double energy =
+        prescribed_energy(scene.problem(), scene.adhesion());
+      watch.add_energy(energy);
       result.u = scene.start();
       add_bundle_result(
         ProximalBundle<Vector>(parameters)
@@ -156,6 +159,8 @@ namespace Debond
                     std::ref(watch),
                     checkpoints),
         result);
+      for (BundleIteration &iteration : result.bundle_history)
+        iteration.functional += energy;
     }
 
 
@@ -223,7 +228,12 @@ namespace Debond
                                Vector                 &s,
                                SolveResult            &result)
     {
-      s = coarse_start(condensed.schur_complement(),
+      // Coarser spaces do not know the gaps of bodies at rest.
+      if (scene.problem().unknowns().has_gap())
+        s = scene.problem().unknowns().contact().at_rest();
+      else
+        s =
+          coarse_start(condensed.schur_complement(),
                        condensed.load(),
                        scene.adhesion(),
                        coarsen(scene.problem().unknowns().contact().boundary(),
@@ -290,7 +300,8 @@ namespace Debond
       dealii::Timer              timer;
       const ElasticProblem<dim> &problem = scene.problem();
       watch.announce("factorisation", problem.unknowns().n_free_dofs());
-      const Condensation condensed = condense_to_contact(problem);
+      const Condensation condensed =
+        condense_to_contact(problem, scene.adhesion());
       result.condition_estimate    = condensed.condition_estimate();
       result.parts["condensation"] = timer.wall_time();
 
@@ -441,6 +452,9 @@ namespace Debond
         for (const auto normal : normals)
           if (result.u(normal) == 0.)
             held.push_back(normal);
+      const double energy =
+        prescribed_energy(scene.problem(), scene.adhesion());
+      watch.add_energy(energy);
       watch.announce("multigrid", scene.problem().unknowns().n_free_dofs());
       const Multigrid multigrid(scene.problem(), held);
       result.parts["multigrid setup"] = timer.wall_time();
@@ -454,6 +468,8 @@ namespace Debond
       add_majorise_result(MajoriseMinimise(parameters.solver.majorise_minimise)
                             .minimize(problem, std::ref(watch)),
                           result);
+      for (MajoriseMinimiseIteration &iteration : result.majorise_history)
+        iteration.functional += energy;
       result.parts["contact"] = timer.wall_time();
 
       MultigridCorrection solver(multigrid, normals);

@@ -81,9 +81,7 @@ namespace Debond
     energy_of_bonds(const Condensation      &condensed,
                     const SeparableBranches &lumped)
     {
-      return std::min(condensed.energy_without_contact() +
-                        condensed.energy_at_zero(),
-                      lumped.largest_value());
+      return std::min(condensed.energy_of_kept(), lumped.largest_value());
     }
 
 
@@ -137,6 +135,39 @@ namespace Debond
 
 
 
+    /// Of the bonds at the nodes, empty if all are the same.
+    template <int dim>
+    std::vector<double>
+    stretches(const AdhesionIntegral<dim> &adhesion, const unsigned int n)
+    {
+      std::vector<double> result;
+      if (adhesion.has_field())
+        for (unsigned int i = 0; i < n; ++i)
+          result.push_back(adhesion.bonds_at(i).stretch);
+      return result;
+    }
+
+
+
+    /// Of the bonds of coarser unknowns: the means of finer ones.
+    std::vector<double>
+    coarse_stretches(
+      const std::vector<double>                      &fine,
+      const std::vector<Eigen::SparseMatrix<double>> &prolongations)
+    {
+      if (fine.empty())
+        return {};
+      Eigen::VectorXd mean =
+        Eigen::Map<const Eigen::VectorXd>(fine.data(), fine.size());
+      for (const Eigen::SparseMatrix<double> &P : prolongations)
+        mean = (P.transpose() * mean)
+                 .cwiseQuotient(P.transpose() * Eigen::VectorXd::Ones(P.rows()))
+                 .eval();
+      return {mean.data(), mean.data() + mean.size()};
+    }
+
+
+
     /// The search, and, of Search = automatic, how far it can be from the
     /// minimum.
     template <int dim>
@@ -161,7 +192,10 @@ namespace Debond
         , result(result)
         , method(parameters.majorise_minimise)
         , graph(neighbours(boundary))
-        , lumped(lumped_branches(adhesion, s.size(), law.branches()))
+        , lumped(lumped_branches(adhesion,
+                                 s.size(),
+                                 law.branches(),
+                                 stretches(adhesion, s.size())))
         , energy(energy_of_bonds(condensed, lumped))
         , separable(adhesion.is_separable())
       {
@@ -283,7 +317,11 @@ namespace Debond
               S,
               g,
               phi,
-              lumped_branches(phi, coarse_s.size(), law.branches()),
+              lumped_branches(phi,
+                              coarse_s.size(),
+                              law.branches(),
+                              coarse_stretches(stretches(adhesion, s.size()),
+                                               prolongations)),
               false,
               coarse_neighbours(prolongations.back()),
               method,
@@ -348,8 +386,8 @@ namespace Debond
           dealii::Vector<double>      &s,
           WhichMinimum                &result)
     {
-      const SeparableBranches lumped =
-        lumped_branches(adhesion, s.size(), law.branches());
+      const SeparableBranches lumped = lumped_branches(
+        adhesion, s.size(), law.branches(), stretches(adhesion, s.size()));
       const double functional = condensed_functional(condensed, adhesion, s);
       BranchAndBoundParameters proof_parameters = parameters.proof;
       proof_parameters.tolerance *= energy_of_bonds(condensed, lumped);

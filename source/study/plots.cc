@@ -507,7 +507,9 @@ namespace Debond
       std::vector<const Case *> cases;
       double                    least_u = 0., largest_force = 0.;
       for (const StudyRow &row : view.rows)
-        if (row.result.has_results())
+        // Bonds that vary have no one graph.
+        if (row.result.has_results() && row.one->law.stiffness.empty() &&
+            row.one->law.threshold.empty())
           {
             auto profile = read_profile(*row.one);
             cases.push_back(row.one);

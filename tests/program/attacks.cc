@@ -99,6 +99,7 @@ namespace
   {
     OwnCheck::Scene<dim>     own;
     double                   rotation = 0.; ///< degrees
+    std::string              rollers;
     std::vector<std::string> assignments;
 
     void
@@ -188,9 +189,103 @@ namespace
 
 
 
+  /// A number that is linear along an edge, and its text.
+  template <int dim>
+  std::pair<typename OwnCheck::Scene<dim>::Field, std::string>
+  random_field(Generator         &random,
+               const Attack<dim> &attack,
+               const double       first,
+               const double       last)
+  {
+    const unsigned int d      = random.below(dim);
+    const double       length = attack.own.lengths[d], slope = last - first;
+    const char *const  names[] = {"x", "y", "z"};
+    return {[=](const std::array<Real, dim> &point) {
+              return Real(first) + Real(slope) * point[d] / Real(length);
+            },
+            text(first) + "+(" + text(slope) + ")*" + names[d] + '/' +
+              text(length)};
+  }
+
+
+
+  /// Displacements, rollers, gaps and bonds that vary, on an unturned box.
+  template <int dim>
+  void
+  add_supports(Generator &random, Attack<dim> &attack)
+  {
+    auto &own = attack.own;
+    if (attack.rotation != 0.)
+      return;
+    const double size = own.M * random.magnitude(-1., 1.);
+    for (const std::string side :
+         {"left", "right", "bottom", "top", "back", "front"})
+      {
+        if (OwnCheck::direction(side).first >= dim ||
+            own.clamped.count(side) > 0 || own.contact.count(side) > 0)
+          continue;
+        const auto [axis, sense] = OwnCheck::direction(side);
+        bool beside_clamp        = false;
+        for (const std::string &clamp : own.clamped)
+          beside_clamp |= OwnCheck::direction(clamp).first != axis;
+        for (const auto &[other, unused] : own.prescribed)
+          beside_clamp |= OwnCheck::direction(other).first != axis;
+        typename OwnCheck::Scene<dim>::Prescribed prescribed = {};
+        if (random.chance(0.3))
+          {
+            prescribed.is_prescribed[axis] = true;
+            attack.rollers += (attack.rollers.empty() ? "" : ", ") + side;
+          }
+        else if (!beside_clamp && random.chance(0.6))
+          {
+            std::string components;
+            for (unsigned int k = 0; k < dim; ++k)
+              {
+                prescribed.is_prescribed[k] = random.chance(0.6);
+                if (prescribed.is_prescribed[k])
+                  prescribed.values[k] = size * random.uniform(-1., 1.);
+                components +=
+                  (k > 0 ? "; " : "") + (prescribed.is_prescribed[k] ?
+                                           text(prescribed.values[k]) :
+                                           "free");
+              }
+            attack.set("Boundary conditions/Displacement " + side, components);
+          }
+        else
+          continue;
+        own.prescribed[side] = prescribed;
+      }
+    attack.set("Boundary conditions/Roller boundaries", attack.rollers);
+    if (random.chance(0.4))
+      {
+        const auto [gap, expression] =
+          random_field(random,
+                       attack,
+                       own.M * random.uniform(0., 2.),
+                       own.M * random.uniform(0., 2.));
+        own.gap = gap;
+        attack.set("Contact law/Initial gap", expression);
+      }
+    if (own.a == 0. || own.quadrature == "exact" || random.chance(0.4))
+      return;
+    const double a = own.a, M = own.M;
+    const auto [stiffness, stiffness_text] = random_field(
+      random, attack, random.chance(0.5) ? 0. : a * random.uniform(0., 1.), a);
+    own.stiffness = stiffness;
+    attack.set("Contact law/Bond stiffness", stiffness_text);
+    if (random.chance(0.5))
+      return;
+    const auto [threshold, threshold_text] =
+      random_field(random, attack, M * random.uniform(0.2, 1.), M);
+    own.threshold = threshold;
+    attack.set("Contact law/Bond threshold", threshold_text);
+  }
+
+
+
   template <int dim>
   Attack<dim>
-  random_attack(Generator &random)
+  random_attack(Generator &random, const bool has_supports)
   {
     Attack<dim> attack;
     auto       &own = attack.own;
@@ -295,6 +390,9 @@ namespace
         attack.set("Loads/Body force", expression);
       }
 
+    if (has_supports)
+      add_supports(random, attack);
+
     const std::string method    = random.chance(0.4) ?
                                     "automatic" :
                                     random.one_of({"majorise minimise",
@@ -386,11 +484,11 @@ namespace
         if (body.is_free(i))
           inside = std::max(inside, std::abs(residual(i)));
         if (body.is_fixed(i))
-          fixed = std::max(fixed, std::abs(u(i)));
+          fixed = std::max(fixed, std::abs(u(i) - body.prescribed(i)));
       }
     const Real    size     = u.template lpNorm<Eigen::Infinity>();
     const VectorX s        = body.normal_displacements(u);
-    const VectorX force    = -body.normal_displacements(residual);
+    const VectorX force    = -body.normal_forces(residual);
     const Real    strength = Real(own.a) * own.M * body.largest_measure();
     // Weak bonds are lost in the rounding of larger forces.
     const Real scale =
@@ -409,9 +507,10 @@ namespace
         for (const Real t : {-shift, Real(0), shift})
           {
             const VectorX near  = (s.array() + t).min(Real(0));
-            const Real    bonds = body.bonds(near).row(i).dot(near);
-            lower               = std::min(lower, bonds);
-            upper               = std::max(upper, bonds);
+            const Real    bonds = body.bonds(near).row(i).dot(near) +
+                               body.forces_of_prescribed(near)(i);
+            lower = std::min(lower, bonds);
+            upper = std::max(upper, bonds);
           }
         if (s(i) < -shift)
           violation = std::max(violation, force(i) - upper);
@@ -625,8 +724,11 @@ namespace
          std::map<std::string, unsigned int> &kinds,
          std::map<std::string, unsigned int> &reasons)
   {
-    const Attack<dim> scene   = random_attack<dim>(random);
-    const Outcome     outcome = try_attack(scene, random);
+    // From here on scenes with supports and fields.
+    constexpr unsigned int first_with_supports = 10000;
+    const Attack<dim>      scene =
+      random_attack<dim>(random, number >= first_with_supports);
+    const Outcome outcome = try_attack(scene, random);
     ++kinds[outcome.kind];
     if (outcome.kind == "rejected" || outcome.kind == "not solved")
       ++reasons[outcome.kind + ": " +
@@ -658,6 +760,9 @@ main(int argc, char *argv[])
   // Some for which the search once was not enough.
   if (argc <= 1)
     for (const unsigned int number : {116, 119, 208, 247, 279, 339})
+      numbers.push_back(number);
+  if (argc <= 1)
+    for (unsigned int number = 10000; number < 10060; ++number)
       numbers.push_back(number);
 
   std::map<std::string, unsigned int> kinds, reasons;

@@ -52,6 +52,36 @@ namespace OwnCheck
 
     double      a, M; ///< a = 0 without adhesion
     std::string quadrature;
+
+    /// Components along the edges of the box that are prescribed on a side.
+    struct Prescribed
+    {
+      std::array<bool, dim>   is_prescribed;
+      std::array<double, dim> values;
+    };
+    std::map<std::string, Prescribed> prescribed = {};
+
+    using Field     = std::function<Real(const std::array<Real, dim> &point)>;
+    Field gap       = {};                 ///< empty for none
+    Field stiffness = {}, threshold = {}; ///< in place of a, M
+
+    Real
+    gap_at(const std::array<Real, dim> &point) const
+    {
+      return gap ? gap(point) : Real(0);
+    }
+
+    Real
+    a_at(const std::array<Real, dim> &point) const
+    {
+      return stiffness ? stiffness(point) : Real(a);
+    }
+
+    Real
+    M_at(const std::array<Real, dim> &point) const
+    {
+      return threshold ? threshold(point) : Real(M);
+    }
   };
 
 
@@ -123,8 +153,25 @@ namespace OwnCheck
     {
       VectorX s(n_contact());
       for (unsigned int i = 0; i < n_contact(); ++i)
-        s(i) = sense[i] * u(contact_dofs[i]);
+        s(i) = sense[i] * u(contact_dofs[i]) - gap(i);
       return s;
+    }
+
+    /// Of forces there is no gap.
+    VectorX
+    normal_forces(const VectorX &f) const
+    {
+      VectorX s(n_contact());
+      for (unsigned int i = 0; i < n_contact(); ++i)
+        s(i) = sense[i] * f(contact_dofs[i]);
+      return s;
+    }
+
+    /// What is prescribed at a fixed component.
+    Real
+    prescribed(const unsigned int dof) const
+    {
+      return fixed_values(dof);
     }
 
     Real
@@ -178,10 +225,11 @@ namespace OwnCheck
                 [&](const Face &,
                     const Real weight,
                     const Real trace,
-                    const std::array<Real, dim> &) {
-                  energy += weight * scene.a / 2 *
-                            (trace > -scene.M ? trace * trace :
-                                                Real(scene.M) * scene.M);
+                    const std::array<Real, dim> &,
+                    const Real a,
+                    const Real M) {
+                  energy +=
+                    weight * a / 2 * (trace > -M ? trace * trace : M * M);
                 });
       return energy;
     }
@@ -195,15 +243,39 @@ namespace OwnCheck
                 [&](const Face                  &face,
                     const Real                   weight,
                     const Real                   trace,
-                    const std::array<Real, dim> &phi) {
-                  if (trace > -scene.M)
+                    const std::array<Real, dim> &phi,
+                    const Real                   a,
+                    const Real                   M) {
+                  if (trace > -M)
                     for (unsigned int v = 0; v < dim; ++v)
                       for (unsigned int w = 0; w < dim; ++w)
                         if (face.contact[v] >= 0 && face.contact[w] >= 0)
                           B(face.contact[v], face.contact[w]) +=
-                            weight * scene.a * phi[v] * phi[w];
+                            weight * a * phi[v] * phi[w];
                 });
       return B;
+    }
+
+    /// What prescribed vertices add to j_1'.
+    VectorX
+    forces_of_prescribed(const VectorX &s) const
+    {
+      VectorX b = VectorX::Zero(n_contact());
+      integrate(s,
+                [&](const Face                  &face,
+                    const Real                   weight,
+                    const Real                   trace,
+                    const std::array<Real, dim> &phi,
+                    const Real                   a,
+                    const Real                   M) {
+                  if (trace > -M)
+                    for (unsigned int v = 0; v < dim; ++v)
+                      for (unsigned int w = 0; w < dim; ++w)
+                        if (face.contact[v] >= 0 && face.contact[w] < 0)
+                          b(face.contact[v]) +=
+                            weight * a * phi[v] * phi[w] * face.held[w];
+                });
+      return b;
     }
 
     /// The largest measure of a contact node.
@@ -223,10 +295,12 @@ namespace OwnCheck
     descend(VectorX s) const
     {
       MatrixX B = bonds(s);
+      VectorX b = forces_of_prescribed(s);
       for (unsigned int k = 0; k < 200; ++k)
         {
-          s                  = minimise_convex(S + B);
+          s                  = minimise_convex(S + B, g - b);
           const MatrixX next = bonds(s);
+          b                  = forces_of_prescribed(s);
           if (next == B)
             break;
           B = next;
@@ -238,9 +312,9 @@ namespace OwnCheck
     VectorX
     expand(const VectorX &s) const
     {
-      VectorX u = VectorX::Zero(n_dofs());
+      VectorX u = fixed_values;
       for (unsigned int i = 0; i < n_contact(); ++i)
-        u(contact_dofs[i]) = sense[i] * s(i);
+        u(contact_dofs[i]) = sense[i] * (s(i) + gap(i));
       const VectorX inside = X_f - X * s;
       for (unsigned int i = 0; i < free_dofs.size(); ++i)
         u(free_dofs[i]) = inside(i);
@@ -279,7 +353,8 @@ namespace OwnCheck
     struct Face
     {
       std::array<unsigned int, dim> vertices;
-      std::array<int, dim>          contact; ///< number, -1 where fixed
+      std::array<int, dim>          contact;   ///< number, -1 where fixed
+      std::array<Real, dim>         held = {}; ///< s where fixed
       Real                          measure;
       std::string                   side;
       Point                         centre;
@@ -421,6 +496,18 @@ namespace OwnCheck
             for (unsigned int e = 0; e < dim; ++e)
               kind[dim * v + e] = Kind::fixed;
 
+      fixed_values = VectorX::Zero(n_dofs());
+      for (const Face &face : faces)
+        if (const auto entry = scene.prescribed.find(face.side);
+            entry != scene.prescribed.end())
+          for (const unsigned int v : face.vertices)
+            for (unsigned int e = 0; e < dim; ++e)
+              if (entry->second.is_prescribed[e])
+                {
+                  kind[dim * v + e]         = Kind::fixed;
+                  fixed_values(dim * v + e) = entry->second.values[e];
+                }
+
       number.assign(n_dofs(), -1);
       for (unsigned int i = 0; i < n_dofs(); ++i)
         if (kind[i] == Kind::free)
@@ -434,15 +521,21 @@ namespace OwnCheck
             contact_dofs.push_back(i);
             sense.push_back(senses.at(i));
           }
+      gap = VectorX::Zero(n_contact());
+      for (unsigned int i = 0; i < n_contact(); ++i)
+        gap(i) = scene.gap_at(points[contact_dofs[i] / dim]);
 
       std::vector<Face> in_contact;
       for (Face face : faces)
         if (scene.contact.count(face.side) > 0)
           {
-            const unsigned int d = direction(face.side).first;
+            const auto [d, s] = direction(face.side);
             for (unsigned int v = 0; v < dim; ++v)
               if (kind[dim * face.vertices[v] + d] == Kind::contact)
                 face.contact[v] = number[dim * face.vertices[v] + d];
+              else
+                face.held[v] = s * fixed_values(dim * face.vertices[v] + d) -
+                               scene.gap_at(points[face.vertices[v]]);
             in_contact.push_back(face);
           }
       all_faces.swap(faces);
@@ -535,11 +628,15 @@ namespace OwnCheck
       A_ii.setFromTriplets(inside.begin(), inside.end());
       A_ic.setFromTriplets(coupling.begin(), coupling.end());
       A_cc.setFromTriplets(outside.begin(), outside.end());
-      VectorX f_i(n), f_c(n_c);
-      for (unsigned int i = 0; i < n; ++i)
-        f_i(i) = f(free_dofs[i]);
+      VectorX start = fixed_values;
       for (unsigned int i = 0; i < n_c; ++i)
-        f_c(i) = sense[i] * f(contact_dofs[i]);
+        start(contact_dofs[i]) = sense[i] * gap(i);
+      const VectorX load = f - A * start;
+      VectorX       f_i(n), f_c(n_c);
+      for (unsigned int i = 0; i < n; ++i)
+        f_i(i) = load(free_dofs[i]);
+      for (unsigned int i = 0; i < n_c; ++i)
+        f_c(i) = sense[i] * load(contact_dofs[i]);
 
       const Eigen::SimplicialLDLT<Eigen::SparseMatrix<Real>> factor(A_ii);
       X   = factor.solve(MatrixX(A_ic));
@@ -552,7 +649,9 @@ namespace OwnCheck
     using Integrand = std::function<void(const Face &,
                                          const Real                   weight,
                                          const Real                   trace,
-                                         const std::array<Real, dim> &phi)>;
+                                         const std::array<Real, dim> &phi,
+                                         const Real                   a,
+                                         const Real                   M)>;
 
     void
     at_point(const Face                  &face,
@@ -561,10 +660,20 @@ namespace OwnCheck
              const std::array<Real, dim> &phi,
              const Integrand             &integrand) const
     {
-      Real trace = 0;
+      Real  trace = 0;
+      Point point = {};
       for (unsigned int v = 0; v < dim; ++v)
-        trace += phi[v] * t[v];
-      integrand(face, weight * face.measure, trace, phi);
+        {
+          trace += phi[v] * t[v];
+          for (unsigned int d = 0; d < dim; ++d)
+            point[d] += phi[v] * points[face.vertices[v]][d];
+        }
+      integrand(face,
+                weight * face.measure,
+                trace,
+                phi,
+                scene.a_at(point),
+                scene.M_at(point));
     }
 
     /// Calls the integrand at the points of the rule of the scene.
@@ -577,7 +686,7 @@ namespace OwnCheck
         {
           std::array<Real, dim> t;
           for (unsigned int v = 0; v < dim; ++v)
-            t[v] = face.contact[v] >= 0 ? s(face.contact[v]) : Real(0);
+            t[v] = face.contact[v] >= 0 ? s(face.contact[v]) : face.held[v];
           std::array<Real, dim> phi = {};
           if (scene.quadrature == "nodal")
             for (unsigned int v = 0; v < dim; ++v)
@@ -653,7 +762,8 @@ namespace OwnCheck
             // On the cut the piece decides.
             trace = side > 0 ? std::max(trace, -scene.M * (1 - Real(1e-18))) :
                                std::min(trace, -Real(scene.M));
-            integrand(face, weight * face.measure, trace, phi);
+            integrand(
+              face, weight * face.measure, trace, phi, scene.a, scene.M);
           };
           const auto middle = [](const Barycentric &p, const Barycentric &q) {
             Barycentric m;
@@ -687,7 +797,7 @@ namespace OwnCheck
     /// min 1/2 s'Qs - g's subject to s <= 0: all that is wrong is exchanged
     /// while fewer and fewer are wrong, else the last one alone, which ends.
     VectorX
-    minimise_convex(const MatrixX &Q) const
+    minimise_convex(const MatrixX &Q, const VectorX &g) const
     {
       const unsigned int n = n_contact();
       std::vector<bool>  is_loose(n, true);
@@ -744,7 +854,7 @@ namespace OwnCheck
     std::vector<unsigned int> free_dofs, contact_dofs;
 
     Eigen::SparseMatrix<Real> A;
-    VectorX                   f, g, X_f;
+    VectorX                   f, g, X_f, fixed_values, gap;
     MatrixX                   S, X;
   };
 } // namespace OwnCheck

@@ -73,7 +73,7 @@ namespace
   make_elements(const ElasticProblem<dim> &problem)
   {
     std::map<unsigned int, std::array<Real, dim>> direction;
-    for (const auto &frame : problem.unknowns().contact_frames())
+    for (const auto &frame : problem.unknowns().frames())
       for (unsigned int k = 0; k < dim; ++k)
         for (unsigned int d = 0; d < dim; ++d)
           direction[frame.dofs[k]][d] = frame.to_cartesian[d][k];

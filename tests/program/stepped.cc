@@ -57,7 +57,8 @@ namespace
   double
   least_functional(const Scene<dim> &scene, const double factor)
   {
-    Condensation condensed = condense_to_contact(scene.problem());
+    Condensation condensed =
+      condense_to_contact(scene.problem(), scene.adhesion());
     condensed.scale_load(factor);
     const unsigned int      n = condensed.load().size();
     LongMatrix              S(n, n);

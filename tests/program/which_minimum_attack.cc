@@ -239,8 +239,9 @@ namespace
     {
       const Parameters   parameters = read(c.entries);
       const Scene<dim>   scene(parameters, MatrixStorage::serial);
-      const Condensation condensed = condense_to_contact(scene.problem());
-      const unsigned int n         = condensed.load().size();
+      const Condensation condensed =
+        condense_to_contact(scene.problem(), scene.adhesion());
+      const unsigned int n = condensed.load().size();
       if (n == 0 || (!many_patches && n > most_nodes))
         return;
       const Eigen::Map<const Eigen::MatrixXd> S(
@@ -275,7 +276,8 @@ namespace
       }
     ++counts.words[to_string(result.minimum.kind)];
 
-    const Condensation condensed = condense_to_contact(scene.problem());
+    const Condensation condensed =
+      condense_to_contact(scene.problem(), scene.adhesion());
     const dealii::Vector<double> s =
       scene.problem().unknowns().contact().trace(result.u);
     const unsigned int      n = s.size();
@@ -380,9 +382,10 @@ namespace
       {
         std::vector<std::string> more = entries;
         more.push_back(entry);
-        const Parameters       parameters = read(more);
-        const Scene<2>         scene(parameters, MatrixStorage::serial);
-        const Condensation     condensed = condense_to_contact(scene.problem());
+        const Parameters   parameters = read(more);
+        const Scene<2>     scene(parameters, MatrixStorage::serial);
+        const Condensation condensed =
+          condense_to_contact(scene.problem(), scene.adhesion());
         dealii::Vector<double> s(condensed.load().size());
         try
           {

@@ -140,6 +140,10 @@ namespace Debond
     void
     parse();
 
+    /// Whether a scene or the command line sets the entry.
+    bool
+    is_set(const std::string &path) const;
+
     /// The value as it was written.
     std::string
     get(const std::string &path) const;

@@ -21,7 +21,8 @@ namespace Debond
   template <int dim>
   LargestValues
   largest_values(const ElasticProblem<dim>    &problem,
-                 const dealii::Vector<double> &u);
+                 const dealii::Vector<double> &u,
+                 const double                  load_factor = 1.);
 } // namespace Debond
 
 #endif

@@ -8,6 +8,7 @@
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,11 +19,11 @@ namespace Debond
   /// that follow.
   enum class BondState : unsigned int
   {
-    contact, ///< u_nu = 0
+    contact, ///< s = 0
     bonded,
     kink, ///< between two branches
     broken,
-    free, ///< u_nu < 0, if the law has no adhesion
+    free, ///< s < 0, where there is no adhesion
     held  ///< a clamped vertex, which is no contact node
   };
 
@@ -37,12 +38,16 @@ namespace Debond
   {
     double u_nu; ///< normal displacement, length
 
+    /// u_nu minus the gap of the body at rest: minus the opening between body
+    /// and foundation.
+    double s;
+
     /// Total force of the foundation on the node along -nu, from A u - f:
     /// positive where the foundation pushes, negative where bonds pull.
     double normal_force;
 
-    /// What the law allows for u_nu of all nodes: the Clarke interval of the
-    /// adhesion, and unbounded above (infinity) where u_nu = 0.
+    /// What the law allows for s of all nodes: the Clarke interval of the
+    /// adhesion, and unbounded above (infinity) where s = 0.
     Interval allowed_force;
 
     /// Distance to the law's graph, see Verification::law_violation.
@@ -88,15 +93,20 @@ namespace Debond
      */
     double law_violation;
 
-    /// Largest u_nu > 0 (zero if there is none), in length.
+    /// Largest s > 0 (zero if there is none), in length.
     double penetration;
 
     /// Largest |A u - f| over the free degrees of freedom that are not normal
-    /// contact displacements, relative to the largest |A u - f| of all.
+    /// contact displacements, relative to the largest |A u - f| of all, but not
+    /// to less than 1e4 times its rounding: a body that is moved without any
+    /// force has nothing else.
     double equilibrium_residual;
 
     dealii::Tensor<1, dim> applied_force;
-    dealii::Tensor<1, dim> clamped_reaction;
+    dealii::Tensor<1, dim> clamped_reaction; ///< of all supports
+
+    /// Of each of ElasticUnknowns::support_names() on the body.
+    std::map<std::string, dealii::Tensor<1, dim>> reactions;
 
     /// Of the foundation on the body, with the tangential part.
     dealii::Tensor<1, dim> contact_reaction;
@@ -109,7 +119,8 @@ namespace Debond
     /// each contact node, in Cartesian components.
     std::vector<dealii::Tensor<1, dim>> tangential_forces;
 
-    /// | applied + clamped + contact | over the sum of all nodal forces' sizes.
+    /// | applied + clamped + contact | over the sum of all nodal forces' sizes,
+    /// or that many times the rounding of one.
     double force_imbalance;
 
     /// The largest of equilibrium_residual, force_imbalance and

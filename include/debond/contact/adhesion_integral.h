@@ -4,6 +4,7 @@
 
 #include <deal.II/lac/vector.h>
 
+#include <debond/contact/bond_field.h>
 #include <debond/contact/boundary.h>
 #include <debond/contact/law.h>
 #include <debond/contact/quadrature.h>
@@ -17,7 +18,8 @@ namespace Debond
   /**
    * Phi(s) = int_{Gamma_C} j_1(s) dGamma of the P1 trace with nodal values s,
    * by quadrature on the contact boundary. The vector s is ordered as
-   * ContactBoundary::nodes; fixed vertices count as s = 0.
+   * ContactBoundary::nodes; s of vertices that are none is prescribed, and
+   * grows with the load.
    *
    * Keeps references to its arguments. Use from one thread at a time.
    */
@@ -27,11 +29,25 @@ namespace Debond
   public:
     AdhesionIntegral(const ContactBoundary<dim>   &contact_boundary,
                      const AdhesiveLaw            &adhesive_law,
-                     const ContactQuadrature<dim> &quadrature_rule);
+                     const ContactQuadrature<dim> &quadrature_rule,
+                     const BondField<dim>         *bond_field = nullptr);
+
+    /// From now on the prescribed displacements are @p factor times those for
+    /// the whole load. Throws as BondField does, and so does the constructor.
+    void
+    scale_load(const double factor);
 
     /// Phi(s), an energy.
     double
+    energy(const dealii::Vector<double> &s) const;
+
+    /// Phi(s) - Phi(0); Phi(0) = 0 if nothing is prescribed.
+    double
     value(const dealii::Vector<double> &s) const override;
+
+    /// Phi(0) for @p load_factor times the whole load.
+    double
+    energy_at_zero(const double load_factor) const;
 
     /// One element of the Clarke subdifferential of Phi at s (at a kink the
     /// derivative of the branch on the side of 0), a force for each node.
@@ -61,6 +77,19 @@ namespace Debond
     bool
     is_separable() const;
 
+    /// The derivatives of Phi by the normal displacements of
+    /// ContactBoundary::held_vertices.
+    std::vector<double>
+    held_forces(const dealii::Vector<double> &s) const;
+
+    /// Whether bonds are not the same everywhere.
+    bool
+    has_field() const;
+
+    /// The bonds at a node.
+    BondScale
+    bonds_at(const unsigned int node) const;
+
   private:
     /// A quadrature point on Gamma_C: the trace there is the sum of shape[k]
     /// s[nodes[k]], k < n_nodes.
@@ -70,6 +99,8 @@ namespace Debond
       std::array<unsigned int, dim> nodes;
       std::array<double, dim>       shape;
       double                        weight; ///< length or area
+      double                        offset; ///< what is prescribed of the trace
+      BondScale                     bonds;
 
       bool
       is_on_a_node() const;
@@ -77,6 +108,15 @@ namespace Debond
       double
       trace(const dealii::Vector<double> &s) const;
     };
+
+    /// s of a prescribed vertex of a face.
+    double
+    held_trace(const typename ContactBoundary<dim>::Face &face,
+               const unsigned int                         vertex) const;
+
+    BondScale
+    bonds_of(const typename ContactBoundary<dim>::Face &face,
+             const std::array<double, dim>             &barycentric) const;
 
     /// The quadrature points for the trace s.
     const std::vector<Point> &
@@ -86,6 +126,10 @@ namespace Debond
     void
     collect_points(const dealii::Vector<double> &s) const;
 
+    /// Makes point_list unless the rule depends on the trace.
+    void
+    update_points();
+
     /// Replaces the points of point_list that are on a node by one for each
     /// node.
     void
@@ -94,6 +138,10 @@ namespace Debond
     const ContactBoundary<dim>   &boundary;
     const AdhesiveLaw            &law;
     const ContactQuadrature<dim> &quadrature;
+    const BondField<dim>         *field;
+
+    double load_factor = 1.;
+    double phi_at_zero = 0.;
 
     /// Made once unless the rule depends on the trace.
     mutable std::vector<Point> point_list;

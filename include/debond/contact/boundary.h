@@ -14,7 +14,9 @@ namespace Debond
   /**
    * The contact boundary Gamma_C as the discrete problem sees it: the nodes
    * whose normal displacement is unknown, and the faces, on which the normal
-   * displacement is the linear interpolant of its nodal values.
+   * displacement is the linear interpolant of its nodal values. What is
+   * unknown is s = u_nu - gap <= 0, minus the opening between body and
+   * foundation.
    */
   template <int dim>
   struct ContactBoundary
@@ -29,6 +31,24 @@ namespace Debond
       /// Integral of the nodal basis function over Gamma_C (area in 3D,
       /// length in 2D).
       double measure;
+
+      /// The distance to the foundation of the body at rest.
+      double gap = 0.;
+    };
+
+    /// A vertex whose normal displacement is prescribed.
+    struct HeldVertex
+    {
+      /// For the whole load.
+      double normal_displacement;
+
+      double gap; ///< as of a node
+
+      unsigned int support; ///< of ElasticUnknowns::support_names()
+
+      dealii::Tensor<1, dim> normal;
+
+      dealii::Point<dim> position;
     };
 
     struct Face
@@ -36,6 +56,9 @@ namespace Debond
       /// Indices into `nodes`, or dealii::numbers::invalid_unsigned_int for a
       /// vertex whose normal displacement is fixed to zero.
       std::array<unsigned int, dim> nodes;
+
+      /// Indices into `held_vertices` of the others, if it has any.
+      std::array<unsigned int, dim> held = {};
 
       std::array<dealii::Point<dim>, dim> vertices;
 
@@ -49,6 +72,9 @@ namespace Debond
     /// In lexicographic order of their positions.
     std::vector<Node> nodes;
     std::vector<Face> faces;
+
+    /// Empty if they are all at the foundation and stay there.
+    std::vector<HeldVertex> held_vertices;
   };
 } // namespace Debond
 

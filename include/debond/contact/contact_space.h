@@ -13,9 +13,10 @@
 namespace Debond
 {
   /**
-   * The normal displacements s of the contact nodes within the vector of all
-   * unknowns u: s = N'u, where each node's normal displacement is an unknown of
-   * its own. Who reads or writes u at contact nodes does it here.
+   * The normal displacements s of the contact nodes, counted from where they
+   * touch the foundation, within the vector of all unknowns u: s = N'u, where
+   * each node's normal displacement is an unknown of its own. Who reads or
+   * writes u at contact nodes does it here.
    */
   template <int dim>
   class ContactSpace
@@ -56,6 +57,14 @@ namespace Debond
     /// Whether u satisfies them.
     bool
     is_admissible(const dealii::Vector<double> &u) const;
+
+    /// s of the body at rest, where u = 0: minus the gaps.
+    dealii::Vector<double>
+    at_rest() const;
+
+    /// Whether bodies at rest have gaps.
+    bool
+    has_gap() const;
 
     /// The same nodes where s itself is the vector of all unknowns.
     ContactSpace

@@ -91,6 +91,10 @@ namespace Debond
     std::string               name; ///< one of law_names()
     std::vector<ConvexBranch> branches;
     std::string               data; ///< in words, empty if there is none
+
+    /// Expressions for bonds whose stiffness or threshold vary, empty where it
+    /// does not: `branches` have 1 in their place.
+    std::string stiffness = {}, threshold = {};
   };
 
   /// Makes a law of entries that have been read. What is wrong with them is

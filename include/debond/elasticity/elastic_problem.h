@@ -40,7 +40,8 @@ namespace Debond
   public:
     /// Throws as ElasticUnknowns does.
     ElasticProblem(const dealii::Triangulation<dim> &triangulation,
-                   const BoundaryConditions         &conditions);
+                   const BoundaryConditions         &conditions,
+                   const Supports<dim>              &supports = {});
 
     /// Computes A and f. Throws std::invalid_argument if the material is not
     /// valid or a load is not, see load_vector(). May be called again.
@@ -68,8 +69,24 @@ namespace Debond
     double
     diagonal_entry(const unsigned int i) const;
 
+    /// f - A G, what is applied together with what the lifting makes of it, at
+    /// the free degrees of freedom.
     const dealii::Vector<double> &
     load() const;
+
+    /// The part of load() that does not grow with the load factor, from the
+    /// gap; empty if there is none.
+    const dealii::Vector<double> &
+    constant_load() const;
+
+    /// For @p load_factor times what is applied and prescribed.
+    dealii::Vector<double>
+    load_at(const double load_factor) const;
+
+    /// J of w = 0 without bonds, 1/2 <A G, G> - load_factor <f, G>: what J is
+    /// more than 1/2 <A w, w> - <load, w>.
+    double
+    lifting_energy(const double load_factor = 1.) const;
 
   private:
     template <typename MatrixType>
@@ -85,6 +102,7 @@ namespace Debond
     // An empty one would need MPI already.
     std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix> distributed_matrix;
     dealii::Vector<double>                                  system_load;
+    dealii::Vector<double>                                  gap_load;
   };
 } // namespace Debond
 

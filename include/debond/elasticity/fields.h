@@ -12,7 +12,8 @@
 namespace Debond
 {
   /// Stresses, energies and forces of a displacement, by loops over the cells
-  /// that use no matrix.
+  /// that use no matrix. Vectors are those of ElasticUnknowns; the displacement
+  /// that belongs to one is with its lifting.
   template <int dim>
   class ElasticFields
   {
@@ -38,12 +39,12 @@ namespace Debond
     total_load() const;
 
     /**
-     * A u - f, f being @p load_factor times the load, at
-     * every degree of freedom, the constrained ones included: internal
-     * forces, from the cells' stresses, minus the applied nodal forces,
-     * in the unknowns' frames. At constrained degrees
-     * of freedom this is the reaction of the support, at u_nu of a contact
-     * node minus the normal force of the foundation.
+     * A u - f, f being @p load_factor times the load (and prescribed
+     * displacements as many times as large), at every degree of freedom, the
+     * constrained ones included: internal forces, from the cells' stresses,
+     * minus the applied nodal forces, in the unknowns' frames. At constrained
+     * degrees of freedom this is the reaction of the support, at u_nu of a
+     * contact node minus the normal force of the foundation.
      */
     dealii::Vector<double>
     residual(const dealii::Vector<double> &u,
@@ -80,7 +81,27 @@ namespace Debond
     elastic_functional(const dealii::Vector<double> &u,
                        const double                  load_factor = 1.) const;
 
+    /// The strain energy 1/2 <A u, u>, likewise.
+    double
+    strain_energy(const dealii::Vector<double> &u,
+                  const double                  load_factor = 1.) const;
+
+    /// <f, u>, the work of the whole load.
+    double
+    load_work(const dealii::Vector<double> &u,
+              const double                  load_factor = 1.) const;
+
   private:
+    /// u with its lifting, in the unknowns.
+    dealii::Vector<double>
+    lifted(const dealii::Vector<double> &u, const double load_factor) const;
+
+    /// 1/2 <A u, u> - work_factor <f, u>.
+    double
+    energy(const dealii::Vector<double> &u,
+           const double                  load_factor,
+           const double                  work_factor) const;
+
     const ElasticUnknowns<dim>     &unknowns;
     Material                        elastic_material;
     dealii::SymmetricTensor<4, dim> stiffness;

@@ -2,6 +2,7 @@
 #ifndef debond_elasticity_unknowns_h
 #define debond_elasticity_unknowns_h
 
+#include <deal.II/base/function.h>
 #include <deal.II/base/tensor.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_system.h>
@@ -15,7 +16,11 @@
 #include <debond/mesh/body.h>
 
 #include <array>
+#include <map>
+#include <memory>
 #include <set>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace Debond
@@ -30,8 +35,61 @@ namespace Debond
     /// sigma_tau = 0 there.
     bool tangential_displacement_fixed = true;
 
-    /// For messages.
+    /// For messages and reactions.
     BoundaryNames names = {};
+  };
+
+
+
+  /// What is prescribed on a piece of the boundary beside clamps.
+  template <int dim>
+  struct PrescribedDisplacement
+  {
+    std::string                          name; ///< of the piece
+    std::set<dealii::types::boundary_id> boundaries;
+
+    /// The normal displacement alone is zero, on a flat piece (a roller, or a
+    /// plane of symmetry); otherwise these Cartesian components have values.
+    bool                                         is_roller  = false;
+    std::array<bool, dim>                        components = {};
+    std::shared_ptr<const dealii::Function<dim>> values     = {};
+  };
+
+
+
+  template <int dim>
+  struct Supports
+  {
+    std::vector<PrescribedDisplacement<dim>> displacements = {};
+
+    /// The gap g >= 0 between the body at rest and the foundation; none if
+    /// null.
+    std::shared_ptr<const dealii::Function<dim>> gap = {};
+  };
+
+
+
+  /// A prescribed displacement or a gap that cannot be.
+  class SupportError : public std::invalid_argument
+  {
+  public:
+    enum class Subject
+    {
+      displacement,
+      roller,
+      gap
+    };
+
+    SupportError(const Subject      subject,
+                 const std::string &name,
+                 const std::string &message)
+      : std::invalid_argument(message)
+      , subject(subject)
+      , name(name)
+    {}
+
+    const Subject     subject;
+    const std::string name; ///< of the piece of the boundary
   };
 
 
@@ -46,14 +104,17 @@ namespace Debond
    * clamped. Normals that differ by less than 30 degrees count as one (their
    * mean), as on a polygonal approximation of a smooth side.
    *
-   * All vectors have n_dofs() entries; the constrained ones are zero.
+   * All vectors have n_dofs() entries; the constrained ones are zero. So they
+   * are w in u = w + G, where G, the lifting, has the prescribed displacements
+   * at constrained degrees of freedom and the gap g at contact normals: u_nu <=
+   * g is w_nu <= 0, and nothing that minimises knows of G.
    */
   template <int dim>
   class ElasticUnknowns
   {
   public:
-    /// The unknowns of a vertex on the contact boundary: x = to_frame u, where
-    /// u are the Cartesian components, and u = to_cartesian x.
+    /// The unknowns of a vertex: x = to_frame u, where u are the Cartesian
+    /// components, and u = to_cartesian x.
     struct Frame
     {
       std::array<dealii::types::global_dof_index, dim> dofs;
@@ -66,9 +127,11 @@ namespace Debond
     /// or is not in the mesh, if contact_frame() does, or if a rigid motion is
     /// left free; the message names the motion ("translation in y", "rotation
     /// about z"). The unilateral condition on u_nu does not count as a
-    /// support.
+    /// support. Throws SupportError if supports contradict each other or the
+    /// foundation, are not finite somewhere, or if a roller is not flat.
     ElasticUnknowns(const dealii::Triangulation<dim> &triangulation,
-                    const BoundaryConditions         &conditions);
+                    const BoundaryConditions         &conditions,
+                    const Supports<dim>              &supports = {});
 
     ElasticUnknowns(const ElasticUnknowns &) = delete;
 
@@ -81,9 +144,10 @@ namespace Debond
     const ContactSpace<dim> &
     contact() const;
 
-    /// Of all vertices on the contact boundary that are not clamped.
+    /// Of all vertices whose unknowns are not Cartesian: those on the contact
+    /// boundary that are not clamped, and those on inclined rollers.
     const std::vector<Frame> &
-    contact_frames() const;
+    frames() const;
 
     /// The columns are the Cartesian directions of the vertex' unknowns; null
     /// where the unknowns are Cartesian.
@@ -97,7 +161,7 @@ namespace Debond
     unsigned int
     n_free_dofs() const;
 
-    /// Whether a degree of freedom is fixed to zero (clamped or tangential).
+    /// Whether a degree of freedom is prescribed (by a support or tangential).
     bool
     is_constrained(const dealii::types::global_dof_index dof) const;
 
@@ -105,11 +169,39 @@ namespace Debond
     const dealii::AffineConstraints<double> &
     constraints() const;
 
-    /// The Cartesian components of a vector of unknowns, at every vertex.
-    dealii::Vector<double>
-    cartesian_displacement(const dealii::Vector<double> &u) const;
+    /// The pieces of the boundary that support the body, by name.
+    const std::vector<std::string> &
+    support_names() const;
 
-    /// The vector of unknowns of a displacement that is given by its Cartesian
+    /// A degree of freedom that a support prescribes. Of several supports of a
+    /// vertex the first one bears a direction.
+    struct Supported
+    {
+      dealii::types::global_dof_index dof;
+      unsigned int                    support; ///< of support_names()
+    };
+
+    const std::vector<Supported> &
+    supported() const;
+
+    /// Whether G is not zero.
+    bool
+    has_lifting() const;
+
+    /// Whether a part of G does not grow with the load.
+    bool
+    has_gap() const;
+
+    /// G, with @p load_factor times the prescribed displacements and the gap.
+    dealii::Vector<double>
+    lifting(const double load_factor = 1.) const;
+
+    /// The Cartesian components of the displacement u = w + G, at every vertex.
+    dealii::Vector<double>
+    cartesian_displacement(const dealii::Vector<double> &w,
+                           const double load_factor = 1.) const;
+
+    /// The vector w of a displacement that is given by its Cartesian
     /// components; constrained degrees of freedom are zero.
     dealii::Vector<double>
     from_cartesian(const dealii::Vector<double> &cartesian_displacement) const;
@@ -129,20 +221,77 @@ namespace Debond
     rigid_body_modes() const;
 
   private:
+    /// What is prescribed at a vertex, by orthonormal directions.
+    struct Row
+    {
+      dealii::Tensor<1, dim> direction;
+      double                 value;
+      unsigned int           support;
+    };
+
+    struct PrescribedVertex
+    {
+      std::array<dealii::types::global_dof_index, dim> dofs;
+      dealii::Point<dim>                               position;
+      std::vector<Row>                                 rows;
+    };
+
+    /// The least displacement that satisfies the rows.
+    static dealii::Tensor<1, dim>
+    displacement_of(const PrescribedVertex &vertex);
+
+    /// Prescribes zero in all other directions.
+    static void
+    fix_rest(PrescribedVertex &vertex);
+
+    /// By vertex index.
+    using PrescribedVertices = std::map<unsigned int, PrescribedVertex>;
+
     void
     clamp(const BoundaryConditions  &conditions,
-          std::vector<Support<dim>> &supports);
+          std::vector<Support<dim>> &motions);
 
     void
     clamp_vertex(
       const std::array<dealii::types::global_dof_index, dim> &vertex_dofs,
       const dealii::Point<dim>                               &position,
-      std::vector<Support<dim>>                              &supports);
+      std::vector<Support<dim>>                              &motions,
+      const unsigned int support = dealii::numbers::invalid_unsigned_int);
+
+    /// Adds what @p condition prescribes to the vertices.
+    void
+    prescribe(const PrescribedDisplacement<dim> &condition,
+              const BoundaryConditions          &conditions,
+              PrescribedVertices                &vertices);
+
+    /// Constrains the vertex; those of the contact boundary are done with it.
+    void
+    constrain(const PrescribedVertex    &vertex,
+              const unsigned int         index,
+              std::vector<Support<dim>> &motions);
+
+    /// Constrains a degree of freedom to a displacement.
+    void
+    constrain(const dealii::types::global_dof_index dof,
+              const double                          value,
+              const unsigned int                    support);
+
+    void
+    add_frame(
+      const unsigned int                                      index,
+      const std::array<dealii::types::global_dof_index, dim> &vertex_dofs,
+      const std::vector<dealii::Tensor<1, dim>>              &rows);
 
     void
     make_contact_boundary(const BoundaryConditions  &conditions,
+                          const Supports<dim>       &supports,
+                          const PrescribedVertices  &prescribed,
                           const double               diameter,
-                          std::vector<Support<dim>> &supports);
+                          std::vector<Support<dim>> &motions);
+
+    /// The unknowns of Cartesian components.
+    dealii::Vector<double>
+    to_frames(const dealii::Vector<double> &cartesian) const;
 
     const dealii::MappingFE<dim> mapping_p1;
     const dealii::FESystem<dim>  fe;
@@ -150,10 +299,17 @@ namespace Debond
 
     /// By vertex index, invalid_unsigned_int where the unknowns are Cartesian.
     std::vector<unsigned int> frame_of_vertex;
-    std::vector<Frame>        frames;
+    std::vector<Frame>        vertex_frames;
 
     dealii::AffineConstraints<double> fixed;
     ContactSpace<dim>                 contact_space;
+
+    std::vector<std::string> names_of_supports;
+    std::vector<Supported>   supported_dofs;
+
+    // G for the whole load; empty where there is none.
+    dealii::Vector<double> prescribed;
+    dealii::Vector<double> gap;
   };
 } // namespace Debond
 

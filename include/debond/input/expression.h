@@ -11,15 +11,16 @@
 namespace Debond
 {
   /**
-   * The function with dim components given by muParser expressions in x, y[,
+   * The function with @p n_components given by muParser expressions in x, y[,
    * z], separated by ';', and the given constants and pi. Throws
    * std::invalid_argument with muParser's words if one does not parse, or if
-   * there are not dim of them.
+   * there are not as many of them.
    */
   template <int dim>
   std::shared_ptr<const dealii::Function<dim>>
   make_function(const std::string                   &expressions,
-                const std::map<std::string, double> &constants);
+                const std::map<std::string, double> &constants,
+                const unsigned int                   n_components = dim);
 } // namespace Debond
 
 #endif

@@ -6,6 +6,7 @@
 #include <debond/elasticity/material.h>
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -39,12 +40,21 @@ namespace Debond
                  LoadParameters    &loads,
                  ParameterTable    &table);
 
-  /// Rejects the entry @p path if the @p expression for a vector that it has is
-  /// not one. An empty one stands for none.
+  /// Rejects the entry @p path if the body has not all boundaries of these
+  /// names.
+  void
+  check_names(const std::string           &path,
+              const std::set<std::string> &names,
+              const std::set<std::string> &boundaries,
+              ParameterTable              &table);
+
+  /// Rejects the entry @p path if the @p expression that it has is not one of
+  /// so many components. An empty one stands for none.
   void
   check_expression(const std::string                   &path,
                    const std::string                   &expression,
                    const unsigned int                   dimension,
+                   const unsigned int                   n_components,
                    const std::map<std::string, double> &constants,
                    ParameterTable                      &table);
 } // namespace Debond

@@ -10,6 +10,7 @@
 #include <debond/input/load_path_parameters.h>
 #include <debond/input/output_parameters.h>
 #include <debond/input/solver_parameters.h>
+#include <debond/input/support_parameters.h>
 #include <debond/mesh/make_body.h>
 
 #include <map>
@@ -53,6 +54,7 @@ namespace Debond
     std::set<std::string>       clamped_boundaries = {"left", "right"};
     std::set<std::string>       contact_boundaries = {"bottom"};
     bool                        tangential_displacement_fixed = true;
+    SupportParameters           supports;
     LoadParameters              loads;
     LoadPathParameters          load_path;
     ContactLawParameters        law;

@@ -12,6 +12,17 @@
 
 namespace Debond
 {
+  /// What Condensation::scale_load() does not scale.
+  struct ConstantPart
+  {
+    dealii::Vector<double> load = {}; ///< a part of f, empty for none
+
+    /// A part of the energy, by the load factor; none for null.
+    std::function<double(double)> energy = {};
+  };
+
+
+
   /**
    * The elastic problem condensed onto some of its unknowns s, here the normal
    * displacements of the contact nodes: with all others at equilibrium,
@@ -37,15 +48,15 @@ namespace Debond
     Condensation(const dealii::SparseMatrix<double>      &A,
                  const dealii::Vector<double>            &f,
                  const std::vector<unsigned int>         &kept,
-                 const std::function<bool(unsigned int)> &is_excluded);
+                 const std::function<bool(unsigned int)> &is_excluded,
+                 const ConstantPart                      &constant = {});
 
     Condensation(const Condensation &) = delete;
 
     ~Condensation();
 
-    /// From now on f is @p factor times the load that the constructor got: g is
-    /// proportional to the factor and c_0 to its square, S and the
-    /// factorisation stay.
+    /// From now on f is @p factor times the load that the constructor got, but
+    /// for its constant part; S and the factorisation stay.
     void
     scale_load(const double factor);
 
@@ -57,14 +68,19 @@ namespace Debond
     const dealii::Vector<double> &
     load() const;
 
-    /// c_0, the energy of s = 0.
+    /// c_0 with the constant part, the energy of s = 0.
     double
     energy_at_zero() const;
 
     /// 1/2 <A u, u> >= 0 of the solution of A u = f, without any contact: a
-    /// scale for energies. The functional's minimum over all s is minus this.
+    /// scale for energies. The functional's minimum over all s is minus this,
+    /// but for the constant part of the energy.
     double
     energy_without_contact() const;
+
+    /// 1/2 g'S^{-1} g, what the kept unknowns gain without any contact.
+    double
+    energy_of_kept() const;
 
     /// An estimate of |S| |S^{-1}| in the 1-norm, by LAPACK from the factor; 1
     /// if no unknown is kept.
@@ -93,22 +109,22 @@ namespace Debond
     dealii::Vector<double>
     condensed_load(const std::vector<double> &y) const;
 
-    /// u for @p scale times y in the eliminated unknowns.
+    /// u for y in the eliminated unknowns.
     dealii::Vector<double>
-    backward(const double                  scale,
-             const std::vector<double>    &y,
+    backward(const std::vector<double>    &y,
              const dealii::Vector<double> &s) const;
 
-    unsigned int               n;        ///< size of f
-    std::vector<unsigned int>  unknowns; ///< rows of A, the kept ones last
-    std::unique_ptr<Factor>    factor;
-    std::vector<double>        y; ///< L^{-1} P f of the given load
-    double                     load_factor = 1.;
-    dealii::FullMatrix<double> L_ss;
-    dealii::FullMatrix<double> S;
-    dealii::Vector<double>     given_g; ///< of the given load
-    dealii::Vector<double>     g;
-    double                     given_c_0; ///< of the given load
+    unsigned int                  n;        ///< size of f
+    std::vector<unsigned int>     unknowns; ///< rows of A, the kept ones last
+    std::unique_ptr<Factor>       factor;
+    std::vector<double>           y;          ///< L^{-1} P f of the load
+    std::vector<double>           given_y;    ///< of the given one
+    std::vector<double>           constant_y; ///< of its constant part, if any
+    std::function<double(double)> constant_energy;
+    double                        constant_part = 0.; ///< of the energy
+    dealii::FullMatrix<double>    L_ss;
+    dealii::FullMatrix<double>    S;
+    dealii::Vector<double>        g;
   };
 } // namespace Debond
 

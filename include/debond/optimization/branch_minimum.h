@@ -49,10 +49,12 @@ namespace Debond
     /// or if not f >= f(0) = 0.
     explicit BranchMinimum(const std::vector<ConvexBranch> &branches);
 
-    /// The multiple of the function of which the first piece, which has to
-    /// have a curvature here, has the given one.
+    /// c f(s / stretch) with the c for which the first piece, which has to have
+    /// a curvature here, has the given one; the single piece zero if that is
+    /// zero.
     BranchMinimum
-    with_first_curvature(const double curvature) const;
+    with_first_curvature(const double curvature,
+                         const double stretch = 1.) const;
 
     unsigned int
     size() const;

@@ -18,7 +18,8 @@ namespace Debond
   void
   write_body_vtu(const ElasticProblem<dim>    &problem,
                  const dealii::Vector<double> &u,
-                 const std::string            &file_name);
+                 const std::string            &file_name,
+                 const double                  load_factor = 1.);
 
   /**
    * Writes the contact boundary as VTU: displacement, u_nu, gap (-u_nu),
@@ -34,7 +35,8 @@ namespace Debond
   write_contact_vtu(const ElasticProblem<dim>    &problem,
                     const dealii::Vector<double> &u,
                     const Verification<dim>      &verification,
-                    const std::string            &file_name);
+                    const std::string            &file_name,
+                    const double                  load_factor = 1.);
 } // namespace Debond
 
 #endif

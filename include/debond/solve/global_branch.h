@@ -43,6 +43,7 @@ namespace Debond
                 const Branch                &start,
                 const std::function<bool()> &may_go_on,
                 const BranchMonitor         &monitor,
+                AdhesionIntegral<dim>       &adhesion,
                 Condensation                &condensed);
 
   /// 1/2 s'S s - g's + Phi(s).

@@ -75,6 +75,7 @@ namespace Debond
     std::unique_ptr<ElasticProblem<dim>>               elastic_problem;
     std::unique_ptr<AdhesiveLaw>                       adhesive_law;
     std::unique_ptr<ContactQuadrature<dim>>            quadrature;
+    std::unique_ptr<BondField<dim>>                    bond_field;
     std::unique_ptr<AdhesionIntegral<dim>>             adhesion_integral;
     std::unique_ptr<Objective<dealii::Vector<double>>> energy;
     dealii::Vector<double>                             first_iterate;

@@ -93,6 +93,18 @@ namespace Debond
 
 
 
+    /// Of the unknown that has most.
+    unsigned int
+    number_of_pieces(const SeparableBranches &lumped)
+    {
+      unsigned int n = 0;
+      for (const BranchMinimum &f : lumped.f)
+        n = std::max(n, f.size());
+      return n;
+    }
+
+
+
     /// Nodes that go to a piece or to the one above it.
     struct Trial
     {
@@ -235,13 +247,15 @@ namespace Debond
         // kink. Only their branches matter.
         const bool to_the_end = trial.move == BranchMove::start &&
                                 !trial.down.empty() &&
-                                trial.piece + 1 == lumped.f[0].size();
+                                trial.piece + 1 == number_of_pieces(lumped);
         dealii::Vector<double> next = point;
+        // Where there are no bonds no branch is to be left.
         for (const unsigned int i : trial.down)
-          next(i) =
-            std::min(next(i),
-                     to_the_end ? 1e3 * lumped.f[i][trial.piece].upper :
-                                  lumped.f[i].point_inside(trial.piece));
+          if (trial.piece < lumped.f[i].size())
+            next(i) =
+              std::min(next(i),
+                       to_the_end ? 1e3 * lumped.f[i][trial.piece].upper :
+                                    lumped.f[i].point_inside(trial.piece));
         for (const unsigned int i : trial.up)
           if (lumped.f[i].index(next(i)) >= trial.piece)
             next(i) = lumped.f[i].point_inside(trial.piece - 1);
@@ -340,7 +354,7 @@ namespace Debond
                   dealii::Vector<double>           &s,
                   const std::function<bool()>      &monitor)
   {
-    const unsigned int n_pieces = s.size() > 0 ? lumped.f[0].size() : 0;
+    const unsigned int n_pieces = number_of_pieces(lumped);
     StateSearch        search(S, g, phi, lumped, method, parameters, s);
     const Moves        moves(parameters, neighbours);
     const auto         descend = [&](dealii::Vector<double> point) {

@@ -123,15 +123,18 @@ namespace Debond
 
 
   SeparableBranches
-  lumped_branches(const PiecewiseQuadratic &phi,
-                  const unsigned int        n,
-                  const BranchMinimum      &branches)
+  lumped_branches(const PiecewiseQuadratic  &phi,
+                  const unsigned int         n,
+                  const BranchMinimum       &branches,
+                  const std::vector<double> &stretches)
   {
     const Eigen::VectorXd curvature =
       phi.curvature(dealii::Vector<double>(n)) * Eigen::VectorXd::Ones(n);
     std::vector<BranchMinimum> f;
-    for (const double c : curvature)
-      f.push_back(branches.with_first_curvature(c));
+    for (unsigned int i = 0; i < n; ++i)
+      f.push_back(
+        branches.with_first_curvature(curvature(i),
+                                      stretches.empty() ? 1. : stretches[i]));
     return SeparableBranches(f);
   }
 

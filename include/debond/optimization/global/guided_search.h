@@ -14,9 +14,10 @@ namespace Debond
   /// the row sum of the second derivative at 0. This is Phi itself if each
   /// unknown has a multiple of them for its own.
   SeparableBranches
-  lumped_branches(const PiecewiseQuadratic &phi,
-                  const unsigned int        n,
-                  const BranchMinimum      &branches);
+  lumped_branches(const PiecewiseQuadratic  &phi,
+                  const unsigned int         n,
+                  const BranchMinimum       &branches,
+                  const std::vector<double> &stretches = {});
 
   struct GuidedSearchParameters
   {

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_contact_field_value_h
+#define debond_contact_field_value_h
+
+#include <deal.II/base/function.h>
+#include <deal.II/base/point.h>
+
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace Debond
+{
+  /// "(0.1, 0)"
+  template <int dim>
+  std::string
+  point_text(const dealii::Point<dim> &point)
+  {
+    std::ostringstream text;
+    for (unsigned int d = 0; d < dim; ++d)
+      text << (d == 0 ? "(" : ", ") << point[d];
+    text << ")";
+    return text.str();
+  }
+
+
+
+  /// A component of a field. Throws std::invalid_argument with the place if it
+  /// is not finite there.
+  template <int dim>
+  double
+  field_value(const dealii::Function<dim> &field,
+              const dealii::Point<dim>    &point,
+              const unsigned int           component = 0)
+  {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    try
+      {
+        value = field.value(point, component);
+      }
+    catch (const std::exception &)
+      {
+        // muParser's functions throw outside of their domains.
+      }
+    if (!std::isfinite(value))
+      throw std::invalid_argument("it is not finite at " + point_text(point));
+    return value;
+  }
+
+
+
+  /// A field that must not be negative. Throws as field_value() does.
+  template <int dim>
+  double
+  nonnegative_value(const dealii::Function<dim> &field,
+                    const dealii::Point<dim>    &point)
+  {
+    const double value = field_value(field, point);
+    if (value < 0.)
+      {
+        std::ostringstream text;
+        text << "it is negative, " << value << ", at " << point_text(point);
+        throw std::invalid_argument(text.str());
+      }
+    return value;
+  }
+} // namespace Debond
+
+#endif

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <debond/input/load_parameters.h>
+#include <debond/input/support_parameters.h>
+
+#include <algorithm>
+
+namespace Debond
+{
+  void
+  bind_supports(SupportParameters &supports, ParameterTable &table)
+  {
+    table.bind(
+      "Boundary conditions/Roller boundaries",
+      supports.rollers,
+      "Flat boundaries where the normal displacement alone is zero: rollers, or planes of symmetry");
+    table.bind_family(
+      "Boundary conditions/Displacement",
+      supports.displacements,
+      Pattern(
+        "nothing, or for each component 'free' or an expression, separated by ';'",
+        [](const std::string & /*value*/) { return true; }),
+      "The displacement of the boundary of this name in global coordinates, such as 'free; 0.001'; expressions as in Loads. A load path's factors multiply it",
+      "length");
+    table.bind(
+      "Contact law/Initial gap",
+      supports.gap,
+      Pattern("nothing, or an expression",
+              [](const std::string & /*value*/) { return true; }),
+      "The distance g >= 0 between the body at rest and the foundation, an expression as in Loads: u_nu <= g, and bonds are stretched by g - u_nu",
+      "length");
+  }
+
+
+
+  DisplacementText::DisplacementText(const std::string &text)
+  {
+    for (const std::string &word :
+         dealii::Utilities::split_string_list(text, ';'))
+      {
+        is_prescribed.push_back(word != "free");
+        expressions += (is_prescribed.size() == 1 ? "" : "; ") +
+                       (is_prescribed.back() ? word : "0");
+      }
+  }
+
+
+
+  void
+  check_supports(const SupportParameters             &supports,
+                 const std::set<std::string>         &boundaries,
+                 const unsigned int                   dimension,
+                 const std::map<std::string, double> &constants,
+                 ParameterTable                      &table)
+  {
+    check_names("Boundary conditions/Roller boundaries",
+                supports.rollers,
+                boundaries,
+                table);
+    for (const auto &[name, text] : supports.displacements)
+      {
+        const std::string path = "Boundary conditions/Displacement " + name;
+        check_names(path, {name}, boundaries, table);
+        const DisplacementText components(text);
+        check_expression(
+          path, components.expressions, dimension, dimension, constants, table);
+        if (std::none_of(components.is_prescribed.begin(),
+                         components.is_prescribed.end(),
+                         [](const bool is_prescribed) {
+                           return is_prescribed;
+                         }))
+          table.reject(path, "all components are free: leave it out");
+      }
+    check_expression(
+      "Contact law/Initial gap", supports.gap, dimension, 1, constants, table);
+  }
+} // namespace Debond

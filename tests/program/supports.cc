@@ -1,0 +1,462 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Supports, gaps and bonds that vary, against closed forms: stretched columns,
+// a block that is pressed through a gap, a column on bonds of which it is
+// pulled off, halves of symmetric bodies, bonds given in several ways.
+
+#include <debond/input/parameters.h>
+#include <debond/program/run.h>
+
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "../check.h"
+
+using namespace Debond;
+
+namespace
+{
+  using Json   = nlohmann::json;
+  using Values = std::vector<std::string>;
+
+
+
+  std::string
+  text(const double value)
+  {
+    std::ostringstream out;
+    out.precision(17);
+    out << value;
+    return out.str();
+  }
+
+
+
+  Values
+  operator+(Values values, const Values &others)
+  {
+    values.insert(values.end(), others.begin(), others.end());
+    return values;
+  }
+
+
+
+  /// The summary of a run, with the load path as "path" if there is one.
+  Json
+  solve_scene(const Values &assignments)
+  {
+    const std::filesystem::path directory =
+      std::filesystem::temp_directory_path() /
+      ("debond-supports-" + std::to_string(getpid()));
+    SceneTable table;
+    for (const std::string &assignment : assignments)
+      table.assign(assignment);
+    for (const char *file : {"Body VTU", "Contact VTU", "Load path plots"})
+      table.assign(std::string("Output/") + file + "=false");
+    table.assign("Output/Directory=" + directory.string());
+    std::ostringstream log;
+    Json               summary;
+    try
+      {
+        const Parameters parameters = table.parameters("scene.prm");
+        if (parameters.dimension == 2)
+          run<2>(parameters, log, false);
+        else
+          run<3>(parameters, log, false);
+        std::ifstream(directory / "summary.json") >> summary;
+        std::ifstream path(directory / "load_path.csv");
+        summary["path"] = Json::array();
+        std::string line;
+        std::getline(path, line);
+        std::vector<std::string> names;
+        std::istringstream       titles(line);
+        for (std::string name; std::getline(titles, name, ',');)
+          names.push_back(name);
+        while (std::getline(path, line))
+          {
+            Json               row;
+            std::istringstream cells(line);
+            std::string        cell;
+            for (unsigned int k = 0; std::getline(cells, cell, ','); ++k)
+              row[names.at(k)] = cell;
+            summary["path"].push_back(row);
+          }
+      }
+    catch (const std::invalid_argument &error)
+      {
+        std::cout << error.what() << std::endl;
+        summary["status"] = "rejected";
+      }
+    std::filesystem::remove_all(directory);
+    return summary;
+  }
+
+
+
+  /// A column of a row of load_path.csv.
+  double
+  number(const Json &row, const std::string &column)
+  {
+    return std::stod(row.at(column).get<std::string>());
+  }
+
+
+
+  double
+  relative(const double value, const double expected)
+  {
+    return std::abs(value / expected - 1.);
+  }
+
+
+
+  /// A length and a modulus in some units.
+  struct Units
+  {
+    std::string name;
+    double      length, modulus;
+  };
+
+  const std::vector<Units> systems = {{"GPa and m", 1., 1.},
+                                      {"Pa and m", 1., 1e9},
+                                      {"MPa and mm", 1e3, 1e3}};
+
+
+
+  /// A box that is free to deform uniformly: planes of symmetry left, at the
+  /// bottom (and at the back), a foundation above it.
+  Values
+  block(const unsigned int dim, const Units &units)
+  {
+    const double L = units.length;
+    return {"Dimension=" + std::to_string(dim),
+            "Mesh/Lengths=" + text(2. * L) + ", " + text(0.5 * L) +
+              (dim == 3 ? ", " + text(0.3 * L) : ""),
+            dim == 3 ? "Mesh/Cells=4, 2, 1" : "Mesh/Cells=6, 3",
+            "Material/Young modulus=" + text(70. * units.modulus),
+            "Material/Poisson ratio=0.3",
+            "Boundary conditions/Clamped boundaries=",
+            "Boundary conditions/Contact boundary=top",
+            std::string("Boundary conditions/Roller boundaries=left, bottom") +
+              (dim == 3 ? ", back" : ""),
+            "Contact law/Tangential displacement=free"};
+  }
+
+
+
+  void
+  test_stretched_column(const unsigned int dim, const Units &units)
+  {
+    std::cout << "== Column stretched, " << dim << "D, " << units.name
+              << std::endl;
+    const double depth = dim == 3 ? 0.3 * units.length : 1.,
+                 area = 0.5 * units.length * depth, E = 70. * units.modulus,
+                 strain = 1e-3;
+    for (const std::string method :
+         {"majorise minimise", "energy bundle", "euclidean bundle"})
+      {
+        // The proximal weight of the paper's method is for its own units.
+        if (method == "euclidean bundle" && (dim == 3 || units.modulus != 1.))
+          continue;
+        const Json result = solve_scene(
+          block(dim, units) +
+          Values{"Boundary conditions/Displacement right=" +
+                   text(2. * units.length * strain) +
+                   (dim == 3 ? "; free; free" : "; free"),
+                 "Contact law/Law=none",
+                 "Solver/Method=" + method,
+                 "Solver/Euclidean bundle/Maximum iterations=20000"});
+        // The paper's method ends before that.
+        const double tolerance = method == "euclidean bundle" ? 1e-5 : 1e-10;
+        const double J = 0.5 * E * strain * strain * 2. * units.length * area;
+        check(method + ", J",
+              relative(result["functional"], J),
+              0.1 * tolerance);
+        check(method + ", reaction right",
+              relative(result["reactions"]["right"][0], E * strain * area),
+              tolerance);
+        check(method + ", reaction left",
+              relative(result["reactions"]["left"][0], -E * strain * area),
+              tolerance);
+        check(method + ", reaction bottom",
+              std::abs(double(result["reactions"]["bottom"][1])) /
+                (E * strain * area),
+              tolerance);
+      }
+  }
+
+
+
+  /// It widens by more than the gap and then presses on the foundation.
+  void
+  test_block_through_gap(const unsigned int dim, const Units &units)
+  {
+    std::cout << "== Block pressed through a gap, " << dim << "D, "
+              << units.name << std::endl;
+    const double depth = dim == 3 ? 0.3 * units.length : 1.,
+                 L = 2. * units.length, H = 0.5 * units.length,
+                 E = 70. * units.modulus, nu = 0.3, compression = -1e-3,
+                 gap = 0.4 * nu * 1e-3 * H;
+    const Values scene =
+      block(dim, units) +
+      Values{"Boundary conditions/Displacement right=" + text(L * compression) +
+               (dim == 3 ? "; free; free" : "; free"),
+             "Contact law/Initial gap=" + text(gap),
+             "Contact law/Law=none",
+             "Solver/Method=majorise minimise"};
+    const Json   result  = solve_scene(scene);
+    const double modulus = E / (1. - nu * nu), across = gap / H,
+                 along       = modulus * (compression + nu * across),
+                 transversal = modulus * (across + nu * compression);
+    check("J",
+          relative(result["functional"],
+                   0.5 * (along * compression + transversal * across) * L * H *
+                     depth),
+          1e-11);
+    check("reaction right",
+          relative(result["reactions"]["right"][0], along * H * depth),
+          1e-10);
+    check("force of the foundation",
+          relative(result["contact_reaction"][1], transversal * L * depth),
+          1e-10);
+
+    // At a fifth of the displacement it does not touch, at twice it does.
+    const Json path =
+      solve_scene(scene + Values{"Load path/Factors=0.2, 1, 2",
+                                 "Load path/Global branch=none"});
+    const auto J = [&](const double factor) {
+      const double e = factor * compression;
+      if (-nu * e * H < gap)
+        return 0.5 * E * e * e * L * H * depth;
+      return 0.5 *
+             (modulus * (e + nu * across) * e +
+              modulus * (across + nu * e) * across) *
+             L * H * depth;
+    };
+    for (const Json &row : path["path"])
+      check("load path, factor " + row.at("factor").get<std::string>(),
+            relative(number(row, "J"), J(number(row, "factor"))),
+            1e-10);
+  }
+
+
+
+  /// A column on bonds below it, the top lifted by d: a spring E/H and a spring
+  /// a in series, of which the second one is stretched by the gap already.
+  void
+  test_column_on_bonds(const unsigned int dim, const Units &units)
+  {
+    std::cout << "== Column on bonds, " << dim << "D, " << units.name
+              << std::endl;
+    const double depth = dim == 3 ? 0.3 * units.length : 1.,
+                 L = 2. * units.length, H = 0.5 * units.length,
+                 E = 70. * units.modulus, a = 0.5 * E / H, M = 1e-3 * H,
+                 area = L * depth, gap = 0.25 * M;
+    const auto scene = [&](const double lift) {
+      return Values{"Dimension=" + std::to_string(dim),
+                    "Mesh/Lengths=" + text(L) + ", " + text(H) +
+                      (dim == 3 ? ", " + text(0.3 * units.length) : ""),
+                    dim == 3 ? "Mesh/Cells=4, 2, 1" : "Mesh/Cells=6, 3",
+                    "Material/Young modulus=" + text(E),
+                    "Material/Poisson ratio=0.3",
+                    "Boundary conditions/Clamped boundaries=",
+                    "Boundary conditions/Contact boundary=bottom",
+                    std::string("Boundary conditions/Roller boundaries=left") +
+                      (dim == 3 ? ", back" : ""),
+                    std::string("Boundary conditions/Displacement top=free; ") +
+                      text(lift) + (dim == 3 ? "; free" : ""),
+                    "Contact law/Tangential displacement=free",
+                    "Contact law/Bond stiffness=" + text(a),
+                    "Contact law/Bond threshold=" + text(M),
+                    "Contact law/Initial gap=" + text(gap),
+                    "Solver/Method=majorise minimise"};
+    };
+    // The bottom's displacement while bonds hold, and J then.
+    const auto displacement = [&](const double lift) {
+      return (E / H * lift - a * gap) / (a + E / H);
+    };
+    const auto J_bonded = [&](const double lift) {
+      const double u = displacement(lift);
+      return 0.5 * area *
+             (E / H * (lift - u) * (lift - u) + a * (u + gap) * (u + gap));
+    };
+    const double J_broken = 0.5 * a * M * M * area;
+
+    const double lift   = 0.5 * M;
+    const Json   bonded = solve_scene(
+      scene(lift) + Values{"Solver/Search=automatic", "Solver/Prove=true"});
+    check("J", relative(bonded["functional"], J_bonded(lift)), 1e-11);
+    check("the minimum is proved", bonded["minimum"]["state"] == "global");
+    check("reaction of the top",
+          relative(bonded["reactions"]["top"][1],
+                   a * (displacement(lift) + gap) * area),
+          1e-10);
+    check("force of the foundation",
+          relative(bonded["contact_reaction"][1],
+                   -a * (displacement(lift) + gap) * area),
+          1e-10);
+
+    // Where both states are minima the search knows which one is lower.
+    const double far  = 1.1 * M;
+    const Json   torn = solve_scene(
+      scene(far) + Values{"Solver/Search=automatic", "Solver/Prove=true"});
+    check("J of broken bonds", relative(torn["functional"], J_broken), 1e-11);
+    check("which is proved", torn["minimum"]["state"] == "global");
+
+    // Bonds break when they are stretched by M, and all at once.
+    const double last = M - gap + a * M / (E / H);
+    const Json   path =
+      solve_scene(scene(1.) + Values{"Load path/Factors=" + text(0.999 * last) +
+                                       ", " + text(1.001 * last),
+                                     "Load path/Global branch=none"});
+    check("load path before the bonds break",
+          relative(number(path["path"][0], "J"), J_bonded(0.999 * last)),
+          1e-10);
+    check("load path after they broke",
+          relative(number(path["path"][1], "J"), J_broken),
+          1e-10);
+  }
+
+
+
+  /// The right half of a symmetric body on a roller is half of it.
+  void
+  test_half_of_symmetric_body()
+  {
+    std::cout << "== Half of a symmetric body" << std::endl;
+    for (const double angle : {0., 30., -75.})
+      {
+        const std::string turned = "Mesh/Rotation=" + text(angle);
+        const double      c      = std::cos(angle * std::acos(-1.) / 180.),
+                     s           = std::sin(angle * std::acos(-1.) / 180.);
+        const std::string along  = '(' + text(c) + "*x+(" + text(s) + ")*y)";
+        const std::string load =
+          "if(abs(" + along + "-0.2)<0.1000001, 0.69, -0.345)";
+        const Values common = {turned,
+                               "Loads/Traction top=" + text(-s) + "*" + load +
+                                 ";" + text(c) + "*" + load,
+                               "Solver/Method=automatic"};
+        const Json   whole  = solve_scene(common + Values{"Mesh/Cells=40, 4"});
+        const Json   half   = solve_scene(
+          common + Values{"Mesh/Cells=20, 4",
+                          "Mesh/Lengths=0.2, 0.04",
+                          "Boundary conditions/Clamped boundaries=left",
+                          "Boundary conditions/Roller boundaries=right"});
+        check("turned by " + text(angle) + ", J",
+              relative(2. * double(half["functional"]), whole["functional"]),
+              1e-9);
+      }
+  }
+
+
+
+  /// Bonds by numbers, by expressions, by strength and fracture energy.
+  void
+  test_bonds()
+  {
+    std::cout << "== Bonds given in several ways" << std::endl;
+    const Values loaded = {"Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)",
+                           "Solver/Method=automatic"};
+    const double J      = solve_scene(loaded)["functional"];
+    const std::vector<Values> same = {
+      {"Contact law/Bond stiffness=69+0*x"},
+      {"Contact law/Bond stiffness=69+0*x",
+       "Contact law/Bond threshold=2e-3*(1+0*y)"},
+      {"Contact law/Bond threshold=2e-3*(1+0*y)"},
+      {"Contact law/Bond strength=0.138",
+       "Contact law/Fracture energy=1.38e-4"},
+      {"Contact law/Bond strength=0.138+0*x",
+       "Contact law/Fracture energy=1.38e-4"},
+      {"Contact law/Bond stiffness=69", "Contact law/Bond strength=0.138"},
+      {"Contact law/Bond threshold=0.002", "Contact law/Bond strength=0.138"},
+      {"Contact law/Bond stiffness=69", "Contact law/Fracture energy=1.38e-4"},
+      {"Contact law/Bond threshold=0.002",
+       "Contact law/Fracture energy=1.38e-4"}};
+    for (const Values &bonds : same)
+      {
+        std::string name;
+        for (const std::string &bond : bonds)
+          name += (name.empty() ? "" : ", ") + bond.substr(12);
+        check(name,
+              relative(solve_scene(loaded + bonds)["functional"], J),
+              1e-12);
+      }
+
+    // Without bonds anywhere they are none, with a crack they are fewer.
+    const double none =
+      solve_scene(loaded + Values{"Contact law/Law=none"})["functional"];
+    check("no bonds by expression",
+          relative(solve_scene(
+                     loaded +
+                     Values{"Contact law/Bond stiffness=0*x"})["functional"],
+                   none),
+          1e-12);
+    const Json crack = solve_scene(
+      loaded + Values{"Contact law/Bond stiffness=if(x < 0.25, 0, 69)",
+                      "Solver/Prove=true"});
+    const double J_crack = crack["functional"];
+    check("a crack lies between", none < J_crack && J_crack < J);
+    check("and is proved", crack["minimum"]["state"] == "global");
+    check("what is not bonded is free",
+          int(crack["bond_states"]["free"]) +
+              int(crack["bond_states"]["contact"]) >=
+            24);
+  }
+
+
+
+  void
+  test_refusals()
+  {
+    std::cout << "== Refused" << std::endl;
+    const std::vector<Values> scenes = {
+      {"Boundary conditions/Displacement right=0.1; 0"},
+      {"Boundary conditions/Displacement bottom=0; 0.001"},
+      {"Boundary conditions/Roller boundaries=bottom"},
+      {"Boundary conditions/Clamped boundaries=left",
+       "Boundary conditions/Displacement right=0; -0.001"},
+      {"Boundary conditions/Clamped boundaries=left",
+       "Boundary conditions/Displacement right=1/(y - 0.02); 0"},
+      {"Boundary conditions/Clamped boundaries=",
+       "Boundary conditions/Displacement left=0; free",
+       "Boundary conditions/Displacement top=0.1; free"},
+      {"Boundary conditions/Clamped boundaries=",
+       "Boundary conditions/Roller boundaries=left",
+       "Contact law/Tangential displacement=free"},
+      {"Contact law/Initial gap=0.1 - x"},
+      {"Contact law/Bond stiffness=x - 0.1"},
+      {"Contact law/Bond threshold=x"},
+      {"Contact law/Bond threshold=1/(x - 0.2)"}};
+    for (const Values &scene : scenes)
+      {
+        const Json result = solve_scene(scene);
+        if (result["status"] != "rejected")
+          std::cout << "NOT REJECTED: " << scene[0] << std::endl;
+      }
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *[])
+{
+  print_figures = argc > 1;
+  for (const Units &units : systems)
+    for (const unsigned int dim : {2, 3})
+      {
+        test_stretched_column(dim, units);
+        test_block_through_gap(dim, units);
+        test_column_on_bonds(dim, units);
+      }
+  test_half_of_symmetric_body();
+  test_bonds();
+  test_refusals();
+}
