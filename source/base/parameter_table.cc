@@ -68,6 +68,15 @@ namespace Debond
 
 
 
+    /// What the paths of the members of a family begin with.
+    std::string
+    prefix_of(const std::string &family)
+    {
+      return family.back() == '/' ? family : family + ' ';
+    }
+
+
+
     std::vector<std::string>
     sections_of(const std::vector<std::string> &paths)
     {
@@ -244,7 +253,12 @@ namespace Debond
                               const std::string                  &documentation,
                               const std::string                  &units)
   {
-    families.emplace(path, Family{pattern, documentation, units, &variable});
+    // A member that is not set has the default of nothing.
+    const Pattern or_nothing(pattern.description(),
+                             [pattern](const std::string &value) {
+                               return value.empty() || pattern.match(value);
+                             });
+    families.emplace(path, Family{or_nothing, documentation, units, &variable});
   }
 
 
@@ -253,7 +267,7 @@ namespace Debond
   ParameterTable::declare_member(const std::string &path)
   {
     for (const auto &[start, family] : families)
-      if (starts_with(path, start + " "))
+      if (starts_with(path, prefix_of(start)))
         {
           declare(path, "", family.pattern, family.documentation, family.units);
           return true;
@@ -302,8 +316,10 @@ namespace Debond
     file_name = file;
     reading.push_back(file);
 
-    const std::vector<std::string> known_sections =
-      sections_of(known_entries());
+    std::vector<std::string> known_paths = known_entries();
+    for (const auto &[path, unused] : families)
+      known_paths.push_back(path);
+    const std::vector<std::string> known_sections = sections_of(known_paths);
 
     // The sections that are open, and where they were opened. What is in an
     // unknown section is skipped, since the section is reported already.
@@ -472,9 +488,10 @@ namespace Debond
       {
         family.variable->clear();
         for (const std::string &member : known_entries())
-          if (starts_with(member, path + " "))
+          if (const std::string prefix = prefix_of(path);
+              starts_with(member, prefix))
             if (const std::string value = get(member); !value.empty())
-              (*family.variable)[member.substr(path.size() + 1)] = value;
+              (*family.variable)[member.substr(prefix.size())] = value;
       }
   }
 
@@ -595,5 +612,20 @@ namespace Debond
                              (documentation ? Handler::PRM :
                                               Handler::ShortPRM) |
                                Handler::KeepDeclarationOrder);
+    if (!documentation || families.empty())
+      return;
+    out << "\n# Entries with a name in place of NAME, as many as one needs\n"
+        << "# ---------------------\n";
+    for (const auto &[path, family] : families)
+      {
+        const std::string text = family.documentation +
+                                 ". Allowed: " + family.pattern.description() +
+                                 ". Units: " + family.units + ".";
+        out << "# " << prefix_of(path) << "NAME\n";
+        for (const std::string &line :
+             dealii::Utilities::break_text_into_lines(text, 76))
+          out << "# " << line << '\n';
+        out << '\n';
+      }
   }
 } // namespace Debond

@@ -91,9 +91,8 @@ namespace Debond
                      const dealii::Vector<double> &u,
                      const dealii::Function<dim>  &exact)
   {
-    const dealii::SymmetricTensor<4, dim> stiffness =
-      problem.fields().material().template elasticity_tensor<dim>();
-    const dealii::Vector<double> displacement =
+    dealii::SymmetricTensor<4, dim> stiffness;
+    const dealii::Vector<double>    displacement =
       problem.unknowns().cartesian_displacement(u);
     const dealii::QGaussSimplex<dim> rule(3);
     const double reference_volume = dim == 2 ? 0.5 : 1. / 6.;
@@ -115,6 +114,8 @@ namespace Debond
       {
         const dealii::Tensor<2, dim> gradient =
           problem.fields().displacement_gradient(cell, displacement);
+        stiffness =
+          problem.fields().material(cell).template elasticity_tensor<dim>();
         // The points of the rule are further than twice that from the faces.
         const double step = 1e-3 * cell->minimum_vertex_distance();
         for (unsigned int q = 0; q < rule.size(); ++q)

@@ -31,8 +31,8 @@ namespace Debond
           problem.fields().displacement_gradient(cell, displacement).norm());
         largest.von_mises =
           std::max(largest.von_mises,
-                   problem.fields().material().template von_mises<dim>(
-                     problem.fields().stress(cell, displacement)));
+                   von_mises(
+                     problem.fields().solid_stress(cell, displacement)));
       }
     return largest;
   }

@@ -5,6 +5,7 @@
 
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/linear_simplex.h>
+#include <debond/elasticity/temperature_load.h>
 
 #include <array>
 #include <vector>
@@ -23,19 +24,26 @@ namespace Debond
 
   template <int dim>
   void
-  ElasticProblem<dim>::assemble(const Material     &material,
-                                const Loads<dim>   &loads,
-                                const MatrixStorage new_storage)
+  ElasticProblem<dim>::assemble(const ByRegion<Material> &materials,
+                                const Loads<dim>         &loads,
+                                const MatrixStorage       new_storage)
   {
     const dealii::DoFHandler<dim> &dofs = elastic_unknowns.dof_handler();
     const dealii::AffineConstraints<double> &constraints =
       elastic_unknowns.constraints();
 
-    material.validate<dim>();
-    const dealii::Vector<double> applied_forces = load_vector(dofs, loads);
+    materials.transformed([](const Material &material) {
+      material.validate<dim>();
+      return true;
+    });
+    const std::vector<double> pressures =
+      thermal_stresses(dofs, materials, loads);
+    dealii::Vector<double> applied_forces = load_vector(dofs, loads);
+    add_thermal_forces(dofs, pressures, applied_forces);
     elastic_fields = std::make_unique<ElasticFields<dim>>(elastic_unknowns,
-                                                          material,
-                                                          applied_forces);
+                                                          materials,
+                                                          applied_forces,
+                                                          pressures);
 
     gap_load.reinit(0);
     if (elastic_unknowns.has_lifting())
@@ -66,14 +74,14 @@ namespace Debond
       {
         sparsity.copy_from(pattern);
         system_matrix.reinit(sparsity);
-        add_cell_matrices(material, system_matrix);
+        add_cell_matrices(materials, system_matrix);
       }
     else
       {
         distributed_matrix =
           std::make_unique<dealii::TrilinosWrappers::SparseMatrix>();
         distributed_matrix->reinit(pattern);
-        add_cell_matrices(material, *distributed_matrix);
+        add_cell_matrices(materials, *distributed_matrix);
         distributed_matrix->compress(dealii::VectorOperation::add);
       }
   }
@@ -83,11 +91,12 @@ namespace Debond
   template <int dim>
   template <typename MatrixType>
   void
-  ElasticProblem<dim>::add_cell_matrices(const Material &material,
-                                         MatrixType     &matrix) const
+  ElasticProblem<dim>::add_cell_matrices(const ByRegion<Material> &materials,
+                                         MatrixType               &matrix) const
   {
-    const dealii::SymmetricTensor<4, dim> stiffness =
-      material.elasticity_tensor<dim>();
+    const auto stiffness = materials.transformed([](const Material &material) {
+      return material.elasticity_tensor<dim>();
+    });
     constexpr unsigned int                       n_cell_dofs = dim * (dim + 1);
     dealii::FullMatrix<double>                   cell_matrix(n_cell_dofs);
     std::vector<dealii::types::global_dof_index> cell_dofs(n_cell_dofs);
@@ -123,7 +132,7 @@ namespace Debond
         for (unsigned int i = 0; i < n_cell_dofs; ++i)
           {
             const dealii::SymmetricTensor<2, dim> weighted_stress =
-              simplex.volume * (stiffness * strains[i]);
+              simplex.volume * (stiffness(cell->material_id()) * strains[i]);
             for (unsigned int j = 0; j < n_cell_dofs; ++j)
               cell_matrix(i, j) = weighted_stress * strains[j];
           }

@@ -10,8 +10,6 @@ namespace Debond
   ExtendedOperator<dim>::ExtendedOperator(
     const ElasticProblem<dim> &elastic_problem)
     : problem(elastic_problem)
-    , lambda(problem.fields().material().template lame_lambda<dim>())
-    , mu(problem.fields().material().shear_modulus())
   {
     cells.reserve(
       problem.unknowns().dof_handler().get_triangulation().n_active_cells());
@@ -49,7 +47,10 @@ namespace Debond
         for (auto &gradient : cell.gradients)
           for (long double &component : gradient)
             component /= determinant;
-        cell.volume = determinant / (dim == 2 ? 2 : 6);
+        cell.volume              = determinant / (dim == 2 ? 2 : 6);
+        const Material &material = problem.fields().material(dof_cell);
+        cell.lambda              = material.lame_lambda<dim>();
+        cell.mu                  = material.shear_modulus();
         cells.push_back(cell);
       }
   }
@@ -158,8 +159,8 @@ namespace Debond
     Stress sigma;
     for (unsigned int d = 0; d < dim; ++d)
       for (unsigned int e = 0; e < dim; ++e)
-        sigma[d][e] = mu * (gradient[d][e] + gradient[e][d]) +
-                      (d == e ? lambda * trace : 0.L);
+        sigma[d][e] = cell.mu * (gradient[d][e] + gradient[e][d]) +
+                      (d == e ? cell.lambda * trace : 0.L);
     return sigma;
   }
 

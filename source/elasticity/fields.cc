@@ -15,21 +15,25 @@ namespace Debond
   template <int dim>
   ElasticFields<dim>::ElasticFields(
     const ElasticUnknowns<dim>   &unknowns,
-    const Material               &material,
-    const dealii::Vector<double> &applied_forces)
+    const ByRegion<Material>     &materials,
+    const dealii::Vector<double> &applied_forces,
+    const std::vector<double>    &thermal_stresses)
     : unknowns(unknowns)
-    , elastic_material(material)
-    , stiffness(material.elasticity_tensor<dim>())
+    , materials(materials)
+    , stiffness(materials.transformed([](const Material &material) {
+      return material.elasticity_tensor<dim>();
+    }))
     , applied_forces(applied_forces)
+    , thermal_stresses(thermal_stresses)
   {}
 
 
 
   template <int dim>
   const Material &
-  ElasticFields<dim>::material() const
+  ElasticFields<dim>::material(const Cell &cell) const
   {
-    return elastic_material;
+    return materials(cell->material_id());
   }
 
 
@@ -56,7 +60,7 @@ namespace Debond
       {
         const LinearSimplex<dim>              simplex(cell);
         const dealii::SymmetricTensor<2, dim> sigma =
-          stress(cell, displacement);
+          stress(cell, displacement, 0.);
         for (unsigned int v = 0; v <= dim; ++v)
           {
             const dealii::Tensor<1, dim> force =
@@ -78,13 +82,13 @@ namespace Debond
   {
     const dealii::Vector<double> displacement =
       unknowns.cartesian_displacement(u, load_factor);
-    const double modulus = stiffness.norm();
 
     dealii::Vector<double> rounding(unknowns.n_dofs());
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
       {
         const LinearSimplex<dim> simplex(cell);
-        double                   gradient = 0.;
+        const double modulus  = stiffness(cell->material_id()).norm();
+        double       gradient = 0.;
         for (unsigned int v = 0; v <= dim; ++v)
           {
             double size = 0.;
@@ -109,10 +113,42 @@ namespace Debond
   dealii::SymmetricTensor<2, dim>
   ElasticFields<dim>::stress(
     const Cell                   &cell,
-    const dealii::Vector<double> &cartesian_displacement) const
+    const dealii::Vector<double> &cartesian_displacement,
+    const double                  load_factor) const
   {
-    return stiffness * dealii::symmetrize(
-                         displacement_gradient(cell, cartesian_displacement));
+    dealii::SymmetricTensor<2, dim> stress =
+      stiffness(cell->material_id()) *
+      dealii::symmetrize(displacement_gradient(cell, cartesian_displacement));
+    if (!thermal_stresses.empty())
+      stress -= load_factor * thermal_stress(cell) *
+                dealii::unit_symmetric_tensor<dim>();
+    return stress;
+  }
+
+
+
+  template <int dim>
+  dealii::SymmetricTensor<2, 3>
+  ElasticFields<dim>::solid_stress(
+    const Cell                   &cell,
+    const dealii::Vector<double> &cartesian_displacement,
+    const double                  load_factor) const
+  {
+    return material(cell).solid_stress(stress(cell,
+                                              cartesian_displacement,
+                                              load_factor),
+                                       load_factor * thermal_stress(cell));
+  }
+
+
+
+  template <int dim>
+  double
+  ElasticFields<dim>::thermal_stress(const Cell &cell) const
+  {
+    return thermal_stresses.empty() ?
+             0. :
+             thermal_stresses[cell->active_cell_index()];
   }
 
 
@@ -200,7 +236,7 @@ namespace Debond
         const dealii::SymmetricTensor<2, dim> strain =
           dealii::symmetrize(displacement_gradient(cell, displacement));
         sum(0.5 * LinearSimplex<dim>(cell).volume *
-            (strain * (stiffness * strain)));
+            (strain * (stiffness(cell->material_id()) * strain)));
       }
     const dealii::Vector<double> load = unknowns.in_frames(applied_forces);
     const dealii::Vector<double> x    = lifted(u, load_factor);

@@ -56,6 +56,18 @@ namespace Debond
 
 
   template <int dim>
+  double
+  Material::thermal_stress() const
+  {
+    const bool is_plane_stress =
+      dim == 2 && hypothesis == Hypothesis::plane_stress;
+    return young_modulus * thermal_expansion /
+           (1. - (is_plane_stress ? 1. : 2.) * poisson_ratio);
+  }
+
+
+
+  template <int dim>
   dealii::SymmetricTensor<4, dim>
   Material::elasticity_tensor() const
   {
@@ -67,17 +79,37 @@ namespace Debond
 
 
   template <int dim>
-  double
-  Material::von_mises(const dealii::SymmetricTensor<2, dim> &stress) const
+  dealii::SymmetricTensor<2, 3>
+  Material::solid_stress(const dealii::SymmetricTensor<2, dim> &stress,
+                         const double thermal_stress) const
   {
     dealii::SymmetricTensor<2, 3> s;
     for (unsigned int i = 0; i < dim; ++i)
       for (unsigned int j = i; j < dim; ++j)
         s[i][j] = stress[i][j];
     if (dim == 2 && hypothesis == Hypothesis::plane_strain)
-      s[2][2] = poisson_ratio * dealii::trace(stress);
+      s[2][2] = poisson_ratio * dealii::trace(stress) -
+                (1. - 2. * poisson_ratio) * thermal_stress;
+    return s;
+  }
 
-    return std::sqrt(1.5) * dealii::deviator(s).norm();
+
+
+  double
+  Material::energy_density(const dealii::SymmetricTensor<2, 3> &stress) const
+  {
+    const double trace = dealii::trace(stress);
+    return ((1. + poisson_ratio) * (stress * stress) -
+            poisson_ratio * trace * trace) /
+           (2. * young_modulus);
+  }
+
+
+
+  double
+  von_mises(const dealii::SymmetricTensor<2, 3> &stress)
+  {
+    return std::sqrt(1.5) * dealii::deviator(stress).norm();
   }
 
 
@@ -90,12 +122,18 @@ namespace Debond
   Material::lame_lambda<2>() const;
   template double
   Material::lame_lambda<3>() const;
+  template double
+  Material::thermal_stress<2>() const;
+  template double
+  Material::thermal_stress<3>() const;
   template dealii::SymmetricTensor<4, 2>
   Material::elasticity_tensor<2>() const;
   template dealii::SymmetricTensor<4, 3>
   Material::elasticity_tensor<3>() const;
-  template double
-  Material::von_mises(const dealii::SymmetricTensor<2, 2> &) const;
-  template double
-  Material::von_mises(const dealii::SymmetricTensor<2, 3> &) const;
+  template dealii::SymmetricTensor<2, 3>
+  Material::solid_stress(const dealii::SymmetricTensor<2, 2> &,
+                         const double) const;
+  template dealii::SymmetricTensor<2, 3>
+  Material::solid_stress(const dealii::SymmetricTensor<2, 3> &,
+                         const double) const;
 } // namespace Debond

@@ -97,6 +97,13 @@ namespace Debond
                     expression,
                     traction + "side " + side + ", as the body force",
                     "force per area");
+    table.bind(
+      "Loads/Temperature change",
+      loads.temperature_change,
+      Pattern("nothing, or an expression",
+              [](const std::string & /*value*/) { return true; }),
+      "The change of temperature from the state without stresses, an expression as in the body force; see Material/Thermal expansion",
+      "temperature");
     table.declare(
       "Loads/Constants",
       "",
@@ -174,6 +181,12 @@ namespace Debond
         path, expression, dimension, dimension, loads.constants, table);
     };
     check("Loads/Body force", loads.body_force);
+    check_expression("Loads/Temperature change",
+                     loads.temperature_change,
+                     dimension,
+                     1,
+                     loads.constants,
+                     table);
     for (const auto &[boundary, traction] : loads.tractions)
       check("Loads/Traction " + boundary, traction);
   }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
 #include <debond/base/text.h>
 #include <debond/input/material_parameters.h>
 #include <debond/input/mesh_parameters.h>
 #include <debond/input/parameters.h>
+#include <debond/input/part_parameters.h>
 #include <debond/input/solver_parameters.h>
 
 #include <filesystem>
@@ -86,7 +89,8 @@ namespace Debond
     bind(
       "Dimension", p.dimension, whole_number(2, 3), "Space dimension", "none");
     bind_mesh(body, *this);
-    bind_material(p.material, *this);
+    bind_parts(parts, *this);
+    bind_material(p.materials, *this);
     bind_boundaries(p, *this);
     bind_loads(p.loads, *this);
     bind_load_path(p.load_path, *this);
@@ -164,6 +168,41 @@ namespace Debond
 
 
 
+    /// Names of the file's groups, and of parts, that no entry has.
+    std::vector<std::string>
+    unused_names(const Parameters                         &p,
+                 const BodyParameters                     &body,
+                 const std::map<std::string, std::string> &parts)
+    {
+      std::set<std::string> used = p.clamped_boundaries;
+      used.insert(p.contact_boundaries.begin(), p.contact_boundaries.end());
+      used.insert(p.supports.rollers.begin(), p.supports.rollers.end());
+      for (const auto &[name, unused] : p.supports.displacements)
+        used.insert(name);
+      for (const auto &[name, unused] : p.loads.tractions)
+        used.insert(name);
+      for (const auto &[unused, text] : parts)
+        used.insert(dealii::Utilities::trim(text.substr(0, text.find(':'))));
+      for (const auto &[name, unused] : p.materials.of_regions())
+        used.insert(name);
+
+      std::vector<std::string> names;
+      const auto               add = [&](const std::set<std::string> &known) {
+        for (const std::string &name : known)
+          if (used.count(name) == 0 &&
+              (body.source == BodyParameters::Source::file ||
+               parts.count(name) > 0))
+            names.push_back(name);
+      };
+      add(p.body->boundaries());
+      // The only region need not be named.
+      if (p.body->regions().size() > 1 || !parts.empty())
+        add(p.body->regions());
+      return names;
+    }
+
+
+
     void
     check_exact_displacement(const Parameters &p, ParameterTable &table)
     {
@@ -189,22 +228,36 @@ namespace Debond
   {
     parse();
     p.scene = scene;
-    p.body  = make_body(scene, p.dimension, body, *this);
-    complete_loads(p.dimension, p.material, p.loads, *this);
-    p.law = laws.make_law(*this);
+    complete_loads(p.dimension, p.materials.everywhere, p.loads, *this);
+    p.body = with_parts(make_body(scene, p.dimension, body, *this),
+                        parts,
+                        p.dimension,
+                        p.loads.constants,
+                        *this);
+    p.law  = laws.make_law(*this);
     complete_output(scene, p.output, *this);
 
     // What depends on more than one entry.
     check_solver(p.solver, *this);
     check_boundaries(p, *this);
-    check_supports(
-      p.supports, p.body->boundaries(), p.dimension, p.loads.constants, *this);
+    // Without a body there is an error already.
+    if (p.body)
+      {
+        check_supports(p.supports,
+                       p.body->boundaries(),
+                       p.dimension,
+                       p.loads.constants,
+                       *this);
+        check_material(p.dimension, p.materials, p.body->regions(), *this);
+      }
     check_bonds(p, *this);
-    check_material(p.dimension, p.material, *this);
     check_exact_displacement(p, *this);
     if (!errors().empty())
       throw BadInput(errors());
 
+    const std::vector<std::string> unused = unused_names(p, body, parts);
+    if (!unused.empty())
+      p.notes.push_back("no entry of the scene uses " + join(unused, ", "));
     std::ostringstream effective;
     print(effective, false);
     p.effective_scene   = effective.str();

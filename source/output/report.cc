@@ -402,17 +402,24 @@ namespace Debond
       const auto list = [](const std::set<std::string> &names) {
         return join({names.begin(), names.end()}, ", ");
       };
-      const Material &material = parameters.material;
+      const auto numbers = [](const Material &material) {
+        return words("E = ",
+                     material.young_modulus,
+                     ", nu = ",
+                     material.poisson_ratio,
+                     material.thermal_expansion == 0. ?
+                       "" :
+                       words(", alpha = ", material.thermal_expansion));
+      };
+      const Material &material = parameters.materials.everywhere;
       record.line("material",
-                  words("E = ",
-                        material.young_modulus,
-                        ", nu = ",
-                        material.poisson_ratio,
-                        parameters.dimension == 3 ? "" :
-                        material.hypothesis ==
-                            Material::Hypothesis::plane_stress ?
-                                                    ", plane stress" :
-                                                    ", plane strain"));
+                  numbers(material) +
+                    (parameters.dimension == 3 ? "" :
+                     material.hypothesis == Material::Hypothesis::plane_stress ?
+                                                 ", plane stress" :
+                                                 ", plane strain"));
+      for (const auto &[region, own] : parameters.materials.of_regions())
+        record.line("material " + region, numbers(own));
       record.line("clamped", list(parameters.clamped_boundaries));
       if (!parameters.supports.rollers.empty())
         record.line("roller", list(parameters.supports.rollers));
@@ -424,6 +431,8 @@ namespace Debond
         record.line("body force", parameters.loads.body_force);
       for (const auto &[side, traction] : parameters.loads.tractions)
         record.line("traction " + side, traction);
+      if (!parameters.loads.temperature_change.empty())
+        record.line("temperature change", parameters.loads.temperature_change);
       record.add("/contact_nodes", n_contact_nodes);
       record.line("contact",
                   words(list(parameters.contact_boundaries),

@@ -184,7 +184,6 @@ namespace Debond
         dealii::DataComponentInterpretation::DataComponentInterpretation>(
         dim, component_is_part_of_vector));
 
-    const Material   &material = problem.fields().material();
     const std::size_t n_cells =
       problem.unknowns().dof_handler().get_triangulation().n_active_cells();
     std::vector<Field> fields;
@@ -200,31 +199,42 @@ namespace Debond
           dealii::SymmetricTensor<2, dim>::unrolled_to_component_indices(c);
         add_field(std::string("stress_") + axes[ij[0]] + axes[ij[1]]);
       }
+    bool has_regions = false;
+    for (const auto &cell :
+         problem.unknowns().dof_handler().active_cell_iterators())
+      has_regions |=
+        cell->material_id() !=
+        problem.unknowns().dof_handler().begin_active()->material_id();
     const bool plane_strain =
-      dim == 2 && material.hypothesis == Material::Hypothesis::plane_strain;
+      dim == 2 && problem.fields()
+                      .material(problem.unknowns().dof_handler().begin_active())
+                      .hypothesis == Material::Hypothesis::plane_strain;
     if (plane_strain)
       add_field("stress_zz");
+    if (has_regions)
+      add_field("region");
     add_field("von_mises");
     add_field("strain_energy_density");
 
     // In the order of deal.II's patches.
-    const dealii::SymmetricTensor<4, dim> compliance =
-      dealii::invert(material.template elasticity_tensor<dim>());
     for (const auto &cell :
          problem.unknowns().dof_handler().active_cell_iterators())
       {
-        const dealii::SymmetricTensor<2, dim> stress =
-          problem.fields().stress(cell, displacement);
+        const dealii::SymmetricTensor<2, 3> stress =
+          problem.fields().solid_stress(cell, displacement);
         auto       field = fields.begin();
         const auto add   = [&field](const double number) {
           (field++)->second.push_back(static_cast<float>(number));
         };
         for (unsigned int c = 0; c < n_components; ++c)
-          add(stress.access_raw_entry(c));
+          add(stress[dealii::SymmetricTensor<2, dim>::
+                       unrolled_to_component_indices(c)]);
         if (plane_strain)
-          add(material.poisson_ratio * dealii::trace(stress));
-        add(material.template von_mises<dim>(stress));
-        add(0.5 * (stress * (compliance * stress)));
+          add(stress[2][2]);
+        if (has_regions)
+          add(cell->material_id());
+        add(von_mises(stress));
+        add(problem.fields().material(cell).energy_density(stress));
       }
 
     data_out.build_patches(problem.unknowns().mapping());

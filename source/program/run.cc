@@ -176,6 +176,8 @@ namespace Debond
                                       result.solve.load_factor);
       result.notes   = result.solve.notes;
       append(result.solve.minimum.notes, result.notes);
+      append(parameters.notes, result.notes);
+      append(scene.notes(), result.notes);
       append(plausibility_notes(
                scene.body().shape(),
                dim,

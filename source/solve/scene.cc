@@ -2,6 +2,7 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/contact/field_value.h>
+#include <debond/elasticity/temperature_load.h>
 #include <debond/input/expression.h>
 #include <debond/solve/displacement.h>
 #include <debond/solve/scene.h>
@@ -67,6 +68,55 @@ namespace Debond
 
 
 
+    /// Regions that overlap and have materials of their own.
+    class RegionError : public std::invalid_argument
+    {
+    public:
+      RegionError(const std::string &entry, const std::string &message)
+        : std::invalid_argument(message)
+        , entry(entry)
+      {}
+
+      const std::string entry;
+    };
+
+
+
+    ByRegion<Material>
+    make_materials(const MaterialParameters &parameters,
+                   const RegionNames        &regions)
+    {
+      ByRegion<Material> materials(parameters.everywhere);
+      std::map<dealii::types::material_id, std::string> taken;
+      for (const auto &[name, material] : parameters.of_regions())
+        for (const dealii::types::material_id id : regions.at(name))
+          {
+            const auto [other, is_first] = taken.emplace(id, name);
+            if (!is_first)
+              throw RegionError(parameters.entry_of(name),
+                                "the region overlaps " + other->second +
+                                  ", which has a material of its own as well");
+            materials.set(id, material);
+          }
+      return materials;
+    }
+
+
+
+    /// The entry of a traction on faces of this id.
+    std::string
+    traction_entry(const LoadParameters            &loads,
+                   const BoundaryNames             &boundaries,
+                   const dealii::types::boundary_id id)
+    {
+      for (const auto &[name, unused] : loads.tractions)
+        if (boundaries.at(name).count(id) > 0)
+          return "Loads/Traction " + name;
+      throw std::logic_error("There is no traction on this boundary.");
+    }
+
+
+
     template <int dim>
     Loads<dim>
     make_loads(const LoadParameters &parameters,
@@ -77,6 +127,11 @@ namespace Debond
       if (!parameters.body_force.empty())
         loads.body_force =
           make_function<dim>(parameters.body_force, parameters.constants);
+      if (!parameters.temperature_change.empty())
+        loads.temperature_change =
+          make_function<dim>(parameters.temperature_change,
+                             parameters.constants,
+                             1);
       for (const auto &[name, expression] : parameters.tractions)
         for (const dealii::types::boundary_id id : boundaries.at(name))
           {
@@ -209,8 +264,10 @@ namespace Debond
     std::string   entry = "Mesh/Lengths"; // that errors belong to
     try
       {
-        boundaries       = elastic_body->make_mesh(triangulation).boundaries;
-        seconds_for_mesh = timer.wall_time();
+        const PieceNames names = elastic_body->make_mesh(triangulation);
+        boundaries             = names.boundaries;
+        body_notes             = names.notes;
+        seconds_for_mesh       = timer.wall_time();
 
         timer.restart();
         entry           = "Boundary conditions/Clamped boundaries";
@@ -223,7 +280,8 @@ namespace Debond
                               std::vector<double>{1.} :
                               parameters.load_path.factors);
         entry = "Material/Poisson ratio";
-        elastic_problem->assemble(parameters.material,
+        elastic_problem->assemble(make_materials(parameters.materials,
+                                                 names.regions),
                                   make_loads<dim>(parameters.loads, boundaries),
                                   storage);
         entry = "Contact law/Quadrature";
@@ -245,8 +303,14 @@ namespace Debond
         if (const auto *load = dynamic_cast<const LoadError *>(&error))
           entry =
             load->boundary ?
-              "Loads/Traction " + boundary_name(boundaries, *load->boundary) :
+              traction_entry(parameters.loads, boundaries, *load->boundary) :
               "Loads/Body force";
+        if (dynamic_cast<const TemperatureError *>(&error) != nullptr)
+          entry = "Loads/Temperature change";
+        if (const auto *region = dynamic_cast<const RegionError *>(&error))
+          entry = region->entry;
+        if (const auto *part = dynamic_cast<const PartError *>(&error))
+          entry = "Parts/" + part->part;
         if (const auto *support = dynamic_cast<const SupportError *>(&error))
           entry = entry_of(*support);
         if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))
@@ -351,6 +415,15 @@ namespace Debond
   Scene<dim>::start() const
   {
     return first_iterate;
+  }
+
+
+
+  template <int dim>
+  const std::vector<std::string> &
+  Scene<dim>::notes() const
+  {
+    return body_notes;
   }
 
 

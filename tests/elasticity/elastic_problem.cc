@@ -494,7 +494,7 @@ test_algebra(const ElasticProblem<dim> &problem, const std::string &name)
         0.5 * cell->measure() *
         (stress *
          (invert(
-            problem.fields().material().template elasticity_tensor<dim>()) *
+            problem.fields().material(cell).template elasticity_tensor<dim>()) *
           stress));
     }
   check("strain energy",

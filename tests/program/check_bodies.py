@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """check_bodies.py DEBOND SCENE: the benchmark's bar, 40x4, as a box, from a
 Gmsh file (quadrilaterals that are crossed, triangles that are used as they are,
-a coarser mesh that is refined, a mesh in mm), and from a generator: J is the
-same to 1e-12, and so are the contact nodes. What is wrong with a mesh is told
-with its place.
+a coarser mesh that is refined, a mesh in mm), from a generator, and with parts
+and regions that make no difference: J is the same to 1e-12, and so are the
+contact nodes. What is wrong with a mesh or a part is told with its place.
 """
 
 import json
@@ -123,6 +123,37 @@ def main(debond, scene):
     same("generator, refined",
          generator + ["Mesh/Arguments=10, 1 : 0, 0 : 0.4, 0.04 : true",
                       "Mesh/Refinements=2"])
+
+    # Pieces with names of their own that make no difference.
+    same("a part that is the side", [
+        "Parts/glued=bottom: x > -1", "Boundary conditions/Contact boundary=glued"])
+    same("tractions of parts that overlap", [
+        "Parts/left half=top: x < 0.2", "Loads/Traction top=0; -0.345",
+        "Loads/Traction left half=0; 1.035"])
+    same("a region of the same material", [
+        "Parts/upper=y > 0.02", "Material/Young modulus upper=69"])
+    same("regions that are all", [
+        "Parts/upper=y > 0.02", "Parts/lower=y <= 0.02",
+        "Material/Young modulus=1", "Material/Young modulus upper=69",
+        "Material/Young modulus lower=69"])
+    refused("Parts/glued: no face has its centre in this part",
+            ["Parts/glued=bottom: x > 1"])
+    refused("Parts/glued = botom: x > 0: the body has no boundary botom, but "
+            "bottom, left, right, top", ["Parts/glued=botom: x > 0"])
+    refused("Parts/top = x > 0: the body has a piece of this name",
+            ["Parts/top=x > 0"])
+    refused("Parts/core = x > +: ", ["Parts/core=x > +"])
+    refused("the body has no region core; name one in Parts",
+            ["Material/Young modulus core=1"])
+    refused("Material/Young modulus core = -1: expected",
+            ["Parts/core=x > 0.1", "Material/Young modulus core=-1"])
+    refused("Poisson ratio = 1.1 must lie in (-1, 1)",
+            ["Parts/core=x > 0.1", "Material/Poisson ratio core=1.1"])
+    refused("the region overlaps core, which has a material of its own as well",
+            ["Parts/core=x > 0.1", "Parts/end=x > 0.2",
+             "Material/Young modulus core=1", "Material/Poisson ratio end=0"])
+    refused("Loads/Temperature change: the change of temperature is not finite "
+            "at (", ["Loads/Temperature change=log(x - 0.1)"])
 
     refused("Mesh/File =  (default): Source = file needs one", ["Mesh/Source=file"])
     refused("scenes/none.msh cannot be read", file("none"))

@@ -57,7 +57,7 @@ grep -qE '^debond: parts/base.prm:6: unknown parameter Colour' errors ||
   fail "an error in an included file: $(cat errors)"
 
 # Every parameter says its units.
-entries=$(grep -cE '^ *set ' defaults.prm)
+entries=$(grep -cE '^ *set |^# .* NAME$|^# [A-Za-z]+/NAME$' defaults.prm)
 units=$(tr -d '\n' <defaults.prm | tr -s '# ' ' ' | grep -o 'Units:' | wc -l)
 [ "$entries" -eq "$units" ] || fail "$entries entries, but $units with units"
 

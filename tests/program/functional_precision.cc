@@ -121,10 +121,10 @@ namespace
                    const dealii::Vector<double> &u)
   {
     const ElasticProblem<2> &problem = scene.problem();
-    const Real               E       = parameters.material.young_modulus;
-    const Real               nu      = parameters.material.poisson_ratio;
-    const bool               plane_stress =
-      parameters.material.hypothesis == Material::Hypothesis::plane_stress;
+    const Real               E  = parameters.materials.everywhere.young_modulus;
+    const Real               nu = parameters.materials.everywhere.poisson_ratio;
+    const bool plane_stress     = parameters.materials.everywhere.hypothesis ==
+                              Material::Hypothesis::plane_stress;
     const Real        mu     = E / (2 * (1 + nu));
     const Real        lambda = plane_stress ? E * nu / (1 - nu * nu) :
                                               E * nu / ((1 + nu) * (1 - 2 * nu));

@@ -125,11 +125,12 @@ namespace
   {
     const ElasticProblem<dim>      &problem  = scene.problem();
     const std::vector<Element<dim>> elements = make_elements(problem);
-    const Real                      E  = parameters.material.young_modulus;
-    const Real                      nu = parameters.material.poisson_ratio;
-    const Real                      mu = E / (2 * (1 + nu));
-    const bool plane_stress = dim == 2 && parameters.material.hypothesis ==
-                                            Material::Hypothesis::plane_stress;
+    const Real E  = parameters.materials.everywhere.young_modulus;
+    const Real nu = parameters.materials.everywhere.poisson_ratio;
+    const Real mu = E / (2 * (1 + nu));
+    const bool plane_stress =
+      dim == 2 && parameters.materials.everywhere.hypothesis ==
+                    Material::Hypothesis::plane_stress;
     const Real lambda = plane_stress ? E * nu / (1 - nu * nu) :
                                        E * nu / ((1 + nu) * (1 - 2 * nu));
 

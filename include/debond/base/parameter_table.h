@@ -102,9 +102,9 @@ namespace Debond
                 const AtRestart restart = AtRestart::same);
 
     /// Lets scenes set entries "Section/Name WORDS" beside those declared: what
-    /// @p path, "Section/Name", is to be followed by is not known beforehand.
-    /// parse() writes those that are not empty into @p variable, by their
-    /// WORDS.
+    /// @p path, "Section/Name", is to be followed by is not known beforehand;
+    /// "Section/" stands for entries "Section/WORDS". parse() writes those that
+    /// are not empty into @p variable, by their WORDS.
     void
     bind_family(const std::string                  &path,
                 std::map<std::string, std::string> &variable,

@@ -43,12 +43,13 @@ namespace Debond
                    const BoundaryConditions         &conditions,
                    const Supports<dim>              &supports = {});
 
-    /// Computes A and f. Throws std::invalid_argument if the material is not
-    /// valid or a load is not, see load_vector(). May be called again.
+    /// Computes A and f. Throws std::invalid_argument if a material is not
+    /// valid or a load is not, see load_vector() and
+    /// thermal_stresses(). May be called again.
     void
-    assemble(const Material     &material,
-             const Loads<dim>   &loads,
-             const MatrixStorage storage = MatrixStorage::serial);
+    assemble(const ByRegion<Material> &materials,
+             const Loads<dim>         &loads,
+             const MatrixStorage       storage = MatrixStorage::serial);
 
     const ElasticUnknowns<dim> &
     unknowns() const;
@@ -91,7 +92,8 @@ namespace Debond
   private:
     template <typename MatrixType>
     void
-    add_cell_matrices(const Material &material, MatrixType &matrix) const;
+    add_cell_matrices(const ByRegion<Material> &materials,
+                      MatrixType               &matrix) const;
 
     const ElasticUnknowns<dim>                elastic_unknowns;
     std::unique_ptr<const ElasticFields<dim>> elastic_fields;

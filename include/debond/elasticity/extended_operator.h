@@ -50,6 +50,8 @@ namespace Debond
       std::array<std::array<long double, dim>, dim> gradients;
 
       long double volume;
+      long double lambda; ///< Lame's
+      long double mu;
     };
 
     ExtendedVector
@@ -59,8 +61,6 @@ namespace Debond
     stress(const Cell &cell, const ExtendedVector &cartesian_u) const;
 
     const ElasticProblem<dim> &problem;
-    long double                lambda;
-    long double                mu;
     std::vector<Cell>          cells;
   };
 } // namespace Debond

@@ -8,6 +8,9 @@
 
 #include <debond/elasticity/material.h>
 #include <debond/elasticity/unknowns.h>
+#include <debond/mesh/by_region.h>
+
+#include <vector>
 
 namespace Debond
 {
@@ -22,12 +25,15 @@ namespace Debond
 
     /// Keeps a reference to the unknowns. @p applied_forces: the Cartesian
     /// nodal forces of all loads, at every degree of freedom.
+    /// @p thermal_stresses: of each active cell the pressure that its change of
+    /// temperature makes if it cannot expand; none if empty.
     ElasticFields(const ElasticUnknowns<dim>   &unknowns,
-                  const Material               &material,
-                  const dealii::Vector<double> &applied_forces);
+                  const ByRegion<Material>     &materials,
+                  const dealii::Vector<double> &applied_forces,
+                  const std::vector<double>    &thermal_stresses = {});
 
     const Material &
-    material() const;
+    material(const Cell &cell) const;
 
     /// The Cartesian nodal forces of all loads, at every degree of freedom, the
     /// constrained ones included.
@@ -61,10 +67,18 @@ namespace Debond
                       const double                  load_factor = 1.) const;
 
     /// Strain-energy density, stress and displacement gradient are constant
-    /// on each cell: the stress of the active cell, in the units of E.
+    /// on each cell: the stress of the active cell, in the units of E, with
+    /// @p load_factor times the change of temperature.
     dealii::SymmetricTensor<2, dim>
     stress(const Cell                   &cell,
-           const dealii::Vector<double> &cartesian_displacement) const;
+           const dealii::Vector<double> &cartesian_displacement,
+           const double                  load_factor = 1.) const;
+
+    /// The same with what the hypothesis of plane bodies implies.
+    dealii::SymmetricTensor<2, 3>
+    solid_stress(const Cell                   &cell,
+                 const dealii::Vector<double> &cartesian_displacement,
+                 const double                  load_factor = 1.) const;
 
     /// The displacement gradient of the cell, its row d that of component d.
     dealii::Tensor<2, dim>
@@ -102,10 +116,15 @@ namespace Debond
            const double                  load_factor,
            const double                  work_factor) const;
 
-    const ElasticUnknowns<dim>     &unknowns;
-    Material                        elastic_material;
-    dealii::SymmetricTensor<4, dim> stiffness;
-    dealii::Vector<double>          applied_forces;
+    /// Of the cell, for the whole load.
+    double
+    thermal_stress(const Cell &cell) const;
+
+    const ElasticUnknowns<dim>               &unknowns;
+    ByRegion<Material>                        materials;
+    ByRegion<dealii::SymmetricTensor<4, dim>> stiffness;
+    dealii::Vector<double>                    applied_forces;
+    std::vector<double>                       thermal_stresses;
   };
 } // namespace Debond
 

@@ -28,6 +28,9 @@ namespace Debond
              std::shared_ptr<const dealii::Function<dim>>>
       tractions;
 
+    /// From the state without stresses; one component, may be null.
+    std::shared_ptr<const dealii::Function<dim>> temperature_change = {};
+
     /// For messages.
     BoundaryNames boundary_names = {};
   };

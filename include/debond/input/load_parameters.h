@@ -20,6 +20,8 @@ namespace Debond
     /// By the name of the boundary; those without traction are left out.
     std::map<std::string, std::string> tractions;
 
+    std::string temperature_change; ///< one expression, empty for none
+
     /// Names that the expressions may use.
     std::map<std::string, double> constants;
   };

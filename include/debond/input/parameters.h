@@ -5,9 +5,9 @@
 #include <debond/base/parameter_table.h>
 #include <debond/contact/law.h>
 #include <debond/contact/quadrature.h>
-#include <debond/elasticity/material.h>
 #include <debond/input/load_parameters.h>
 #include <debond/input/load_path_parameters.h>
+#include <debond/input/material_parameters.h>
 #include <debond/input/output_parameters.h>
 #include <debond/input/solver_parameters.h>
 #include <debond/input/support_parameters.h>
@@ -50,7 +50,7 @@ namespace Debond
     std::string                            scene; ///< path of the file
     unsigned int                           dimension = 2;
     std::shared_ptr<const BodyDescription> body;
-    Material                               material;
+    MaterialParameters                     materials;
     std::set<std::string>       clamped_boundaries = {"left", "right"};
     std::set<std::string>       contact_boundaries = {"bottom"};
     bool                        tangential_displacement_fixed = true;
@@ -67,6 +67,9 @@ namespace Debond
 
     /// The scene with all entries that it leaves to their defaults.
     std::string effective_scene;
+
+    /// What is odd in the scene, for its user.
+    std::vector<std::string> notes;
 
     /// Where entries were set, by path.
     std::map<std::string, std::string> locations;
@@ -90,9 +93,10 @@ namespace Debond
     parameters(const std::string &scene);
 
   private:
-    Parameters     p;
-    BodyParameters body;
-    LawSection     laws;
+    Parameters                         p;
+    BodyParameters                     body;
+    std::map<std::string, std::string> parts; ///< texts by name
+    LawSection                         laws;
   };
 
   /// Reads the file @p scene over the values that the table has. Throws

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,25 @@ namespace Debond
   boundary_name(const BoundaryNames             &names,
                 const dealii::types::boundary_id id);
 
+  /// A part of a body that is none.
+  class PartError : public std::invalid_argument
+  {
+  public:
+    PartError(const std::string &part, const std::string &message)
+      : std::invalid_argument(message)
+      , part(part)
+    {}
+
+    const std::string part; ///< its name
+  };
+
   struct PieceNames
   {
     BoundaryNames boundaries;
     RegionNames   regions;
+
+    /// What the user should know of the pieces.
+    std::vector<std::string> notes = {};
   };
 
 
@@ -89,7 +105,8 @@ namespace Debond
   {
   public:
     /// Fills an empty triangulation and says which ids the boundaries() and
-    /// regions() have. Throws std::invalid_argument if the body is none.
+    /// regions() have. Throws std::invalid_argument if the body is none,
+    /// PartError if a part has no face or cell.
     virtual PieceNames
     make_mesh(dealii::Triangulation<dim> &mesh) const = 0;
 

@@ -54,6 +54,10 @@ namespace Debond
     const dealii::Vector<double> &
     start() const;
 
+    /// What the user should know of the body's pieces.
+    const std::vector<std::string> &
+    notes() const;
+
     /// Triangles or tetrahedra.
     unsigned int
     n_cells() const;
@@ -72,6 +76,7 @@ namespace Debond
 
     std::shared_ptr<const Body<dim>>                   elastic_body;
     dealii::Triangulation<dim>                         triangulation;
+    std::vector<std::string>                           body_notes;
     std::unique_ptr<ElasticProblem<dim>>               elastic_problem;
     std::unique_ptr<AdhesiveLaw>                       adhesive_law;
     std::unique_ptr<ContactQuadrature<dim>>            quadrature;

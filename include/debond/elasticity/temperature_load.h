@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_temperature_load_h
+#define debond_elasticity_temperature_load_h
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/elasticity/load_vector.h>
+#include <debond/elasticity/material.h>
+#include <debond/mesh/by_region.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// A change of temperature that cannot be used.
+  class TemperatureError : public std::invalid_argument
+  {
+  public:
+    using std::invalid_argument::invalid_argument;
+  };
+
+
+
+  /// The stress of each active cell that its change of temperature makes if the
+  /// body does not move, Material::thermal_stress() times the mean of the
+  /// change over the cell, as a pressure; empty if there is none. Throws
+  /// TemperatureError with the place if the change is not finite somewhere.
+  template <int dim>
+  std::vector<double>
+  thermal_stresses(const dealii::DoFHandler<dim> &dof_handler,
+                   const ByRegion<Material>      &materials,
+                   const Loads<dim>              &loads);
+
+  /// Adds the nodal forces that they are as a load, to the Cartesian ones at
+  /// every degree of freedom.
+  template <int dim>
+  void
+  add_thermal_forces(const dealii::DoFHandler<dim> &dof_handler,
+                     const std::vector<double>     &thermal_stresses,
+                     dealii::Vector<double>        &forces);
+} // namespace Debond
+
+#endif

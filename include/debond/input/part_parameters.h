@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_input_part_parameters_h
+#define debond_input_part_parameters_h
+
+#include <debond/base/parameter_table.h>
+#include <debond/mesh/body.h>
+
+#include <map>
+#include <memory>
+#include <string>
+
+namespace Debond
+{
+  /// The section Parts: the texts "BOUNDARY: CONDITION" or "CONDITION" by the
+  /// names of the parts.
+  void
+  bind_parts(std::map<std::string, std::string> &parts, ParameterTable &table);
+
+  /// The @p body, a Body<dimension>, with these parts; itself if there are
+  /// none. Conditions may use the @p constants. Texts that make no part are
+  /// left in the table as errors.
+  std::shared_ptr<const BodyDescription>
+  with_parts(const std::shared_ptr<const BodyDescription> &body,
+             const std::map<std::string, std::string>     &parts,
+             const unsigned int                            dimension,
+             const std::map<std::string, double>          &constants,
+             ParameterTable                               &table);
+} // namespace Debond
+
+#endif

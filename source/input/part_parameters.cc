@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <debond/base/text.h>
+#include <debond/input/expression.h>
+#include <debond/input/part_parameters.h>
+#include <debond/mesh/parted_body.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace Debond
+{
+  namespace
+  {
+    template <int dim>
+    std::function<bool(const dealii::Point<dim> &)>
+    make_condition(const std::string                   &expression,
+                   const std::map<std::string, double> &constants)
+    {
+      return [function = make_function<dim>(expression, constants, 1)](
+               const dealii::Point<dim> &point) {
+        const double value = function->value(point);
+        return std::isfinite(value) && value != 0.;
+      };
+    }
+
+
+
+    /// Throws std::invalid_argument if the text is no part of this body.
+    template <int dim>
+    Part<dim>
+    make_part(const Body<dim>                     &body,
+              const std::string                   &name,
+              const std::string                   &text,
+              const std::map<std::string, double> &constants)
+    {
+      const std::set<std::string> boundaries = body.boundaries();
+      if (boundaries.count(name) > 0 || body.regions().count(name) > 0)
+        throw std::invalid_argument("the body has a piece of this name");
+
+      // A colon may also belong to muParser's "condition ? a : b".
+      const std::size_t colon = text.find(':');
+      const bool        is_of_boundary =
+        colon != std::string::npos && text.find('?') > colon;
+      Part<dim> part;
+      part.name = name;
+      if (is_of_boundary)
+        {
+          part.boundary = dealii::Utilities::trim(text.substr(0, colon));
+          if (boundaries.count(part.boundary) == 0)
+            throw std::invalid_argument(
+              "the body has no boundary " + part.boundary + ", but " +
+              join({boundaries.begin(), boundaries.end()}, ", "));
+        }
+      part.contains =
+        make_condition<dim>(is_of_boundary ? text.substr(colon + 1) : text,
+                            constants);
+      return part;
+    }
+
+
+
+    template <int dim>
+    std::shared_ptr<const BodyDescription>
+    make_parts(const std::shared_ptr<const BodyDescription> &description,
+               const std::map<std::string, std::string>     &texts,
+               const std::map<std::string, double>          &constants,
+               ParameterTable                               &table)
+    {
+      const auto body = std::dynamic_pointer_cast<const Body<dim>>(description);
+      std::vector<Part<dim>> parts;
+      for (const auto &[name, text] : texts)
+        try
+          {
+            parts.push_back(make_part(*body, name, text, constants));
+          }
+        catch (const std::invalid_argument &error)
+          {
+            table.reject("Parts/" + name,
+                         error.what(),
+                         {"Dimension", "Loads/Constants"});
+          }
+      return std::make_shared<const PartedBody<dim>>(body, parts);
+    }
+  } // namespace
+
+
+
+  void
+  bind_parts(std::map<std::string, std::string> &parts, ParameterTable &table)
+  {
+    table.bind_family(
+      "Parts/",
+      parts,
+      Pattern("an expression, or the name of a boundary, a colon and an "
+              "expression",
+              [](const std::string &) { return true; }),
+      "A piece of a boundary or of the body, by a condition on x, y (and z in 3D) such as 'bottom: x > 0.05' or 'y > 0.02'; its name can stand wherever that of a boundary (a region) can. Faces (cells) belong to it if their centre does",
+      "none");
+  }
+
+
+
+  std::shared_ptr<const BodyDescription>
+  with_parts(const std::shared_ptr<const BodyDescription> &body,
+             const std::map<std::string, std::string>     &parts,
+             const unsigned int                            dimension,
+             const std::map<std::string, double>          &constants,
+             ParameterTable                               &table)
+  {
+    if (parts.empty() || !body)
+      return body;
+    return dimension == 2 ? make_parts<2>(body, parts, constants, table) :
+                            make_parts<3>(body, parts, constants, table);
+  }
+} // namespace Debond
