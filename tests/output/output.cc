@@ -266,8 +266,10 @@ namespace
       Loads<dim> loads;
       loads.tractions[names.at("top")] =
         std::make_shared<Traction<dim>>(pressure * young_modulus / 1000.);
-      problem->assemble(
-        {young_modulus, 0.3, Material::Hypothesis::plane_strain}, loads);
+      problem->assemble(Material{young_modulus,
+                                 0.3,
+                                 Material::Hypothesis::plane_strain},
+                        loads);
     }
 
     /// The equilibrium with the normal displacement s at every contact node.
