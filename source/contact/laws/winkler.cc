@@ -9,6 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 
 namespace Debond
 {
@@ -153,6 +154,21 @@ namespace Debond
                     "/",
                     "^2") :
                   combine(t, M, quotient, "", "/", "");
+      // A threshold of 0 or a quotient by 0.
+      const auto is_impossible = [](const std::string &text,
+                                    const bool         may_be_zero) {
+        return text == "inf" || text == "nan" || text == "-nan" ||
+               !quantity_or_expression(may_be_zero).match(text);
+      };
+      for (const auto &[name, text, may_be_zero] :
+           {std::make_tuple("stiffness", new_a, true),
+            std::make_tuple("threshold", new_M, false)})
+        if (is_impossible(text, may_be_zero))
+          {
+            table.reject(t.empty() ? energy_path : strength_path,
+                         std::string("the ") + name + " would be " + text);
+            return;
+          }
       a = new_a;
       M = new_M;
       t.clear();
