@@ -16,6 +16,7 @@
 #include <debond/solve/solve.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -305,6 +306,14 @@ namespace Debond
       result.condition_estimate    = condensed.condition_estimate();
       result.parts["condensation"] = timer.wall_time();
 
+      if (!std::isfinite(condensed.energy_at_zero()))
+        {
+          result.status  = SolverStatus::not_finite;
+          result.message = "condensation: the energy of the loads is not a "
+                           "finite number. Check the data of the scene.";
+          result.u.reinit(problem.unknowns().n_dofs());
+          return;
+        }
       watch.add_energy(condensed.energy_at_zero());
       timer.restart();
       Vector s(problem.unknowns().contact().size());
