@@ -29,10 +29,9 @@ namespace Debond
         largest.gradient = std::max(
           largest.gradient,
           problem.fields().displacement_gradient(cell, displacement).norm());
-        largest.von_mises =
-          std::max(largest.von_mises,
-                   von_mises(
-                     problem.fields().solid_stress(cell, displacement)));
+        largest.von_mises = std::max(largest.von_mises,
+                                     von_mises(problem.fields().solid_stress(
+                                       cell, displacement, load_factor)));
       }
     return largest;
   }

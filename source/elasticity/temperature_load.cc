@@ -1,44 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
+#include <debond/contact/field_value.h>
 #include <debond/elasticity/linear_simplex.h>
 #include <debond/elasticity/temperature_load.h>
 
-#include <cmath>
-#include <limits>
-#include <sstream>
-
 namespace Debond
 {
-  namespace
-  {
-    template <int dim>
-    double
-    temperature_at(const dealii::Point<dim>    &point,
-                   const dealii::Function<dim> &change)
-    {
-      double value = std::numeric_limits<double>::quiet_NaN();
-      try
-        {
-          value = change.value(point);
-        }
-      catch (const std::exception &)
-        {
-          // muParser's functions throw outside of their domains.
-        }
-      if (!std::isfinite(value))
-        {
-          std::ostringstream message;
-          message << "the change of temperature is not finite at (" << point
-                  << ")";
-          throw TemperatureError(message.str());
-        }
-      return value;
-    }
-  } // namespace
-
-
-
   template <int dim>
   std::vector<double>
   thermal_stresses(const dealii::DoFHandler<dim> &dof_handler,
@@ -49,6 +17,16 @@ namespace Debond
     if (!loads.temperature_change)
       return stresses;
 
+    const auto temperature_at = [&loads](const dealii::Point<dim> &point) {
+      try
+        {
+          return field_value(*loads.temperature_change, point);
+        }
+      catch (const std::invalid_argument &error)
+        {
+          throw TemperatureError(error.what());
+        }
+    };
     const dealii::QGaussSimplex<dim> rule(2);
     double                           reference_volume = 0.;
     for (unsigned int q = 0; q < rule.size(); ++q)
@@ -62,8 +40,7 @@ namespace Debond
             for (unsigned int d = 0; d < dim; ++d)
               point +=
                 rule.point(q)[d] * (cell->vertex(d + 1) - cell->vertex(0));
-            mean += rule.weight(q) / reference_volume *
-                    temperature_at(point, *loads.temperature_change);
+            mean += rule.weight(q) / reference_volume * temperature_at(point);
           }
         stresses.push_back(
           materials(cell->material_id()).template thermal_stress<dim>() * mean);

@@ -85,6 +85,29 @@ namespace Debond
 
 
 
+    /// What the clamp of a face is called: the widest piece that is clamped as
+    /// a whole.
+    std::string
+    clamp_name(const BoundaryConditions        &conditions,
+               const dealii::types::boundary_id id)
+    {
+      std::string name = boundary_name(conditions.names, id);
+      std::size_t size = 0;
+      for (const auto &[piece, ids] : conditions.names)
+        if (ids.count(id) > 0 && ids.size() > size &&
+            std::includes(conditions.clamped.begin(),
+                          conditions.clamped.end(),
+                          ids.begin(),
+                          ids.end()))
+          {
+            name = piece;
+            size = ids.size();
+          }
+      return name;
+    }
+
+
+
     /// A vertex of the contact boundary that is not clamped.
     template <int dim>
     struct ContactVertex
@@ -212,7 +235,7 @@ namespace Debond
          boundary_faces(dofs, conditions.clamped, conditions.names))
       {
         const auto [entry, is_new] =
-          numbers.emplace(boundary_name(conditions.names, face.id),
+          numbers.emplace(clamp_name(conditions, face.id),
                           static_cast<unsigned int>(names_of_supports.size()));
         if (is_new)
           names_of_supports.push_back(entry->first);

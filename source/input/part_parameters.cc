@@ -2,26 +2,34 @@
 #include <deal.II/base/utilities.h>
 
 #include <debond/base/text.h>
+#include <debond/contact/field_value.h>
 #include <debond/input/expression.h>
 #include <debond/input/part_parameters.h>
 #include <debond/mesh/parted_body.h>
 
-#include <cmath>
 #include <stdexcept>
 
 namespace Debond
 {
   namespace
   {
+    /// Throws PartError where the condition has no value.
     template <int dim>
     std::function<bool(const dealii::Point<dim> &)>
-    make_condition(const std::string                   &expression,
+    make_condition(const std::string                   &part,
+                   const std::string                   &expression,
                    const std::map<std::string, double> &constants)
     {
-      return [function = make_function<dim>(expression, constants, 1)](
+      return [part, function = make_function<dim>(expression, constants, 1)](
                const dealii::Point<dim> &point) {
-        const double value = function->value(point);
-        return std::isfinite(value) && value != 0.;
+        try
+          {
+            return field_value(*function, point) != 0.;
+          }
+        catch (const std::invalid_argument &error)
+          {
+            throw PartError(part, error.what());
+          }
       };
     }
 
@@ -54,7 +62,8 @@ namespace Debond
               join({boundaries.begin(), boundaries.end()}, ", "));
         }
       part.contains =
-        make_condition<dim>(is_of_boundary ? text.substr(colon + 1) : text,
+        make_condition<dim>(name,
+                            is_of_boundary ? text.substr(colon + 1) : text,
                             constants);
       return part;
     }

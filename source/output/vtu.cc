@@ -221,7 +221,7 @@ namespace Debond
          problem.unknowns().dof_handler().active_cell_iterators())
       {
         const dealii::SymmetricTensor<2, 3> stress =
-          problem.fields().solid_stress(cell, displacement);
+          problem.fields().solid_stress(cell, displacement, load_factor);
         auto       field = fields.begin();
         const auto add   = [&field](const double number) {
           (field++)->second.push_back(static_cast<float>(number));

@@ -227,6 +227,9 @@ namespace Debond
           file_name + " does not satisfy the scene's boundary conditions");
       return u;
     }
+
+
+
     std::string
     entry_of(const SupportError &error)
     {

@@ -12,6 +12,7 @@
 #include <debond/solve/scene.h>
 
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -691,7 +692,10 @@ namespace
     if (child == 0)
       {
         close(ends[0]);
-        alarm(seconds_for_a_scene);
+        // Of the processor: on a busy machine a scene takes longer.
+        const rlimit limit = {seconds_for_a_scene, seconds_for_a_scene + 1};
+        setrlimit(RLIMIT_CPU, &limit);
+        alarm(20 * seconds_for_a_scene);
         const Outcome     outcome = run_attack(attack, random);
         const std::string line    = outcome.kind + '\n' + outcome.detail;
         const ssize_t     written =
@@ -707,7 +711,9 @@ namespace
     int status = 0;
     waitpid(child, &status, 0);
     if (WIFSIGNALED(status))
-      return {WTERMSIG(status) == SIGALRM ? "hang" : "internal error",
+      return {WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGALRM ?
+                "hang" :
+                "internal error",
               "signal " + std::to_string(WTERMSIG(status))};
     const std::size_t line_end = answer.find('\n');
     if (line_end == std::string::npos)

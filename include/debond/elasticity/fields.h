@@ -72,13 +72,13 @@ namespace Debond
     dealii::SymmetricTensor<2, dim>
     stress(const Cell                   &cell,
            const dealii::Vector<double> &cartesian_displacement,
-           const double                  load_factor = 1.) const;
+           const double                  load_factor) const;
 
     /// The same with what the hypothesis of plane bodies implies.
     dealii::SymmetricTensor<2, 3>
     solid_stress(const Cell                   &cell,
                  const dealii::Vector<double> &cartesian_displacement,
-                 const double                  load_factor = 1.) const;
+                 const double                  load_factor) const;
 
     /// The displacement gradient of the cell, its row d that of component d.
     dealii::Tensor<2, dim>
