@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_mesh_bisected_body_h
+#define debond_mesh_bisected_body_h
+
+#include <debond/mesh/bisection.h>
+#include <debond/mesh/body.h>
+
+namespace Debond
+{
+  /**
+   * A body on the mesh of another one, refined locally. The new faces and cells
+   * have the names of those that they are parts of: curved sides, and the edges
+   * of parts, stay as the first mesh has them.
+   */
+  template <int dim>
+  class BisectedBody : public Body<dim>
+  {
+  public:
+    /// The mesh of @p whole as it is. Throws as its make_mesh() and Bisection
+    /// do.
+    explicit BisectedBody(const std::shared_ptr<const Body<dim>> &whole);
+
+    /// With each cell cut at least @p times as often, in the order of the
+    /// active cells.
+    std::shared_ptr<const BisectedBody>
+    refined(const std::vector<unsigned int> &times) const;
+
+    /// The same P1 function on this mesh, from the values at the vertices of
+    /// the mesh that this one is refined() from.
+    template <typename T>
+    void
+    extend(std::vector<T> &values) const
+    {
+      bisection.extend(values);
+    }
+
+    std::set<std::string>
+    boundaries() const override;
+
+    std::set<std::string>
+    regions() const override;
+
+    double
+    n_cells() const override;
+
+    double
+    n_vertices() const override;
+
+    double
+    n_vertices_on(const std::string &boundary) const override;
+
+    /// With as many cells as there would be if they were alike.
+    BodyShape
+    shape() const override;
+
+    PieceNames
+    make_mesh(dealii::Triangulation<dim> &mesh) const override;
+
+    /// None: a solution goes from mesh to mesh by extend().
+    std::unique_ptr<const Body<dim>>
+    coarser() const override;
+
+    std::vector<dealii::Tensor<1, dim>>
+    interpolate(const dealii::Triangulation<dim>          &mesh,
+                const std::vector<dealii::Tensor<1, dim>> &values,
+                const std::vector<dealii::Point<dim>> &points) const override;
+
+  private:
+    BisectedBody(const BisectedBody              &coarse,
+                 const std::vector<unsigned int> &times);
+
+    /// A mesh of the body, for its constructor.
+    static Bisection<dim>
+    bisection_of(const Body<dim> &whole, PieceNames &names);
+
+    const std::shared_ptr<const Body<dim>> whole;
+    PieceNames                             names;
+    Bisection<dim>                         bisection;
+  };
+} // namespace Debond
+
+#endif

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_mesh_bisection_h
+#define debond_mesh_bisection_h
+
+#include <deal.II/base/point.h>
+#include <deal.II/grid/tria.h>
+
+#include <array>
+#include <set>
+#include <vector>
+
+namespace Debond
+{
+  /**
+   * A conforming mesh of simplices that is refined locally by Maubach's
+   * bisection (SIAM J. Sci. Comput. 16, 1995). A simplex has an order of its
+   * vertices x_0, ..., x_d and a tag k in 1, ..., d: it is cut at the middle z
+   * of x_0 x_k into
+   *
+   *     (x_0, ..., x_{k-1}, z, x_{k+1}, ..., x_d)
+   *     (x_1, ..., x_k,     z, x_{k+1}, ..., x_d)
+   *
+   * with the tag k - 1, or d after 1. A simplex with the middle of one of its
+   * edges on it is cut as well, until there is none: meshes stay conforming. Of
+   * each simplex of the first mesh there are only finitely many similarity
+   * classes.
+   *
+   * The first mesh needs orders and tags that fit together. These are
+   *  - the order in which crossed_subdivision() lists the vertices, with the
+   *    tag 1, if neighbours satisfy the condition of Stevenson (Math. Comp. 77,
+   *    2008): all meshes are conforming then, however cells are chosen;
+   *  - in 2D otherwise, the longest edge first: any choice of first edges will
+   *    do (Karkulik, Pavlicek, Praetorius, Constr. Approx. 38, 2013);
+   *  - in 3D otherwise, the order of four colours of the vertices, no two alike
+   *    in a cell, with the tag 3, which satisfies Stevenson's condition; few
+   *    meshes have such a colouring.
+   */
+  template <int dim>
+  class Bisection
+  {
+  public:
+    /// Takes cells, boundary and material ids of @p mesh. Throws
+    /// std::invalid_argument if there are no such orders.
+    explicit Bisection(const dealii::Triangulation<dim> &mesh);
+
+    /// Cuts each cell at least @p times as often, in the order of the active
+    /// cells of make_mesh().
+    void
+    refine(const std::vector<unsigned int> &times);
+
+    unsigned int
+    n_cells() const;
+
+    /// Those before a refinement keep their numbers.
+    const std::vector<dealii::Point<dim>> &
+    vertices() const;
+
+    /// Those on the boundaries with these ids.
+    unsigned int
+    n_vertices_on(const std::set<dealii::types::boundary_id> &boundaries) const;
+
+    /// Adds to the values at the vertices of this mesh some refinements ago
+    /// those of the same P1 function at the vertices that came since.
+    template <typename T>
+    void
+    extend(std::vector<T> &values) const;
+
+    /// Fills an empty triangulation, with vertices and cells in this order.
+    void
+    make_mesh(dealii::Triangulation<dim> &mesh) const;
+
+  private:
+    struct Simplex
+    {
+      std::array<unsigned int, dim + 1> vertices; ///< x_0, ..., x_dim
+      unsigned int                      tag;
+
+      /// Of the faces opposite to the vertices, internal_face_boundary_id of
+      /// those inside.
+      std::array<dealii::types::boundary_id, dim + 1> boundaries;
+      dealii::types::material_id                      material;
+    };
+
+    /// Tries the tag 1 with the order of the vertices as it is.
+    bool
+    is_compatible_as_it_is() const;
+
+    void
+    put_longest_edges_first();
+
+    /// Returns whether there is a colouring.
+    bool
+    order_by_colours();
+
+    /// The pairs of cells at the faces inside, each with the position of the
+    /// vertex that is not on the face.
+    struct Neighbours
+    {
+      std::array<unsigned int, 2> cells;
+      std::array<unsigned int, 2> opposite;
+    };
+
+    std::vector<Neighbours>
+    neighbours() const;
+
+    std::vector<dealii::Point<dim>> points;
+    std::vector<Simplex>            cells;
+
+    /// The ends of the edge that each vertex is the middle of, from the number
+    /// first_middle on.
+    unsigned int                             first_middle;
+    std::vector<std::array<unsigned int, 2>> parents;
+  };
+
+
+
+  template <int dim>
+  template <typename T>
+  void
+  Bisection<dim>::extend(std::vector<T> &values) const
+  {
+    values.reserve(points.size());
+    for (std::size_t v = values.size(); v < points.size(); ++v)
+      {
+        const auto &ends = parents[v - first_middle];
+        values.push_back(0.5 * (values[ends[0]] + values[ends[1]]));
+      }
+  }
+} // namespace Debond
+
+#endif

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/mesh/bisected_body.h>
+#include <debond/mesh/simplex_interpolation.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Debond
+{
+  template <int dim>
+  BisectedBody<dim>::BisectedBody(const std::shared_ptr<const Body<dim>> &whole)
+    : whole(whole)
+    , bisection(bisection_of(*whole, names))
+  {}
+
+
+
+  template <int dim>
+  BisectedBody<dim>::BisectedBody(const BisectedBody              &coarse,
+                                  const std::vector<unsigned int> &times)
+    : whole(coarse.whole)
+    , names(coarse.names)
+    , bisection(coarse.bisection)
+  {
+    bisection.refine(times);
+  }
+
+
+
+  template <int dim>
+  Bisection<dim>
+  BisectedBody<dim>::bisection_of(const Body<dim> &whole, PieceNames &names)
+  {
+    dealii::Triangulation<dim> mesh;
+    names = whole.make_mesh(mesh);
+    return Bisection<dim>(mesh);
+  }
+
+
+
+  template <int dim>
+  std::shared_ptr<const BisectedBody<dim>>
+  BisectedBody<dim>::refined(const std::vector<unsigned int> &times) const
+  {
+    return std::shared_ptr<const BisectedBody>(new BisectedBody(*this, times));
+  }
+
+
+
+  template <int dim>
+  std::set<std::string>
+  BisectedBody<dim>::boundaries() const
+  {
+    return whole->boundaries();
+  }
+
+
+
+  template <int dim>
+  std::set<std::string>
+  BisectedBody<dim>::regions() const
+  {
+    return whole->regions();
+  }
+
+
+
+  template <int dim>
+  double
+  BisectedBody<dim>::n_cells() const
+  {
+    return bisection.n_cells();
+  }
+
+
+
+  template <int dim>
+  double
+  BisectedBody<dim>::n_vertices() const
+  {
+    return static_cast<double>(bisection.vertices().size());
+  }
+
+
+
+  template <int dim>
+  double
+  BisectedBody<dim>::n_vertices_on(const std::string &boundary) const
+  {
+    return bisection.n_vertices_on(names.boundaries.at(boundary));
+  }
+
+
+
+  template <int dim>
+  BodyShape
+  BisectedBody<dim>::shape() const
+  {
+    BodyShape    shape = whole->shape();
+    const double finer = std::pow(n_cells() / whole->n_cells(), 1. / dim);
+    for (double &cells : shape.cells)
+      cells *= finer;
+    return shape;
+  }
+
+
+
+  template <int dim>
+  PieceNames
+  BisectedBody<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
+  {
+    bisection.make_mesh(mesh);
+    return names;
+  }
+
+
+
+  template <int dim>
+  std::unique_ptr<const Body<dim>>
+  BisectedBody<dim>::coarser() const
+  {
+    return nullptr;
+  }
+
+
+
+  template <int dim>
+  std::vector<dealii::Tensor<1, dim>>
+  BisectedBody<dim>::interpolate(
+    const dealii::Triangulation<dim>          &mesh,
+    const std::vector<dealii::Tensor<1, dim>> &values,
+    const std::vector<dealii::Point<dim>>     &points) const
+  {
+    return interpolate_on_simplices(mesh, values, points);
+  }
+
+
+
+  template class BisectedBody<2>;
+  template class BisectedBody<3>;
+} // namespace Debond

@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/tensor.h>
+
+#include <debond/mesh/bisection.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <queue>
+#include <stdexcept>
+#include <unordered_map>
+#include <utility>
+
+namespace Debond
+{
+  namespace
+  {
+    /// The vertices that were put in the middle of edges.
+    class EdgeMiddles
+    {
+    public:
+      bool
+      empty() const
+      {
+        return middles.empty();
+      }
+
+      bool
+      has(const unsigned int a, const unsigned int b) const
+      {
+        return middles.count(key(a, b)) > 0;
+      }
+
+      /// @p next is the number of a new one; returns whether it is needed.
+      std::pair<unsigned int, bool>
+      insert(const unsigned int a,
+             const unsigned int b,
+             const unsigned int next)
+      {
+        const auto [entry, is_new] = middles.emplace(key(a, b), next);
+        return {entry->second, is_new};
+      }
+
+    private:
+      static std::uint64_t
+      key(const unsigned int a, const unsigned int b)
+      {
+        return (static_cast<std::uint64_t>(std::min(a, b)) << 32) |
+               std::max(a, b);
+      }
+
+      std::unordered_map<std::uint64_t, unsigned int> middles;
+    };
+
+
+
+    template <std::size_t n>
+    bool
+    has_middle(const std::array<unsigned int, n> &vertices,
+               const EdgeMiddles                 &middles)
+    {
+      if (middles.empty())
+        return false;
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = i + 1; j < n; ++j)
+          if (middles.has(vertices[i], vertices[j]))
+            return true;
+      return false;
+    }
+
+
+
+    /// The children of a cell, @p middle being that of its refinement edge.
+    template <typename Simplex>
+    std::array<Simplex, 2>
+    halves(const Simplex &cell, const unsigned int middle)
+    {
+      const unsigned int k = cell.tag;
+      const unsigned int last =
+        static_cast<unsigned int>(cell.vertices.size()) - 1;
+      std::array<Simplex, 2> children{{cell, cell}};
+
+      // The first one loses x_k; its face opposite x_0 is new.
+      children[0].vertices[k]   = middle;
+      children[0].boundaries[0] = dealii::numbers::internal_face_boundary_id;
+
+      // The second one loses x_0; its face opposite x_k is new.
+      for (unsigned int i = 0; i < k; ++i)
+        {
+          children[1].vertices[i]   = cell.vertices[i + 1];
+          children[1].boundaries[i] = cell.boundaries[i + 1];
+        }
+      children[1].vertices[k]   = middle;
+      children[1].boundaries[k] = cell.boundaries[0];
+      children[1].boundaries[k - 1] =
+        dealii::numbers::internal_face_boundary_id;
+
+      children[0].tag = children[1].tag = k > 1 ? k - 1 : last;
+      return children;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Bisection<dim>::Bisection(const dealii::Triangulation<dim> &mesh)
+    : points(mesh.get_vertices())
+    , first_middle(static_cast<unsigned int>(points.size()))
+  {
+    for (const auto &cell : mesh.active_cell_iterators())
+      {
+        Simplex simplex;
+        simplex.tag      = 1;
+        simplex.material = cell->material_id();
+        simplex.boundaries.fill(dealii::numbers::internal_face_boundary_id);
+        for (unsigned int v = 0; v <= dim; ++v)
+          simplex.vertices[v] = cell->vertex_index(v);
+        for (const auto &face : cell->face_iterators())
+          if (face->at_boundary())
+            for (unsigned int v = 0; v <= dim; ++v)
+              {
+                bool is_opposite = true;
+                for (const unsigned int w : face->vertex_indices())
+                  is_opposite =
+                    is_opposite && face->vertex_index(w) != simplex.vertices[v];
+                if (is_opposite)
+                  simplex.boundaries[v] = face->boundary_id();
+              }
+        cells.push_back(simplex);
+      }
+
+    if (is_compatible_as_it_is())
+      return;
+    if (dim == 2)
+      put_longest_edges_first();
+    else if (!order_by_colours())
+      throw std::invalid_argument(
+        "the mesh cannot be refined locally: its tetrahedra are not those of "
+        "crossed hexahedra, and its vertices cannot have four colours such that "
+        "no two of a tetrahedron are alike");
+  }
+
+
+
+  template <int dim>
+  std::vector<typename Bisection<dim>::Neighbours>
+  Bisection<dim>::neighbours() const
+  {
+    std::map<std::array<unsigned int, dim>, std::array<unsigned int, 2>> open;
+    std::vector<Neighbours>                                              result;
+    for (unsigned int c = 0; c < cells.size(); ++c)
+      for (unsigned int v = 0; v <= dim; ++v)
+        {
+          std::array<unsigned int, dim> face;
+          for (unsigned int i = 0, w = 0; w <= dim; ++w)
+            if (w != v)
+              face[i++] = cells[c].vertices[w];
+          std::sort(face.begin(), face.end());
+          const auto [entry, is_first] =
+            open.emplace(face, std::array<unsigned int, 2>{{c, v}});
+          if (!is_first)
+            {
+              result.push_back(
+                {{{entry->second[0], c}}, {{entry->second[1], v}}});
+              open.erase(entry);
+            }
+        }
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  Bisection<dim>::is_compatible_as_it_is() const
+  {
+    for (const auto &[pair, opposite] : neighbours())
+      {
+        const auto &x       = cells[pair[0]].vertices;
+        const auto &y       = cells[pair[1]].vertices;
+        const auto [i, j]   = opposite;
+        const bool has_edge = i >= 2;
+        if (has_edge != (j >= 2))
+          return false;
+        // Neighbours at a face with the refinement edge share that edge and
+        // differ in one place; at other faces their halves do.
+        if (has_edge ?
+              i != j || std::minmax(x[0], x[1]) != std::minmax(y[0], y[1]) :
+              x[1 - i] != y[1 - j])
+          return false;
+        for (unsigned int v = 2; v <= dim; ++v)
+          if (x[v] != y[v] && !(has_edge && v == i))
+            return false;
+      }
+    return true;
+  }
+
+
+
+  template <int dim>
+  void
+  Bisection<dim>::put_longest_edges_first()
+  {
+    for (Simplex &cell : cells)
+      {
+        const auto length = [&](const unsigned int a, const unsigned int b) {
+          return points[cell.vertices[a]].distance_square(
+            points[cell.vertices[b]]);
+        };
+        unsigned int longest = dim; // by the vertex opposite to it
+        for (unsigned int v = 0; v < dim; ++v)
+          if (length((v + 1) % (dim + 1), (v + 2) % (dim + 1)) >
+              length((longest + 1) % (dim + 1), (longest + 2) % (dim + 1)))
+            longest = v;
+        std::swap(cell.vertices[longest], cell.vertices[dim]);
+        std::swap(cell.boundaries[longest], cell.boundaries[dim]);
+      }
+  }
+
+
+
+  template <int dim>
+  bool
+  Bisection<dim>::order_by_colours()
+  {
+    std::vector<std::vector<std::array<unsigned int, 2>>> beyond(cells.size());
+    for (const auto &[pair, opposite] : neighbours())
+      {
+        beyond[pair[0]].push_back({{pair[1], opposite[1]}});
+        beyond[pair[1]].push_back({{pair[0], opposite[0]}});
+      }
+
+    // Three vertices have their colours from the neighbour: the fourth one has
+    // no choice.
+    constexpr unsigned int    none = dim + 1;
+    std::vector<unsigned int> colours(points.size(), none);
+    const auto                colour = [&](const unsigned int c) {
+      std::array<bool, dim + 2> used = {};
+      for (const unsigned int v : cells[c].vertices)
+        used[colours[v]] = true;
+      for (const unsigned int v : cells[c].vertices)
+        if (colours[v] == none)
+          {
+            const auto free = std::find(used.begin(), used.end() - 1, false);
+            if (free == used.end() - 1)
+              return false;
+            *free = true;
+            colours[v] = static_cast<unsigned int>(free - used.begin());
+          }
+      return std::all_of(used.begin(), used.end() - 1, [](const bool u) {
+        return u;
+      });
+    };
+    std::vector<bool> visited(cells.size(), false);
+    for (unsigned int first = 0; first < cells.size(); ++first)
+      {
+        std::queue<unsigned int> todo;
+        if (!visited[first])
+          todo.push(first);
+        visited[first] = true;
+        for (; !todo.empty(); todo.pop())
+          {
+            if (!colour(todo.front()))
+              return false;
+            for (const auto &[c, unused] : beyond[todo.front()])
+              if (!visited[c])
+                {
+                  visited[c] = true;
+                  todo.push(c);
+                }
+          }
+      }
+
+    for (Simplex &cell : cells)
+      {
+        const Simplex before = cell;
+        for (unsigned int v = 0; v <= dim; ++v)
+          {
+            const unsigned int place = colours[before.vertices[v]];
+            cell.vertices[place]     = before.vertices[v];
+            cell.boundaries[place]   = before.boundaries[v];
+          }
+        cell.tag = dim;
+      }
+    return true;
+  }
+
+
+
+  template <int dim>
+  void
+  Bisection<dim>::refine(const std::vector<unsigned int> &times)
+  {
+    AssertDimension(times.size(), cells.size());
+
+    // The middle of an edge is a vertex only until all its cells are cut.
+    EdgeMiddles               middles;
+    std::vector<unsigned int> left = times;
+    for (bool goes_on = true; goes_on;)
+      {
+        goes_on = false;
+        std::vector<Simplex>      next;
+        std::vector<unsigned int> next_left;
+        next.reserve(cells.size());
+        next_left.reserve(cells.size());
+        for (unsigned int c = 0; c < cells.size(); ++c)
+          {
+            const Simplex &cell = cells[c];
+            if (left[c] == 0 && !has_middle(cell.vertices, middles))
+              {
+                next.push_back(cell);
+                next_left.push_back(0);
+                continue;
+              }
+            goes_on              = true;
+            const unsigned int a = cell.vertices[0];
+            const unsigned int b = cell.vertices[cell.tag];
+            const auto [z, is_new] =
+              middles.insert(a, b, static_cast<unsigned int>(points.size()));
+            if (is_new)
+              {
+                points.push_back(points[a] + 0.5 * (points[b] - points[a]));
+                parents.push_back({{a, b}});
+              }
+            for (const Simplex &half : halves(cell, z))
+              {
+                next.push_back(half);
+                next_left.push_back(left[c] > 0 ? left[c] - 1 : 0);
+              }
+          }
+        cells = std::move(next);
+        left  = std::move(next_left);
+      }
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  Bisection<dim>::n_cells() const
+  {
+    return static_cast<unsigned int>(cells.size());
+  }
+
+
+
+  template <int dim>
+  const std::vector<dealii::Point<dim>> &
+  Bisection<dim>::vertices() const
+  {
+    return points;
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  Bisection<dim>::n_vertices_on(
+    const std::set<dealii::types::boundary_id> &boundaries) const
+  {
+    std::vector<bool> is_on(points.size(), false);
+    for (const Simplex &cell : cells)
+      for (unsigned int v = 0; v <= dim; ++v)
+        if (boundaries.count(cell.boundaries[v]) > 0)
+          for (unsigned int w = 0; w <= dim; ++w)
+            if (w != v)
+              is_on[cell.vertices[w]] = true;
+    return static_cast<unsigned int>(
+      std::count(is_on.begin(), is_on.end(), true));
+  }
+
+
+
+  template <int dim>
+  void
+  Bisection<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
+  {
+    std::vector<dealii::CellData<dim>> data;
+    dealii::SubCellData                subcells;
+    data.reserve(cells.size());
+    for (const Simplex &cell : cells)
+      {
+        dealii::Tensor<2, dim> edges;
+        for (unsigned int d = 0; d < dim; ++d)
+          edges[d] = points[cell.vertices[d + 1]] - points[cell.vertices[0]];
+
+        data.emplace_back(dim + 1);
+        data.back().vertices.assign(cell.vertices.begin(), cell.vertices.end());
+        data.back().material_id = cell.material;
+        if (dealii::determinant(edges) < 0.)
+          std::swap(data.back().vertices[dim - 1], data.back().vertices[dim]);
+
+        for (unsigned int v = 0; v <= dim; ++v)
+          if (cell.boundaries[v] != dealii::numbers::internal_face_boundary_id)
+            {
+              dealii::CellData<dim - 1> face(dim);
+              for (unsigned int i = 0, w = 0; w <= dim; ++w)
+                if (w != v)
+                  face.vertices[i++] = cell.vertices[w];
+              face.boundary_id = cell.boundaries[v];
+              if constexpr (dim == 2)
+                subcells.boundary_lines.push_back(face);
+              else
+                subcells.boundary_quads.push_back(face);
+            }
+      }
+    mesh.create_triangulation(points, data, subcells);
+  }
+
+
+
+  template class Bisection<2>;
+  template class Bisection<3>;
+} // namespace Debond
