@@ -9,7 +9,20 @@
 namespace Debond
 {
   template <int dim>
-  std::vector<std::string>
+  dealii::Tensor<1, dim>
+  RigidMotion<dim>::operator()(const dealii::Point<dim> &point) const
+  {
+    const dealii::Tensor<1, dim> x = point - centre;
+    if constexpr (dim == 2)
+      return translation + rotation[0] * dealii::Tensor<1, dim>({-x[1], x[0]});
+    else
+      return translation + dealii::cross_product_3d(rotation, x);
+  }
+
+
+
+  template <int dim>
+  FreeRigidMotions<dim>
   free_rigid_motions(const std::vector<Support<dim>> &supports,
                      const double                     diameter)
   {
@@ -56,11 +69,21 @@ namespace Debond
 
     Gram    null_projector = Gram::Zero();
     Motions null_vector    = Motions::Zero();
+
+    FreeRigidMotions<dim> result;
     for (unsigned int k = 0; k < n_motions; ++k)
       if (eigen.eigenvalues()[k] <= threshold)
         {
           null_vector = eigen.eigenvectors().col(k);
           null_projector += null_vector * null_vector.transpose();
+
+          RigidMotion<dim> motion;
+          motion.centre = dealii::Point<dim>(centre);
+          for (unsigned int d = 0; d < dim; ++d)
+            motion.translation[d] = null_vector[d];
+          for (unsigned int d = dim; d < n_motions; ++d)
+            motion.rotation[d - dim] = null_vector[d] / length;
+          result.motions.push_back(motion);
         }
 
     std::vector<std::string> pure;
@@ -76,13 +99,16 @@ namespace Debond
         if (std::abs(null_vector[k]) > 0.1)
           components.push_back(name);
       }
-    return pure.empty() ? components : pure;
+    result.names = pure.empty() ? components : pure;
+    return result;
   }
 
 
 
-  template std::vector<std::string>
+  template struct RigidMotion<2>;
+  template struct RigidMotion<3>;
+  template FreeRigidMotions<2>
   free_rigid_motions(const std::vector<Support<2>> &, const double);
-  template std::vector<std::string>
+  template FreeRigidMotions<3>
   free_rigid_motions(const std::vector<Support<3>> &, const double);
 } // namespace Debond

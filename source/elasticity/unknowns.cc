@@ -2,6 +2,7 @@
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/fe/fe_simplex_p.h>
 
+#include <debond/base/text.h>
 #include <debond/contact/field_value.h>
 #include <debond/elasticity/contact_frame.h>
 #include <debond/elasticity/linear_simplex.h>
@@ -209,15 +210,17 @@ namespace Debond
     if (gap.all_zero())
       gap.reinit(0);
 
-    const std::vector<std::string> motions = free_rigid_motions(held, diameter);
-    if (!motions.empty())
+    free_motions = free_rigid_motions(held, diameter);
+    if (!free_motions.motions.empty())
       {
-        std::string list = motions.front();
-        for (unsigned int k = 1; k < motions.size(); ++k)
-          list += ", " + motions[k];
-        throw std::invalid_argument(
-          "Boundary conditions leave a rigid motion free: " + list +
-          ". Clamp a side.");
+        for (const auto &node : contact_space.boundary().nodes)
+          held.push_back({node.position, node.normal});
+        const std::vector<std::string> motions =
+          free_rigid_motions(held, diameter).names;
+        if (!motions.empty())
+          throw std::invalid_argument(
+            "Boundary conditions leave a rigid motion free: " +
+            join(motions, ", ") + ". Clamp a side.");
       }
 
     fixed.close();
@@ -763,6 +766,15 @@ namespace Debond
   ElasticUnknowns<dim>::support_names() const
   {
     return names_of_supports;
+  }
+
+
+
+  template <int dim>
+  const FreeRigidMotions<dim> &
+  ElasticUnknowns<dim>::held_by_contact() const
+  {
+    return free_motions;
   }
 
 

@@ -64,9 +64,12 @@ namespace Debond
   class Condensation::Factor
   {
   public:
+    /// The diagonal entries of the kept unknowns are multiplied by @p
+    /// diagonal_factor.
     Factor(const dealii::SparseMatrix<double> &A,
            const std::vector<unsigned int>    &unknowns,
-           const unsigned int                  n_kept)
+           const unsigned int                  n_kept,
+           const double                        diagonal_factor)
       : n(static_cast<int>(unknowns.size()))
       , n_kept(n_kept)
     {
@@ -76,7 +79,7 @@ namespace Debond
       common.error_handler = nullptr;
       try
         {
-          factorize(A, unknowns);
+          factorize(A, unknowns, diagonal_factor);
         }
       catch (...)
         {
@@ -135,7 +138,8 @@ namespace Debond
   private:
     void
     factorize(const dealii::SparseMatrix<double> &A,
-              const std::vector<unsigned int>    &unknowns)
+              const std::vector<unsigned int>    &unknowns,
+              const double                        diagonal_factor)
     {
       std::vector<int> position(A.m(), -1);
       for (int i = 0; i < n; ++i)
@@ -161,8 +165,11 @@ namespace Debond
                ++entry)
             if (const int j = position[entry->column()]; j >= 0 && j <= i)
               {
-                rows[next]     = j;
-                values[next++] = entry->value();
+                const bool is_scaled =
+                  j == i && i >= n - static_cast<int>(n_kept);
+                rows[next] = j;
+                values[next++] =
+                  (is_scaled ? diagonal_factor : 1.) * entry->value();
               }
         }
       starts[n] = static_cast<int>(next);
@@ -220,7 +227,8 @@ namespace Debond
     const dealii::Vector<double>            &f,
     const std::vector<unsigned int>         &kept,
     const std::function<bool(unsigned int)> &is_excluded,
-    const ConstantPart                      &constant)
+    const ConstantPart                      &constant,
+    const bool                               is_semidefinite)
     : n(f.size())
     , constant_energy(constant.energy)
   {
@@ -232,7 +240,10 @@ namespace Debond
         unknowns.push_back(i);
     unknowns.insert(unknowns.end(), kept.begin(), kept.end());
 
-    factor = std::make_unique<Factor>(A, unknowns, kept.size());
+    factor = std::make_unique<Factor>(A,
+                                      unknowns,
+                                      kept.size(),
+                                      is_semidefinite ? 2. : 1.);
 
     given_y = forward(f);
     if (constant.load.size() > 0)
@@ -242,6 +253,9 @@ namespace Debond
     S.reinit(kept.size(), kept.size());
     if (!kept.empty())
       L_ss.mTmult(S, L_ss);
+    if (is_semidefinite)
+      for (unsigned int i = 0; i < kept.size(); ++i)
+        S(i, i) -= A.diag_element(kept[i]);
     scale_load(1.);
   }
 

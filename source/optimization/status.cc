@@ -22,6 +22,8 @@ namespace Debond
           return "stagnated";
         case SolverStatus::not_finite:
           return "not finite";
+        case SolverStatus::comes_off:
+          return "comes off";
         case SolverStatus::interrupted:
           return "interrupted";
       }

@@ -50,7 +50,7 @@ namespace Debond
     };
     return {
       {{"body.vtu"},
-       [&]() { return output.body_vtu; },
+       [&]() { return output.body_vtu && result.has_displacement(); },
        [&](const std::string &path) {
          write_body_vtu(scene.problem(),
                         result.solve.u,
@@ -58,7 +58,7 @@ namespace Debond
                         result.solve.load_factor);
        }},
       {{"contact.vtu"},
-       [&]() { return output.contact_vtu; },
+       [&]() { return output.contact_vtu && result.has_displacement(); },
        [&](const std::string &path) {
          write_contact_vtu(scene.problem(),
                            result.solve.u,
@@ -67,7 +67,7 @@ namespace Debond
                            result.solve.load_factor);
        }},
       {{"contact_profile.csv"},
-       [&]() { return output.contact_profile; },
+       [&]() { return output.contact_profile && result.has_displacement(); },
        [&](const std::string &path) {
          write_contact_profile(scene.problem().unknowns().contact().boundary(),
                                result.verification,
@@ -77,7 +77,7 @@ namespace Debond
        [&]() { return output.history; },
        [&](const std::string &path) { write_iterations(result.solve, path); }},
       {{"displacement.txt"},
-       [&]() { return output.displacement; },
+       [&]() { return output.displacement && result.has_displacement(); },
        [&](const std::string &path) {
          write_displacement(result.solve.u, path);
        }},

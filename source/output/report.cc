@@ -99,7 +99,9 @@ namespace Debond
     /// The steps at which most bonds break and close, and how far the path is
     /// from the global branch.
     void
-    report_load_path(const LoadPathTotals &path, Record &record)
+    report_load_path(const LoadPathTotals        &path,
+                     const std::optional<double> &comes_off_at,
+                     Record                      &record)
     {
       record.heading("Load path");
       record.add("/load_path/factors", path.factors);
@@ -111,6 +113,10 @@ namespace Debond
                         path.factors,
                         ", the last one ",
                         path.last_factor));
+      record.add("/load_path/comes_off_at",
+                 comes_off_at ? Json(*comes_off_at) : Json(nullptr));
+      if (comes_off_at)
+        record.line("comes off", words("at factor ", *comes_off_at));
       report_change("largest_break",
                     "most bonds break",
                     path.largest_break,
@@ -144,7 +150,7 @@ namespace Debond
       record.add("/message", result.message);
       record.add("/notes", result.notes);
       record.line("status",
-                  (result.is_success() ? "" : "NOT CONVERGED: ") +
+                  (result.is_answer() ? "" : "NOT CONVERGED: ") +
                     result.status);
       if (!result.is_success())
         record.line("", result.message);
@@ -153,7 +159,8 @@ namespace Debond
 
       const SolveResult &solve = result.solve;
       record.add("/functional", solve.functional);
-      record.line("J", scientific(solve.functional, 10));
+      if (result.has_displacement())
+        record.line("J", scientific(solve.functional, 10));
       if (solve.functional_from_start)
         record.add("/functional_from_start", *solve.functional_from_start);
       if (solve.is_replaced)
@@ -484,6 +491,10 @@ namespace Debond
                      words(", with fixed tangential ones ", n_dofs_paper) :
                      ""));
     report_data(parameters, n_nodes, record);
+    if (const auto &motions = unknowns.held_by_contact().names;
+        !motions.empty())
+      record.line("held by contact",
+                  join(motions, ", ") + ", by bonds and the foundation alone");
 
     record.add("/method", choice.method);
     record.add("/linear_solver", choice.linear_solver);
@@ -513,6 +524,7 @@ namespace Debond
       report_load_path(load_path_totals(result.path,
                                         static_cast<unsigned int>(
                                           parameters.load_path.factors.size())),
+                       result.solve.comes_off_at,
                        record);
     report_status(result, record);
     report_minimum(result.solve.minimum,
@@ -520,6 +532,8 @@ namespace Debond
                    scene.problem().unknowns().contact().size(),
                    record);
     report_iterations(result.solve, choice.method, record);
+    if (!result.has_displacement())
+      return;
     report_state(result.verification, result.largest, record);
     report_verification(parameters, result, record);
   }

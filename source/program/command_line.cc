@@ -8,6 +8,7 @@
 #include <debond/program/run.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/scene.h>
+#include <debond/solve/solve.h>
 
 #include <boost/program_options.hpp>
 
@@ -31,7 +32,7 @@ namespace Debond
 
     const char *const exit_codes =
       "\nExit codes:\n"
-      "  0  success\n"
+      "  0  success, or the body comes off, see the status in summary.json\n"
       "  1  internal error\n"
       "  2  bad input: command line or scene; nothing is written\n"
       "  3  not converged: the stop criterion or the verification was not met\n"
@@ -106,8 +107,9 @@ namespace Debond
       if (!only_validate)
         return run<dim>(parameters, std::cout, isatty(STDOUT_FILENO) == 1);
 
-      choose_method(parameters);
-      const Scene<dim> scene(parameters);
+      const MethodChoice choice = choose_method(parameters);
+      const Scene<dim>   scene(parameters);
+      check_supports_of_method(choice, parameters, scene);
       std::cout << parameters.scene << ": valid" << std::endl;
       return ExitCode::success;
     }

@@ -162,6 +162,16 @@ namespace Debond
                  const Scene<dim> &scene,
                  RunResult<dim>   &result)
     {
+      result.notes = result.solve.notes;
+      append(result.solve.minimum.notes, result.notes);
+      append(parameters.notes, result.notes);
+      append(scene.notes(), result.notes);
+      if (result.solve.status == SolverStatus::comes_off && result.path.empty())
+        {
+          judge("", result);
+          return;
+        }
+
       dealii::Timer timer;
       result.verification = verify(scene.problem(),
                                    scene.adhesion(),
@@ -174,10 +184,6 @@ namespace Debond
       result.largest = largest_values(scene.problem(),
                                       result.solve.u,
                                       result.solve.load_factor);
-      result.notes   = result.solve.notes;
-      append(result.solve.minimum.notes, result.notes);
-      append(parameters.notes, result.notes);
-      append(scene.notes(), result.notes);
       append(plausibility_notes(
                scene.body().shape(),
                dim,
@@ -220,7 +226,7 @@ namespace Debond
     conclude(const RunResult<dim> &result, const std::string &output_error)
     {
       const bool interrupted = result.solve.minimum.interrupted;
-      if (!result.is_success())
+      if (!result.is_answer())
         std::cerr << "debond: NOT CONVERGED (" << result.status
                   << "): " << result.message << std::endl;
       else if (interrupted)
@@ -236,7 +242,7 @@ namespace Debond
       if (result.solve.status == SolverStatus::interrupted ||
           (result.is_success() && interrupted))
         return ExitCode::interrupted;
-      return result.is_success() ? ExitCode::success : ExitCode::not_converged;
+      return result.is_answer() ? ExitCode::success : ExitCode::not_converged;
     }
   } // namespace
 
@@ -250,6 +256,7 @@ namespace Debond
     const MethodChoice         choice = choose_method(parameters);
     const std::unique_ptr<MPI> mpi    = initialize_mpi(choice);
     const Scene<dim>           scene(parameters, matrix_storage(choice));
+    check_supports_of_method(choice, parameters, scene);
     // Before the solve, so that nothing is lost if it is not finite somewhere.
     error_of(parameters,
              scene.problem(),

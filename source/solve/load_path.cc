@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 namespace Debond
@@ -34,9 +35,11 @@ namespace Debond
         , steps(steps)
         , adhesion(scene.adhesion())
         , condensed(condense_to_contact(scene.problem(), adhesion))
+        , free_motions(free_motions_of_contact(scene.problem().unknowns()))
         , s(scene.problem().unknowns().contact().at_rest())
       {
-        result.condition_estimate    = condensed.condition_estimate();
+        if (free_motions.cols() == 0)
+          result.condition_estimate = condensed.condition_estimate();
         result.parts["condensation"] = timer.wall_time();
       }
 
@@ -52,7 +55,8 @@ namespace Debond
                 interrupt("the path is not complete");
                 break;
               }
-            solve(factor, observer);
+            if (!solve(factor, observer))
+              break;
             const LoadPathStep<dim> &step = steps.back();
             print(factor,
                   step.state.functional,
@@ -122,6 +126,12 @@ namespace Debond
       {
         // Numbers of the last factor; the state's word may come from the global
         // branch.
+        if (steps.empty())
+          {
+            result.u.reinit(scene.problem().unknowns().n_dofs());
+            result.functional = std::numeric_limits<double>::quiet_NaN();
+            return result;
+          }
         scale_load(steps.back().factor);
         result.load_factor  = steps.back().factor;
         result.u            = displacement(steps.back().factor, points.back());
@@ -138,7 +148,8 @@ namespace Debond
         condensed.scale_load(factor);
       }
 
-      void
+      /// Returns whether there is a next step: not if the body comes off.
+      bool
       solve(const double factor, const LoadPathObserver<dim> &observer)
       {
         const dealii::Vector<double> last = s;
@@ -148,7 +159,8 @@ namespace Debond
         CondensedProblem             problem(condensed.schur_complement(),
                                  condensed.load(),
                                  adhesion,
-                                 s);
+                                 s,
+                                 free_motions);
         const MajoriseMinimiseResult minimum =
           MajoriseMinimise(solver_parameters.majorise_minimise)
             .minimize(problem);
@@ -159,6 +171,17 @@ namespace Debond
             iteration.iteration = ++result.iterations;
             iteration.functional += condensed.energy_at_zero();
             result.majorise_history.push_back(iteration);
+          }
+
+        if (minimum.status == SolverStatus::comes_off)
+          {
+            result.comes_off_at = factor;
+            result.message      = minimum.message;
+            if (out != nullptr)
+              *out << std::setw(11) << factor << std::setw(17) << ""
+                   << std::setw(14) << ""
+                   << "  " << to_string(minimum.status) << std::endl;
+            return false;
           }
 
         LoadPathStep<dim> step;
@@ -196,6 +219,7 @@ namespace Debond
         points.push_back(s);
         steps.push_back(step);
         observer(step, u, verification);
+        return true;
       }
 
       /// Of all unknowns, refined where rounding has a say in it.
@@ -243,6 +267,7 @@ namespace Debond
              << ": ";
         return text.str();
       }
+
 
       /// See LoadPathStep::change_factor.
       std::optional<double>
@@ -355,6 +380,7 @@ namespace Debond
       dealii::Timer                   timer;
       AdhesionIntegral<dim>           adhesion;
       Condensation                    condensed;
+      const Eigen::MatrixXd           free_motions;
       dealii::Vector<double>          s;
       SolveResult                     result;
 
@@ -379,7 +405,9 @@ namespace Debond
     PathFollower<dim> path(
       parameters, solver, verification_tolerance, scene, out, steps);
     path.follow(observer);
+    // Where only bonds hold the body J may fall without end.
     if (parameters.global_branch != GlobalBranch::none &&
+        scene.problem().unknowns().held_by_contact().motions.empty() &&
         steps.back().message.empty())
       path.find_global_branch();
     return path.take_result();

@@ -2,6 +2,7 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/base/interrupt.h>
+#include <debond/base/text.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/elasticity/mesh_transfer.h>
@@ -229,25 +230,27 @@ namespace Debond
                                Vector                 &s,
                                SolveResult            &result)
     {
-      // Coarser spaces do not know the gaps of bodies at rest.
-      if (scene.problem().unknowns().has_gap())
-        s = scene.problem().unknowns().contact().at_rest();
+      // Coarser spaces do not know the gaps of bodies at rest, and what only
+      // bonds hold has to start with all of them.
+      const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
+      if (unknowns.has_gap() || !unknowns.held_by_contact().motions.empty())
+        s = unknowns.contact().at_rest();
       else
-        s =
-          coarse_start(condensed.schur_complement(),
-                       condensed.load(),
-                       scene.adhesion(),
-                       coarsen(scene.problem().unknowns().contact().boundary(),
-                               coarsest_contact_nodes),
-                       method,
-                       result.notes,
-                       [&watch](const MajoriseMinimiseIteration &) {
-                         return watch.may_go_on();
-                       });
+        s = coarse_start(condensed.schur_complement(),
+                         condensed.load(),
+                         scene.adhesion(),
+                         coarsen(unknowns.contact().boundary(),
+                                 coarsest_contact_nodes),
+                         method,
+                         result.notes,
+                         [&watch](const MajoriseMinimiseIteration &) {
+                           return watch.may_go_on();
+                         });
       CondensedProblem problem(condensed.schur_complement(),
                                condensed.load(),
                                scene.adhesion(),
-                               s);
+                               s,
+                               free_motions_of_contact(unknowns));
       add_majorise_result(method.minimize(problem, std::ref(watch)), result);
       for (MajoriseMinimiseIteration &iteration : result.majorise_history)
         iteration.functional += condensed.energy_at_zero();
@@ -303,7 +306,9 @@ namespace Debond
       watch.announce("factorisation", problem.unknowns().n_free_dofs());
       const Condensation condensed =
         condense_to_contact(problem, scene.adhesion());
-      result.condition_estimate    = condensed.condition_estimate();
+      const bool is_held = problem.unknowns().held_by_contact().motions.empty();
+      if (is_held)
+        result.condition_estimate = condensed.condition_estimate();
       result.parts["condensation"] = timer.wall_time();
 
       if (!std::isfinite(condensed.energy_at_zero()))
@@ -336,7 +341,11 @@ namespace Debond
                                    result);
       result.parts["contact"] = timer.wall_time();
 
-      if (can_be_verified(result.status))
+      // Where nothing else holds the body J may fall without end.
+      if (can_be_verified(result.status) && !is_held)
+        result.minimum.kind =
+          kind_without_search(scene.law(), scene.adhesion(), s);
+      else if (can_be_verified(result.status))
         {
           timer.restart();
           const Vector followed = s;
@@ -488,6 +497,46 @@ namespace Debond
 
 
 
+  template <int dim>
+  void
+  check_supports_of_method(const MethodChoice &choice,
+                           const Parameters   &parameters,
+                           const Scene<dim>   &scene)
+  {
+    const std::vector<std::string> &motions =
+      scene.problem().unknowns().held_by_contact().names;
+    if (motions.empty())
+      return;
+    const auto refuse = [&](const std::string &entry,
+                            const std::string &wanted) {
+      throw BadInput({parameters.scene + ": Solver/" + entry +
+                      ": only bonds and the foundation hold the body (" +
+                      join(motions, ", ") + "), which needs " + wanted});
+    };
+    if (choice.method != SolverMethod::majorise_minimise)
+      refuse("Method", "majorise minimise or automatic");
+    if (choice.linear_solver != LinearSolver::direct)
+      refuse("Linear solver",
+             "the Schur complement of a factorisation: direct");
+    if (parameters.solver.prove)
+      refuse("Prove",
+             "false: J may fall without end, and then there is no global "
+             "minimum");
+    if (parameters.solver.search == BondSearchChoice::quick ||
+        parameters.solver.search == BondSearchChoice::full)
+      refuse("Search", "none: J may fall without end");
+    if (!parameters.load_path.factors.empty() &&
+        parameters.load_path.global_branch == GlobalBranch::prove)
+      throw BadInput({parameters.scene +
+                      ": Load path/Global branch: only bonds and the "
+                      "foundation hold the body (" +
+                      join(motions, ", ") +
+                      "): J may fall without end, and then there is no "
+                      "global minimum"});
+  }
+
+
+
   MatrixStorage
   matrix_storage(const MethodChoice &choice)
   {
@@ -528,9 +577,22 @@ namespace Debond
                             scene.adhesion(),
                             scene.problem().unknowns().contact().trace(
                               result.u));
-    result.functional = functional_of(scene, result.u);
+    result.functional = result.status == SolverStatus::comes_off ?
+                          std::numeric_limits<double>::quiet_NaN() :
+                          functional_of(scene, result.u);
     return result;
   }
+
+
+
+  template void
+  check_supports_of_method(const MethodChoice &,
+                           const Parameters &,
+                           const Scene<2> &);
+  template void
+  check_supports_of_method(const MethodChoice &,
+                           const Parameters &,
+                           const Scene<3> &);
 
 
 

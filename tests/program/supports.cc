@@ -429,6 +429,7 @@ namespace
        "Boundary conditions/Displacement top=0.1; free"},
       {"Boundary conditions/Clamped boundaries=",
        "Boundary conditions/Roller boundaries=left",
+       "Boundary conditions/Contact boundary=right",
        "Contact law/Tangential displacement=free"},
       {"Contact law/Initial gap=0.1 - x"},
       {"Contact law/Bond stiffness=x - 0.1"},

@@ -6,6 +6,8 @@
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/condensation.h>
 
+#include <Eigen/Core>
+
 namespace Debond
 {
   /// What J is more than 1/2 <A w, w> - <load, w> and the change of @p
@@ -32,18 +34,35 @@ namespace Debond
                       const AdhesionIntegral<dim> &adhesion)
   {
     const auto &normals = problem.unknowns().contact().normals();
-    return Condensation(problem.matrix(),
-                        problem.load(),
-                        {normals.begin(), normals.end()},
-                        [&](const unsigned int i) {
-                          return problem.unknowns().is_constrained(i);
-                        },
-                        {problem.constant_load(),
-                         [&problem, &adhesion](const double load_factor) {
-                           return prescribed_energy(problem,
-                                                    adhesion,
-                                                    load_factor);
-                         }});
+    return Condensation(
+      problem.matrix(),
+      problem.load(),
+      {normals.begin(), normals.end()},
+      [&](const unsigned int i) {
+        return problem.unknowns().is_constrained(i);
+      },
+      {problem.constant_load(),
+       [&problem, &adhesion](const double load_factor) {
+         return prescribed_energy(problem, adhesion, load_factor);
+       }},
+      !problem.unknowns().held_by_contact().motions.empty());
+  }
+
+
+
+  /// The normal displacements of the contact nodes under the rigid motions that
+  /// only bonds and foundation hold, a column for each: S times them is zero.
+  template <int dim>
+  Eigen::MatrixXd
+  free_motions_of_contact(const ElasticUnknowns<dim> &unknowns)
+  {
+    const auto     &nodes   = unknowns.contact().boundary().nodes;
+    const auto     &motions = unknowns.held_by_contact().motions;
+    Eigen::MatrixXd result(nodes.size(), motions.size());
+    for (unsigned int k = 0; k < motions.size(); ++k)
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        result(i, k) = motions[k](nodes[i].position) * nodes[i].normal;
+    return result;
   }
 } // namespace Debond
 

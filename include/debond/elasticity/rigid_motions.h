@@ -21,16 +21,42 @@ namespace Debond
 
 
 
-  /**
-   * The rigid motions that the supports leave free, by name: "translation in
-   * y", "rotation about z" (about the supports' centre), or, if none of these
-   * is free by itself, the ones that a free motion is composed of. Empty if
-   * the body is held. Lengths are measured in units of @p diameter, the
-   * body's size; motions that the supports resist by less than 1e-6 of
-   * full clamping count as free.
-   */
+  /// An infinitesimal rigid motion.
   template <int dim>
-  std::vector<std::string>
+  struct RigidMotion
+  {
+    dealii::Point<dim>     centre;
+    dealii::Tensor<1, dim> translation; ///< of the centre
+
+    /// About the centre, about z in 2D.
+    dealii::Tensor<1, dim *(dim - 1) / 2> rotation;
+
+    /// The displacement at a point.
+    dealii::Tensor<1, dim>
+    operator()(const dealii::Point<dim> &point) const;
+  };
+
+
+
+  template <int dim>
+  struct FreeRigidMotions
+  {
+    /// "translation in y", "rotation about z" (about the supports' centre), or,
+    /// if none of these is free by itself, the ones that a free motion is
+    /// composed of.
+    std::vector<std::string> names = {};
+
+    /// All free motions are combinations of these.
+    std::vector<RigidMotion<dim>> motions = {};
+  };
+
+
+
+  /// The rigid motions that the supports leave free; none if the body is held.
+  /// Lengths are measured in units of @p diameter, the body's size; motions
+  /// that the supports resist by less than 1e-6 of full clamping count as free.
+  template <int dim>
+  FreeRigidMotions<dim>
   free_rigid_motions(const std::vector<Support<dim>> &supports,
                      const double                     diameter);
 } // namespace Debond

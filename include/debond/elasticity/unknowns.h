@@ -125,10 +125,10 @@ namespace Debond
     /// Keeps a reference to the triangulation, a connected mesh of simplices.
     /// Throws std::invalid_argument if a boundary is both clamped and contact
     /// or is not in the mesh, if contact_frame() does, or if a rigid motion is
-    /// left free; the message names the motion ("translation in y", "rotation
-    /// about z"). The unilateral condition on u_nu does not count as a
-    /// support. Throws SupportError if supports contradict each other or the
-    /// foundation, are not finite somewhere, or if a roller is not flat.
+    /// left free that moves no contact node along its normal; the message names
+    /// the motion ("translation in y", "rotation about z"). Throws SupportError
+    /// if supports contradict each other or the foundation, are not finite
+    /// somewhere, or if a roller is not flat.
     ElasticUnknowns(const dealii::Triangulation<dim> &triangulation,
                     const BoundaryConditions         &conditions,
                     const Supports<dim>              &supports = {});
@@ -172,6 +172,11 @@ namespace Debond
     /// The pieces of the boundary that support the body, by name.
     const std::vector<std::string> &
     support_names() const;
+
+    /// The free rigid motions: what holds them, if anything does, are bonds
+    /// and the foundation. A is singular if there are any.
+    const FreeRigidMotions<dim> &
+    held_by_contact() const;
 
     /// A degree of freedom that a support prescribes. Of several supports of a
     /// vertex the first one bears a direction.
@@ -306,6 +311,7 @@ namespace Debond
 
     std::vector<std::string> names_of_supports;
     std::vector<Supported>   supported_dofs;
+    FreeRigidMotions<dim>    free_motions;
 
     // G for the whole load; empty where there is none.
     dealii::Vector<double> prescribed;

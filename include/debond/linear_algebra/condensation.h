@@ -43,13 +43,18 @@ namespace Debond
     /// of A are left out (u = 0 there); on the others A has to be symmetric and
     /// positive definite.
     ///
+    /// If @p is_semidefinite, A needs to be definite only where s is zero, and
+    /// S is as singular as A: the factor is that of A with its diagonal entries
+    /// of s twice as large, S_+ = S + diag(A_ss) its Schur complement.
+    ///
     /// Throws std::runtime_error if A is not positive definite, std::bad_alloc
     /// if the factor does not fit into memory.
     Condensation(const dealii::SparseMatrix<double>      &A,
                  const dealii::Vector<double>            &f,
                  const std::vector<unsigned int>         &kept,
                  const std::function<bool(unsigned int)> &is_excluded,
-                 const ConstantPart                      &constant = {});
+                 const ConstantPart                      &constant = {},
+                 const bool is_semidefinite                        = false);
 
     Condensation(const Condensation &) = delete;
 
@@ -74,16 +79,17 @@ namespace Debond
 
     /// 1/2 <A u, u> >= 0 of the solution of A u = f, without any contact: a
     /// scale for energies. The functional's minimum over all s is minus this,
-    /// but for the constant part of the energy.
+    /// but for the constant part of the energy. With S_+ if A is semidefinite.
     double
     energy_without_contact() const;
 
-    /// 1/2 g'S^{-1} g, what the kept unknowns gain without any contact.
+    /// 1/2 g'S^{-1} g, what the kept unknowns gain without any contact. With
+    /// S_+ if A is semidefinite.
     double
     energy_of_kept() const;
 
     /// An estimate of |S| |S^{-1}| in the 1-norm, by LAPACK from the factor; 1
-    /// if no unknown is kept.
+    /// if no unknown is kept. Of S_+ if A is semidefinite.
     double
     condition_estimate() const;
 

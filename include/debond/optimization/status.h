@@ -6,7 +6,8 @@
 
 namespace Debond
 {
-  /// How a solver ended. Everything but success is reported to the user.
+  /// How a solver ended. Everything but success is reported to the user;
+  /// comes_off is an answer, though none with a minimum.
   enum class SolverStatus
   {
     success,           ///< the stop criterion holds
@@ -16,6 +17,7 @@ namespace Debond
     no_descent,        ///< the objective rose by more than rounding
     stagnated,         ///< rounding keeps it from the stop criterion
     not_finite,        ///< the objective or a subgradient is NaN or infinite
+    comes_off,         ///< the objective falls without end: nothing holds it
     interrupted        ///< stopped from outside, the last iterate is kept
   };
 

@@ -44,6 +44,26 @@ namespace Debond
     {
       return status == to_string(SolverStatus::success);
     }
+
+    bool
+    comes_off() const
+    {
+      return status == to_string(SolverStatus::comes_off);
+    }
+
+    /// Whether what there is can be relied on.
+    bool
+    is_answer() const
+    {
+      return is_success() || comes_off();
+    }
+
+    /// Whether there is a displacement: none if the body comes off at once.
+    bool
+    has_displacement() const
+    {
+      return !comes_off() || !path.empty();
+    }
   };
 } // namespace Debond
 

@@ -27,6 +27,10 @@ namespace Debond
     double                 load_factor = 1.; ///< of the loads that u belongs to
     double                 functional;       ///< J(u), from the strains of u
 
+    /// The first factor of a load path at which the body comes off; the rest is
+    /// of the one before.
+    std::optional<double> comes_off_at = {};
+
     unsigned int iterations  = 0;
     unsigned int long_steps  = 0;
     unsigned int short_steps = 0;
@@ -74,6 +78,14 @@ namespace Debond
         std::ostream       &out,
         const bool          terminal,
         Checkpoints        *checkpoints = nullptr);
+
+  /// Throws BadInput if the method cannot do with a body that only its bonds
+  /// and the foundation hold.
+  template <int dim>
+  void
+  check_supports_of_method(const MethodChoice &choice,
+                           const Parameters   &parameters,
+                           const Scene<dim>   &scene);
 
   /// How a method needs A.
   MatrixStorage

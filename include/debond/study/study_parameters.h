@@ -85,7 +85,7 @@ namespace Debond
                                                   "error",
                                                   "law violation",
                                                   "seconds"};
-    std::vector<std::string> accepted_statuses = {"success"};
+    std::vector<std::string> accepted_statuses = {"success", "comes off"};
     bool                     fields            = false;
 
     /// Between these relative errors the rate of convergence is fitted.

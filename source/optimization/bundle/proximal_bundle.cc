@@ -88,6 +88,7 @@ namespace Debond
             break;
           case SolverStatus::stagnated:  // has no test for it
           case SolverStatus::no_descent: // the line search sees to it
+          case SolverStatus::comes_off:  // only supported bodies get here
           case SolverStatus::success:
             break;
         }

@@ -4,6 +4,9 @@
 #include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,6 +18,23 @@ namespace Debond
     /// Of a Cholesky factorisation and two products, in units of rounding of
     /// the terms in a row of S s.
     constexpr double rounding_factor = 4.;
+
+    /// A stiffness of less than this part of the mean diagonal entry of S is
+    /// none.
+    constexpr double least_stiffness = 1e-12;
+
+    /// Of the proximal terms, in the same units: small, so that few steps do,
+    /// but far from rounding.
+    constexpr double proximal_stiffness = 1e-8;
+
+    constexpr unsigned int maximum_proximal_steps = 100;
+
+    /// What is left of a resultant, relative to the forces, when it is
+    /// balanced.
+    constexpr double balanced = 1e-12;
+
+    /// Repeated steps differ by less, relatively.
+    constexpr double same_step = 1e-3;
   } // namespace
 
 
@@ -22,13 +42,21 @@ namespace Debond
   CondensedProblem::CondensedProblem(const dealii::FullMatrix<double> &matrix,
                                      const dealii::Vector<double>     &load,
                                      const PiecewiseQuadratic &nonsmooth,
-                                     dealii::Vector<double>   &start)
+                                     dealii::Vector<double>   &start,
+                                     const Eigen::MatrixXd    &free_motions)
     : S(matrix)
     , g(load)
     , phi(nonsmooth)
     , s(start)
     , active(start.size())
   {
+    if (free_motions.cols() > 0)
+      {
+        // Translations and rotations differ by a length.
+        const Eigen::MatrixXd columns = free_motions.colwise().normalized();
+        N = Eigen::HouseholderQR<Eigen::MatrixXd>(columns).householderQ() *
+            Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
+      }
     for (unsigned int i = 0; i < s.size(); ++i)
       active[i] = s(i) == 0.;
   }
@@ -118,9 +146,67 @@ namespace Debond
   MajorantProblem::Minimisation
   CondensedProblem::minimise(const double)
   {
+    if (const Eigen::MatrixXd Z = motions_without_stiffness(); Z.cols() > 0)
+      return minimise_along(Z);
     const BoundQPResult qp =
       solve_bound_qp(M, r, Eigen::VectorXd::Zero(s.size()), active);
     std::copy(qp.x.begin(), qp.x.end(), s.begin());
     return {qp.status, qp.steps, 0};
+  }
+
+
+
+  Eigen::MatrixXd
+  CondensedProblem::motions_without_stiffness() const
+  {
+    if (N.cols() == 0)
+      return N;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(N.transpose() *
+                                                               (E * N));
+    const double least = least_stiffness * eigen_view(S).diagonal().mean();
+    return N * eigen.eigenvectors().leftCols(
+                 (eigen.eigenvalues().array() <= least).count());
+  }
+
+
+
+  MajorantProblem::Minimisation
+  CondensedProblem::minimise_along(const Eigen::MatrixXd &Z)
+  {
+    const double delta = proximal_stiffness * eigen_view(S).diagonal().mean();
+    const Eigen::MatrixXd proximal = M + delta * Z * Z.transpose();
+    const double          forces   = r.norm();
+
+    Eigen::VectorXd x         = eigen_view(s), last_step;
+    unsigned int    n_systems = 0;
+    for (unsigned int k = 0; k < maximum_proximal_steps; ++k)
+      {
+        const BoundQPResult qp =
+          solve_bound_qp(proximal,
+                         r + delta * Z * (Z.transpose() * x),
+                         Eigen::VectorXd::Zero(x.size()),
+                         active);
+        n_systems += qp.steps;
+        if (!can_be_verified(qp.status))
+          return {qp.status, n_systems, 0};
+        const Eigen::VectorXd motion = Z.transpose() * (qp.x - x);
+        const Eigen::VectorXd step   = qp.x - x;
+        x                            = qp.x;
+        // The proximal force balances what the foundation does not.
+        const bool is_balanced = delta * motion.norm() <= balanced * forces;
+        if (is_balanced)
+          {
+            std::copy(x.begin(), x.end(), s.begin());
+            return {qp.status, n_systems, 0};
+          }
+        // Away from the foundation, and rigid.
+        if (last_step.size() > 0 &&
+            (step - last_step).norm() <= same_step * step.norm() &&
+            step.maxCoeff() <= same_step * step.norm() &&
+            (step - Z * motion).norm() <= same_step * step.norm())
+          return {SolverStatus::comes_off, n_systems, 0};
+        last_step = step;
+      }
+    return {SolverStatus::quadratic_program, n_systems, 0};
   }
 } // namespace Debond

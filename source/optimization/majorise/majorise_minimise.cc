@@ -94,6 +94,14 @@ namespace Debond
                 result.message = what_is_left(result, parameters.tolerance);
                 return result;
               }
+            if (inner.status == SolverStatus::comes_off)
+              {
+                result.status = SolverStatus::comes_off;
+                result.message =
+                  "neither the bonds that are left nor the foundation hold the "
+                  "body: J falls without end.";
+                return result;
+              }
             if (!can_be_verified(inner.status))
               {
                 std::ostringstream text;

@@ -9,19 +9,26 @@
 namespace Debond
 {
   /**
-   * 1/2 s'S s - g's + Phi(s) subject to s <= 0 with a dense symmetric positive
-   * definite S. Majorants are minimised exactly, whatever the tolerance, by
-   * active sets with a Cholesky factorisation each.
+   * 1/2 s'S s - g's + Phi(s) subject to s <= 0 with a dense symmetric S that is
+   * positive definite but for given motions. Majorants are minimised exactly,
+   * whatever the tolerance, by active sets with a Cholesky factorisation each.
+   *
+   * A majorant that leaves motions without stiffness is minimised by proximal
+   * steps along these (Rockafellar, SIAM J. Control Optim. 14, 1976), which
+   * shrink if there is a minimum. If there is none, they come to repeat one
+   * along which the majorant falls without end, and J with it.
    */
   class CondensedProblem : public MajorantProblem
   {
   public:
     /// Keeps references; @p s is the current point and has to be <= 0. The
-    /// active set of the first majorant starts where it is zero.
+    /// active set of the first majorant starts where it is zero. The columns
+    /// of @p free_motions span the null space of S.
     CondensedProblem(const dealii::FullMatrix<double> &S,
                      const dealii::Vector<double>     &g,
                      const PiecewiseQuadratic         &phi,
-                     dealii::Vector<double>           &s);
+                     dealii::Vector<double>           &s,
+                     const Eigen::MatrixXd            &free_motions = {});
 
     State
     evaluate() override;
@@ -37,6 +44,15 @@ namespace Debond
     const dealii::Vector<double>     &g;
     const PiecewiseQuadratic         &phi;
     dealii::Vector<double>           &s;
+    Eigen::MatrixXd N; ///< an orthonormal basis of S's null space
+
+    /// Orthonormal motions of N that the majorant leaves without stiffness.
+    Eigen::MatrixXd
+    motions_without_stiffness() const;
+
+    /// By proximal steps along the columns of Z.
+    Minimisation
+    minimise_along(const Eigen::MatrixXd &Z);
 
     /// The majorant 1/2 s'M s - r's + const, M = S + E, once there is one.
     bool                        majorised = false;

@@ -44,8 +44,8 @@ namespace Debond
 
     struct Minimisation
     {
-      /// success, stagnated, quadratic_program, or interrupted, with the
-      /// current point as it was before.
+      /// success, stagnated, quadratic_program, or with the current point as
+      /// it was before comes_off (there is no minimum) or interrupted.
       SolverStatus status;
 
       unsigned int active_set_steps;  ///< linear systems

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Bodies that only their bonds and the foundation hold, against closed forms:
+// columns pulled and pressed, pulled off and tilted.
+
+#include <debond/input/parameters.h>
+#include <debond/program/exit_code.h>
+#include <debond/program/run.h>
+
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "../check.h"
+
+using namespace Debond;
+
+namespace
+{
+  using Json   = nlohmann::json;
+  using Values = std::vector<std::string>;
+
+
+
+  std::string
+  text(const double value)
+  {
+    std::ostringstream out;
+    out.precision(17);
+    out << value;
+    return out.str();
+  }
+
+
+
+  Values
+  operator+(Values values, const Values &others)
+  {
+    values.insert(values.end(), others.begin(), others.end());
+    return values;
+  }
+
+
+
+  /// The summary of a run with its exit code, the names of its files and the
+  /// mean of u_nu; "rejected" as status of what is none.
+  Json
+  solve_scene(const Values &assignments)
+  {
+    const std::filesystem::path directory =
+      std::filesystem::temp_directory_path() /
+      ("debond-held-by-bonds-" + std::to_string(getpid()));
+    SceneTable table;
+    for (const std::string &assignment : assignments)
+      table.assign(assignment);
+    table.assign("Output/Load path plots=false");
+    table.assign("Output/Directory=" + directory.string());
+    std::ostringstream log;
+    Json               summary;
+    try
+      {
+        const Parameters parameters = table.parameters("scene.prm");
+        const ExitCode   code       = parameters.dimension == 2 ?
+                                        run<2>(parameters, log, false) :
+                                        run<3>(parameters, log, false);
+        std::ifstream(directory / "summary.json") >> summary;
+        summary["exit_code"] = static_cast<int>(code);
+        summary["log"]       = log.str();
+        summary["files"]     = Json::array();
+        for (const auto &file : std::filesystem::directory_iterator(directory))
+          summary["files"].push_back(file.path().filename().string());
+
+        std::ifstream profile(directory / "contact_profile.csv");
+        std::string   line;
+        std::getline(profile, line);
+        std::istringstream titles(line);
+        unsigned int       column = 0;
+        for (std::string name;
+             std::getline(titles, name, ',') && name != "u_nu";)
+          ++column;
+        double least = 0., largest = -1e300;
+        while (std::getline(profile, line))
+          {
+            std::istringstream cells(line);
+            std::string        cell;
+            for (unsigned int k = 0; k <= column; ++k)
+              std::getline(cells, cell, ',');
+            least   = std::min(least, std::stod(cell));
+            largest = std::max(largest, std::stod(cell));
+          }
+        summary["least_u_nu"]   = least;
+        summary["largest_u_nu"] = largest;
+      }
+    catch (const std::invalid_argument &error)
+      {
+        std::cout << error.what() << std::endl;
+        summary["status"] = "rejected";
+      }
+    std::filesystem::remove_all(directory);
+    return summary;
+  }
+
+
+
+  double
+  relative(const double value, const double expected)
+  {
+    return std::abs(value / expected - 1.);
+  }
+
+
+
+  /// A length and a modulus in some units.
+  struct Units
+  {
+    std::string name;
+    double      length, modulus;
+  };
+
+  const std::vector<Units> systems = {{"GPa and m", 1., 1.},
+                                      {"Pa and m", 1., 1e9},
+                                      {"MPa and mm", 1e3, 1e3}};
+
+
+
+  /// A pad of length 0.2 and height 0.1 (and depth 0.1) on a foundation, which
+  /// may widen (held by planes of symmetry), or with nu = 0 and tangential
+  /// displacements fixed.
+  Values
+  pad(const unsigned int dim, const Units &units, const bool may_widen)
+  {
+    const double L = units.length;
+    return {"Dimension=" + std::to_string(dim),
+            "Mesh/Lengths=" + text(0.2 * L) + ", " + text(0.1 * L) +
+              (dim == 3 ? ", " + text(0.1 * L) : ""),
+            dim == 3 ? "Mesh/Cells=4, 2, 2" : "Mesh/Cells=8, 4",
+            "Material/Young modulus=" + text(70. * units.modulus),
+            std::string("Material/Poisson ratio=") + (may_widen ? "0.3" : "0"),
+            "Boundary conditions/Clamped boundaries=",
+            "Boundary conditions/Contact boundary=bottom",
+            std::string("Boundary conditions/Roller boundaries=") +
+              (may_widen ? dim == 3 ? "left, back" : "left" : ""),
+            std::string("Contact law/Tangential displacement=") +
+              (may_widen ? "free" : "fixed"),
+            "Contact law/Bond stiffness=" +
+              text(100. * units.modulus / units.length),
+            "Contact law/Bond threshold=" + text(1e-3 * L)};
+  }
+
+
+
+  /// Traction on the top, upwards.
+  Values
+  pulled(const unsigned int dim, const std::string &p)
+  {
+    return {"Loads/Traction top=0; " + p + (dim == 3 ? "; 0" : "")};
+  }
+
+
+
+  void
+  test_column(const unsigned int dim, const Units &units, const bool may_widen)
+  {
+    std::cout << "== Pad, " << dim << "D, " << units.name
+              << (may_widen ? ", may widen" : ", tangential fixed")
+              << std::endl;
+    const double L = units.length, area = 0.2 * L * (dim == 3 ? 0.1 * L : 1.),
+                 E = 70. * units.modulus, H = 0.1 * L,
+                 a = 100. * units.modulus / L, M = 1e-3 * L;
+    const Values scene = pad(dim, units, may_widen);
+
+    const double p      = 0.9 * a * M;
+    const Json   result = solve_scene(scene + pulled(dim, text(p)));
+    check("bonds hold it", result["status"] == "success");
+    check("J",
+          relative(result["functional"],
+                   -0.5 * p * p * area * (H / E + 1. / a)),
+          1e-12);
+    for (const char *bound : {"least_u_nu", "largest_u_nu"})
+      check(bound, relative(result[bound], -p / a), 1e-12);
+    check("force of the foundation",
+          relative(result["contact_reaction"][1], -p * area),
+          1e-12);
+
+    const Json pressed = solve_scene(scene + pulled(dim, text(-p)));
+    check("pressed, J",
+          relative(pressed["functional"], -0.5 * p * p * area * H / E),
+          1e-12);
+    check("and in contact",
+          pressed["least_u_nu"] == 0. && pressed["largest_u_nu"] == 0.);
+    const Json without_bonds = solve_scene(scene + pulled(dim, text(-p)) +
+                                           Values{"Contact law/Law=none"});
+    check("without bonds, J",
+          relative(without_bonds["functional"], pressed["functional"]),
+          1e-12);
+
+    check("just below the threshold",
+          solve_scene(scene + pulled(dim, text(0.9999999 * a * M)))["status"] ==
+            "success");
+    const Json off = solve_scene(scene + pulled(dim, text(1.0000001 * a * M)));
+    check("just above", off["status"] == "comes off" && off["exit_code"] == 0);
+    check("which has no J", off["functional"].is_null());
+    check("and without bonds",
+          solve_scene(scene + pulled(dim, text(1e-9 * a * M)) +
+                      Values{"Contact law/Law=none"})["status"] == "comes off");
+    check("before it comes to a gap that is closed",
+          solve_scene(scene + pulled(dim, text(-p)) +
+                      Values{"Contact law/Law=none",
+                             "Contact law/Initial gap=" +
+                               text(1e-4 * L)})["status"] == "success");
+
+    const Json path =
+      solve_scene(scene + pulled(dim, text(a * M)) +
+                  Values{"Load path/Factors=0.4, 0.8, 1.2, 0.4"});
+    check("load path", path["status"] == "comes off");
+    check("at factor 1.2", path["load_path"]["comes_off_at"] == 1.2);
+    check("after 0.8", path["load_path"]["last_factor"] == 0.8);
+    check("where J is",
+          relative(path["functional"],
+                   -0.32 * a * M * a * M * area * (H / E + 1. / a)),
+          1e-12);
+  }
+
+
+
+  /// Without bonds the resultant has to stay within the pad: 1 - b x has its
+  /// resultant b L^2 / 12 from the middle.
+  void
+  test_tilting(const unsigned int dim, const Units &units)
+  {
+    std::cout << "== Tilting, " << dim << "D, " << units.name << std::endl;
+    const double L  = 0.2 * units.length;
+    const auto   at = [&](const double part) {
+      return pad(dim, units, false) +
+             pulled(dim,
+                    text(-1e-3 * units.modulus) + "*(1 + " +
+                      text(6. * part / L) + "*(x - " + text(0.5 * L) + "))") +
+             Values{"Contact law/Law=none"};
+    };
+    for (const double part : {0.5, 0.9, 0.99})
+      {
+        const Json result = solve_scene(at(part));
+        check("resultant at " + text(part) + " of the half",
+              result["status"] == "success" &&
+                result["bond_states"]["contact"] > 0 &&
+                (part < 0.6 || result["bond_states"]["free"] > 0));
+      }
+    for (const double part : {1.01, 1.5, -1.01})
+      check("resultant at " + text(part),
+            solve_scene(at(part))["status"] == "comes off");
+  }
+
+
+
+  void
+  test_crack(const Units &units)
+  {
+    std::cout << "== Cracks, " << units.name << std::endl;
+    // Only the middle third is glued: it cannot come off under a couple that
+    // the foundation bears together with it.
+    const double L = 0.2 * units.length,
+                 a = 100. * units.modulus / units.length,
+                 M = 1e-3 * units.length;
+    const Values cracked =
+      pad(2, units, false) +
+      Values{"Contact law/Bond stiffness=if(abs(x - " + text(0.5 * L) + ") < " +
+             text(0.15 * L) + ", " + text(a) + ", 0)"};
+    const Json held = solve_scene(
+      cracked +
+      pulled(2, text(0.1 * a * M) + "*(x - " + text(0.5 * L) + ")/" + text(L)));
+    check("a couple is borne",
+          held["status"] == "success" && held["bond_states"]["free"] > 0);
+    check("the whole strength is not",
+          solve_scene(cracked + pulled(2, text(0.9 * a * M)))["status"] ==
+            "comes off");
+  }
+
+
+
+  void
+  test_refusals()
+  {
+    std::cout << "== Refused" << std::endl;
+    const Values scene = pad(2, systems[0], false) + pulled(2, "0.01");
+    const std::vector<Values> refused = {
+      {"Solver/Method=energy bundle"},
+      {"Solver/Method=euclidean bundle"},
+      {"Solver/Linear solver=multigrid"},
+      {"Solver/Prove=true"},
+      {"Solver/Search=full"},
+      {"Load path/Factors=1, 2", "Load path/Global branch=prove"},
+      {"Contact law/Tangential displacement=free"},
+      {"Contact law/Tangential displacement=free",
+       "Boundary conditions/Contact boundary=left"}};
+    for (const Values &values : refused)
+      if (solve_scene(scene + values)["status"] != "rejected")
+        std::cout << "NOT REJECTED: " << values[0] << std::endl;
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *[])
+{
+  print_figures = argc > 1;
+  for (const Units &units : systems)
+    {
+      for (const unsigned int dim : {2, 3})
+        {
+          test_column(dim, units, true);
+          test_column(dim, units, false);
+          test_tilting(dim, units);
+        }
+      test_crack(units);
+    }
+  test_refusals();
+}
