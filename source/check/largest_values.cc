@@ -9,10 +9,10 @@ namespace Debond
   LargestValues
   largest_values(const ElasticProblem<dim>    &problem,
                  const dealii::Vector<double> &u,
-                 const double                  load_factor)
+                 const LoadFactors             factors)
   {
     const dealii::Vector<double> displacement =
-      problem.unknowns().cartesian_displacement(u, load_factor);
+      problem.unknowns().cartesian_displacement(u, factors);
 
     LargestValues largest;
     for (const auto &cell :
@@ -31,7 +31,7 @@ namespace Debond
           problem.fields().displacement_gradient(cell, displacement).norm());
         largest.von_mises = std::max(largest.von_mises,
                                      von_mises(problem.fields().solid_stress(
-                                       cell, displacement, load_factor)));
+                                       cell, displacement, factors)));
       }
     return largest;
   }
@@ -41,9 +41,9 @@ namespace Debond
   template LargestValues
   largest_values(const ElasticProblem<2> &,
                  const dealii::Vector<double> &,
-                 const double);
+                 const LoadFactors);
   template LargestValues
   largest_values(const ElasticProblem<3> &,
                  const dealii::Vector<double> &,
-                 const double);
+                 const LoadFactors);
 } // namespace Debond

@@ -6,11 +6,31 @@
 
 namespace Debond
 {
+  namespace
+  {
+    /// A name as a part of the title of a column.
+    std::string
+    as_title(const std::string &text)
+    {
+      std::string name;
+      for (const char c : text)
+        if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+          name += c;
+        else if (c == ' ' || c == '_' || c == '-')
+          name += '_';
+      return name;
+    }
+  } // namespace
+
+
+
   template <int dim>
   LoadPathState<dim>
   load_path_state(const ElasticProblem<dim>    &problem,
                   const AdhesionIntegral<dim>  &adhesion,
-                  const double                  factor,
+                  const Probes<dim>            &means,
+                  const Probes<dim>            &probes,
+                  const LoadFactors             factors,
                   const dealii::Vector<double> &u,
                   const Verification<dim>      &verification)
   {
@@ -22,15 +42,7 @@ namespace Debond
     constexpr unsigned int n_known =
       static_cast<unsigned int>(BondState::held) + 1;
     for (std::size_t k = n_known; k < verification.state_names.size(); ++k)
-      {
-        std::string name;
-        for (const char c : verification.state_names[k])
-          if (std::isalnum(static_cast<unsigned char>(c)) != 0)
-            name += c;
-          else if (c == ' ')
-            name += '_';
-        state.other_parts.emplace_back(name, 0.);
-      }
+      state.other_parts.emplace_back(as_title(verification.state_names[k]), 0.);
     const auto part = [&](const BondState branch) -> double & {
       switch (branch)
         {
@@ -70,17 +82,26 @@ namespace Debond
           other /= measure;
       }
 
-    state.elastic_energy  = problem.fields().strain_energy(u, factor);
+    state.elastic_energy  = problem.fields().strain_energy(u, factors);
     state.adhesion_energy = adhesion.energy(s);
-    state.unit_load_work  = problem.fields().load_work(u, factor);
+    state.unit_load_work  = problem.fields().load_work(u, factors);
     state.functional =
-      problem.fields().elastic_functional(u, factor) + state.adhesion_energy;
+      problem.fields().elastic_functional(u, factors) + state.adhesion_energy;
 
     state.contact_reaction     = verification.contact_reaction;
     state.clamped_reaction     = verification.clamped_reaction;
     state.law_violation        = verification.law_violation;
     state.equilibrium_residual = verification.equilibrium_residual;
     state.force_imbalance      = verification.force_imbalance;
+    state.broken_zone          = verification.broken_zone;
+    state.dissipated_energy    = adhesion.dissipated_energy();
+    const auto add = [&state](const std::string &kind, const auto &vectors) {
+      for (const auto &[name, vector] : vectors)
+        state.vectors.emplace_back(kind + as_title(name), vector);
+    };
+    add("reaction_", verification.reactions);
+    add("mean_", means.values(problem, u, factors));
+    add("probe_", probes.values(problem, u, factors));
     return state;
   }
 
@@ -88,13 +109,17 @@ namespace Debond
   template LoadPathState<2>
   load_path_state(const ElasticProblem<2> &,
                   const AdhesionIntegral<2> &,
-                  const double,
+                  const Probes<2> &,
+                  const Probes<2> &,
+                  const LoadFactors,
                   const dealii::Vector<double> &,
                   const Verification<2> &);
   template LoadPathState<3>
   load_path_state(const ElasticProblem<3> &,
                   const AdhesionIntegral<3> &,
-                  const double,
+                  const Probes<3> &,
+                  const Probes<3> &,
+                  const LoadFactors,
                   const dealii::Vector<double> &,
                   const Verification<3> &);
 } // namespace Debond

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/check/broken_zone.h>
 #include <debond/check/verification.h>
 
 #include <algorithm>
@@ -138,6 +139,7 @@ namespace Debond
     set_state(const AdhesiveLaw              &law,
               const std::vector<std::string> &names,
               const BondScale                &bonds,
+              const unsigned int              least_piece,
               const LawScale                 &scale,
               const double                    largest_displacement,
               const double                    tolerance,
@@ -147,7 +149,10 @@ namespace Debond
       node.branch =
         bonds.energy == 0. ?
           BondState::free :
-          state_of_branch(law, names, branches.index(node.s / bonds.stretch));
+          state_of_branch(law,
+                          names,
+                          std::max(least_piece,
+                                   branches.index(node.s / bonds.stretch)));
       const double threshold = first_threshold(law) * bonds.stretch;
       const double no_gap =
         tolerance * (threshold > 0. ?
@@ -165,7 +170,9 @@ namespace Debond
           return;
         }
       node.state = node.branch;
-      for (unsigned int k = 1; k < branches.size() && bonds.energy > 0.; ++k)
+      for (unsigned int k = least_piece + 1;
+           k < branches.size() && bonds.energy > 0.;
+           ++k)
         {
           const double kink = branches[k].upper * bonds.stretch;
           if (std::abs(node.s - kink) <= tolerance * std::abs(kink))
@@ -296,7 +303,7 @@ namespace Debond
     compute_force_balance(const ElasticProblem<dim>    &problem,
                           const dealii::Vector<double> &residual,
                           const std::vector<double>    &held_forces,
-                          const double                  load_factor,
+                          const LoadFactors             factors,
                           const double                  smallest_force,
                           Verification<dim>            &result)
     {
@@ -353,7 +360,7 @@ namespace Debond
         return sum;
       };
 
-      result.applied_force    = load_factor * problem.fields().total_load();
+      result.applied_force    = problem.fields().total_load(factors);
       result.clamped_reaction = resultant(clamped);
       result.contact_reaction = resultant(contact);
 
@@ -393,9 +400,9 @@ namespace Debond
       // Resultants can vanish where forces do not.
       dealii::Vector<double> supports = clamped;
       supports += contact;
-      const double scale = supports.l1_norm() +
-                           std::abs(load_factor) *
-                             problem.fields().applied_nodal_forces().l1_norm();
+      const double scale =
+        supports.l1_norm() +
+        problem.fields().applied_nodal_forces(factors).l1_norm();
       const double imbalance = (result.applied_force + result.clamped_reaction +
                                 result.contact_reaction)
                                  .norm();
@@ -412,45 +419,53 @@ namespace Debond
          const AdhesionIntegral<dim>  &adhesion,
          const AdhesiveLaw            &law,
          const dealii::Vector<double> &u,
-         const double                  load_factor,
+         const LoadFactors             factors,
          const double                  tolerance)
   {
     if (!std::all_of(u.begin(), u.end(), [](const double x) {
           return std::isfinite(x);
         }))
       throw std::invalid_argument(
-        "The displacement is not finite and cannot be verified: the data of the "
+        "The displacement is not finite and cannot be verified: the data of "
+        "the "
         "scene are too large or too small for double precision.");
 
     const ContactSpace<dim>     &contact = problem.unknowns().contact();
     const dealii::Vector<double> residual =
-      problem.fields().residual(u, load_factor);
+      problem.fields().residual(u, factors);
 
     const dealii::Vector<double> s               = contact.trace(u);
     const dealii::Vector<double> normal_residual = contact.trace(residual);
     const std::vector<Interval>  forces = adhesion.force_intervals(s, 0.);
 
     Verification<dim> result;
-    result.state_names = state_names(law);
-    result.penetration = 0.;
+    result.state_names     = state_names(law);
+    result.penetration     = 0.;
+    result.largest_opening = 0.;
+    result.broken_zone     = broken_zone(contact.boundary(), law, adhesion, s);
     for (unsigned int i = 0; i < s.size(); ++i)
       {
         ContactNodeState node;
-        node.s             = s(i);
-        node.u_nu          = s(i) + contact.boundary().nodes[i].gap;
-        node.normal_force  = -normal_residual(i);
-        node.allowed_force = unbounded_above_if(s(i) >= 0., forces[i]);
+        node.s                = s(i);
+        node.u_nu             = s(i) + contact.boundary().nodes[i].gap;
+        node.normal_force     = -normal_residual(i);
+        node.allowed_force    = unbounded_above_if(s(i) >= 0., forces[i]);
+        const BondScale bonds = adhesion.bonds_at(i);
+        node.bond_stiffness =
+          law.curvature(0.) * bonds.energy / (bonds.stretch * bonds.stretch);
+        node.bond_threshold    = law.bond_threshold() * bonds.stretch;
+        result.largest_opening = std::max(result.largest_opening, -s(i));
         result.nodes.push_back(node);
         result.penetration = std::max(result.penetration, s(i));
       }
 
     dealii::Vector<double> displacement = u;
     if (problem.unknowns().has_lifting())
-      displacement += problem.unknowns().lifting(load_factor);
+      displacement += problem.unknowns().lifting(factors);
     const double           largest_displacement = displacement.linfty_norm();
     const LargestResiduals largest = largest_residuals(problem, residual);
     const dealii::Vector<double> rounding =
-      problem.fields().residual_rounding(u, load_factor);
+      problem.fields().residual_rounding(u, factors);
     const std::vector<LawScale> scales = law_scales(law,
                                                     adhesion,
                                                     contact.boundary(),
@@ -467,6 +482,7 @@ namespace Debond
         set_state(law,
                   result.state_names,
                   adhesion.bonds_at(i),
+                  adhesion.least_piece(i),
                   scales[i],
                   s.linfty_norm(),
                   tolerance,
@@ -484,7 +500,7 @@ namespace Debond
     compute_force_balance(problem,
                           residual,
                           adhesion.held_forces(s),
-                          load_factor,
+                          factors,
                           digits_above_rounding * rounding.linfty_norm(),
                           result);
     return result;
@@ -513,13 +529,13 @@ namespace Debond
          const AdhesionIntegral<2> &,
          const AdhesiveLaw &,
          const dealii::Vector<double> &,
-         const double,
+         const LoadFactors,
          const double);
   template Verification<3>
   verify(const ElasticProblem<3> &,
          const AdhesionIntegral<3> &,
          const AdhesiveLaw &,
          const dealii::Vector<double> &,
-         const double,
+         const LoadFactors,
          const double);
 } // namespace Debond

@@ -33,8 +33,96 @@ namespace Debond
         collect_points(zero);
         lump_nodal_points();
       }
-    if (!boundary.held_vertices.empty())
+    if (!boundary.held_vertices.empty() || !least_of_nodes.empty())
       phi_at_zero = energy(zero);
+  }
+
+
+
+  template <int dim>
+  void
+  AdhesionIntegral<dim>::break_for_good(const dealii::Vector<double> &s)
+  {
+    Assert(is_separable(), dealii::ExcInternalError());
+    least_of_nodes.resize(boundary.nodes.size(), 0);
+    least_of_held.resize(boundary.held_vertices.size(), 0);
+    const auto raise =
+      [this](const double trace, const BondScale &bonds, unsigned int &least) {
+        least = std::max(least, law.branches().index(trace / bonds.stretch));
+      };
+    for (unsigned int i = 0; i < s.size(); ++i)
+      raise(s(i), bonds_at(i), least_of_nodes[i]);
+    for (const auto &face : boundary.faces)
+      for (unsigned int k = 0; k < dim; ++k)
+        if (face.nodes[k] == dealii::numbers::invalid_unsigned_int &&
+            !least_of_held.empty())
+          raise(held_trace(face, k),
+                bonds_at(face, k),
+                least_of_held[face.held[k]]);
+    update_points();
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  AdhesionIntegral<dim>::least_piece(const unsigned int node) const
+  {
+    return least_of_nodes.empty() ? 0 : least_of_nodes[node];
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  AdhesionIntegral<dim>::least_piece_at(
+    const typename ContactBoundary<dim>::Face &face,
+    const unsigned int                         vertex) const
+  {
+    if (face.nodes[vertex] != dealii::numbers::invalid_unsigned_int)
+      return least_piece(face.nodes[vertex]);
+    return least_of_held.empty() ? 0 : least_of_held[face.held[vertex]];
+  }
+
+
+
+  template <int dim>
+  double
+  AdhesionIntegral<dim>::dissipated_energy() const
+  {
+    double sum = 0.;
+    if (!least_of_nodes.empty())
+      for (const Point &point : point_list)
+        sum +=
+          point.weight * point.bonds.energy * law.value(0., point.least_piece);
+    return sum;
+  }
+
+
+
+  template <int dim>
+  double
+  AdhesionIntegral<dim>::trace_at(
+    const typename ContactBoundary<dim>::Face &face,
+    const unsigned int                         vertex,
+    const dealii::Vector<double>              &s) const
+  {
+    return face.nodes[vertex] == dealii::numbers::invalid_unsigned_int ?
+             held_trace(face, vertex) :
+             s(face.nodes[vertex]);
+  }
+
+
+
+  template <int dim>
+  BondScale
+  AdhesionIntegral<dim>::bonds_at(
+    const typename ContactBoundary<dim>::Face &face,
+    const unsigned int                         vertex) const
+  {
+    std::array<double, dim> barycentric = {};
+    barycentric[vertex]                 = 1.;
+    return bonds_of(face, barycentric);
   }
 
 
@@ -54,7 +142,7 @@ namespace Debond
   double
   AdhesionIntegral<dim>::energy_at_zero(const double factor) const
   {
-    if (boundary.held_vertices.empty())
+    if (boundary.held_vertices.empty() && least_of_nodes.empty())
       return 0.;
     AdhesionIntegral other(*this);
     other.scale_load(factor);
@@ -70,7 +158,7 @@ namespace Debond
     double sum = 0.;
     for (const Point &point : points(s))
       sum += point.weight * point.bonds.energy *
-             law.value(point.trace(s) / point.bonds.stretch);
+             law.value(point.trace(s) / point.bonds.stretch, point.least_piece);
     return sum;
   }
 
@@ -97,7 +185,8 @@ namespace Debond
       {
         const double force =
           point.weight * point.bonds.energy / point.bonds.stretch *
-          law.derivative(point.trace(s) / point.bonds.stretch);
+          law.derivative(point.trace(s) / point.bonds.stretch,
+                         point.least_piece);
         for (unsigned int k = 0; k < point.n_nodes; ++k)
           xi(point.nodes[k]) += point.shape[k] * force;
       }
@@ -112,10 +201,10 @@ namespace Debond
     std::vector<Eigen::Triplet<double>> entries;
     for (const Point &point : points(s))
       {
-        const double stretch   = point.bonds.stretch;
-        const double curvature = point.weight * point.bonds.energy /
-                                 (stretch * stretch) *
-                                 law.curvature(point.trace(s) / stretch);
+        const double stretch = point.bonds.stretch;
+        const double curvature =
+          point.weight * point.bonds.energy / (stretch * stretch) *
+          law.curvature(point.trace(s) / stretch, point.least_piece);
         if (curvature != 0.)
           for (unsigned int k = 0; k < point.n_nodes; ++k)
             for (unsigned int l = 0; l < point.n_nodes; ++l)
@@ -157,7 +246,9 @@ namespace Debond
           {
             const unsigned int node = point.nodes[k];
             const Interval     traction =
-              law.goldstein_interval(trace, delta[node] / stretch);
+              law.goldstein_interval(trace,
+                                     delta[node] / stretch,
+                                     point.least_piece);
             const double measure =
               point.weight * point.shape[k] * point.bonds.energy / stretch;
             forces[node].lower += measure * traction.lower;
@@ -213,6 +304,9 @@ namespace Debond
             point.n_nodes = 0;
             point.weight  = quadrature_point.weight * face.measure;
             point.bonds   = bonds_of(face, quadrature_point.barycentric);
+            for (unsigned int k = 0; k < dim; ++k)
+              if (quadrature_point.barycentric[k] == 1.)
+                point.least_piece = least_piece_at(face, k);
             for (unsigned int k = 0; k < dim; ++k)
               if (face.nodes[k] == dealii::numbers::invalid_unsigned_int)
                 point.offset +=
@@ -275,12 +369,13 @@ namespace Debond
     for (unsigned int node = 0; node < weights.size(); ++node)
       if (weights[node] > 0.)
         {
-          Point point    = {};
-          point.n_nodes  = 1;
-          point.nodes[0] = node;
-          point.shape[0] = 1.;
-          point.weight   = weights[node];
-          point.bonds    = bonds[node];
+          Point point       = {};
+          point.n_nodes     = 1;
+          point.nodes[0]    = node;
+          point.shape[0]    = 1.;
+          point.weight      = weights[node];
+          point.bonds       = bonds[node];
+          point.least_piece = least_piece(node);
           point_list.push_back(point);
         }
   }
@@ -360,11 +455,16 @@ namespace Debond
           {
             const BondScale bonds    = bonds_of(face, point.barycentric);
             double          at_point = 0.;
+            unsigned int    least    = 0;
             for (unsigned int k = 0; k < dim; ++k)
-              at_point += point.barycentric[k] * trace[k];
-            const double force = point.weight * face.measure * bonds.energy /
-                                 bonds.stretch *
-                                 law.derivative(at_point / bonds.stretch);
+              {
+                at_point += point.barycentric[k] * trace[k];
+                if (point.barycentric[k] == 1.)
+                  least = least_piece_at(face, k);
+              }
+            const double force =
+              point.weight * face.measure * bonds.energy / bonds.stretch *
+              law.derivative(at_point / bonds.stretch, least);
             for (unsigned int k = 0; k < dim; ++k)
               if (face.nodes[k] == dealii::numbers::invalid_unsigned_int)
                 forces[face.held[k]] += point.barycentric[k] * force;

@@ -35,6 +35,54 @@ namespace Debond
 
 
 
+  bool
+  AdhesiveLaw::is_before(const double s, const unsigned int least) const
+  {
+    return least > 0 && minimum.index(s) < least;
+  }
+
+
+
+  double
+  AdhesiveLaw::value(const double s, const unsigned int least) const
+  {
+    if (!is_before(s, least))
+      return value(s);
+    // As value() has it at the kink.
+    const double kink = minimum[least].upper;
+    return minimum[least - 1].value(kink) + minimum[least].value(s) -
+           minimum[least].value(kink);
+  }
+
+
+
+  double
+  AdhesiveLaw::derivative(const double s, const unsigned int least) const
+  {
+    return is_before(s, least) ? minimum[least].derivative(s) : derivative(s);
+  }
+
+
+
+  double
+  AdhesiveLaw::curvature(const double s, const unsigned int least) const
+  {
+    return is_before(s, least) ? minimum[least].curvature : curvature(s);
+  }
+
+
+
+  Interval
+  AdhesiveLaw::clarke_interval(const double s, const unsigned int least) const
+  {
+    if (!is_before(s, least))
+      return clarke_interval(s);
+    const double force = minimum[least].derivative(s);
+    return {force, force};
+  }
+
+
+
   Interval
   AdhesiveLaw::clarke_interval(const double s) const
   {
@@ -70,12 +118,22 @@ namespace Debond
   Interval
   AdhesiveLaw::goldstein_interval(const double s, const double delta) const
   {
-    Interval hull = clarke_interval(s);
+    return goldstein_interval(s, delta, 0);
+  }
+
+
+
+  Interval
+  AdhesiveLaw::goldstein_interval(const double       s,
+                                  const double       delta,
+                                  const unsigned int least) const
+  {
+    Interval hull = clarke_interval(s, least);
     if (!(delta > 0.))
       return hull;
 
     const auto extend = [&](const double t) {
-      const Interval interval = clarke_interval(t);
+      const Interval interval = clarke_interval(t, least);
       hull.lower              = std::min(hull.lower, interval.lower);
       hull.upper              = std::max(hull.upper, interval.upper);
     };

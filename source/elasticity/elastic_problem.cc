@@ -26,7 +26,8 @@ namespace Debond
   void
   ElasticProblem<dim>::assemble(const ByRegion<Material> &materials,
                                 const Loads<dim>         &loads,
-                                const MatrixStorage       new_storage)
+                                const MatrixStorage       new_storage,
+                                const Loads<dim>         &dead_loads)
   {
     const dealii::DoFHandler<dim> &dofs = elastic_unknowns.dof_handler();
     const dealii::AffineConstraints<double> &constraints =
@@ -40,24 +41,35 @@ namespace Debond
       thermal_stresses(dofs, materials, loads);
     dealii::Vector<double> applied_forces = load_vector(dofs, loads);
     add_thermal_forces(dofs, pressures, applied_forces);
-    elastic_fields = std::make_unique<ElasticFields<dim>>(elastic_unknowns,
-                                                          materials,
-                                                          applied_forces,
-                                                          pressures);
-
-    gap_load.reinit(0);
-    if (elastic_unknowns.has_lifting())
+    dealii::Vector<double> dead_forces;
+    if (dead_loads.body_force || !dead_loads.tractions.empty())
       {
-        const dealii::Vector<double> zero(dofs.n_dofs());
-        system_load = elastic_fields->residual(zero);
-        system_load *= -1.;
-        if (elastic_unknowns.has_gap())
-          {
-            gap_load = elastic_fields->residual(zero, 0.);
-            gap_load *= -1.;
-            constraints.set_zero(gap_load);
-          }
+        dead_forces = load_vector(dofs, dead_loads);
+        applied_forces += dead_forces;
       }
+    elastic_fields = std::make_unique<ElasticFields<dim>>(
+      elastic_unknowns, materials, applied_forces, pressures, dead_forces);
+
+    const auto load_with = [&](const LoadFactors factors) {
+      dealii::Vector<double> load =
+        elastic_fields->residual(dealii::Vector<double>(dofs.n_dofs()),
+                                 factors);
+      load *= -1.;
+      constraints.set_zero(load);
+      return load;
+    };
+    load_without_factor.reinit(0);
+    load_of_displacements.reinit(0);
+    if (elastic_unknowns.has_gap() || dead_forces.size() > 0)
+      load_without_factor = load_with(0.);
+    if (elastic_unknowns.has_prescribed_displacements())
+      {
+        load_of_displacements = load_with(LoadFactors(0., 1.));
+        if (load_without_factor.size() > 0)
+          load_of_displacements -= load_without_factor;
+      }
+    if (elastic_unknowns.has_lifting())
+      system_load = load_with(1.);
     else
       system_load = elastic_unknowns.in_frames(applied_forces);
     constraints.set_zero(system_load);
@@ -207,19 +219,30 @@ namespace Debond
   const dealii::Vector<double> &
   ElasticProblem<dim>::constant_load() const
   {
-    return gap_load;
+    return load_without_factor;
+  }
+
+
+
+  template <int dim>
+  const dealii::Vector<double> &
+  ElasticProblem<dim>::displacement_load() const
+  {
+    return load_of_displacements;
   }
 
 
 
   template <int dim>
   dealii::Vector<double>
-  ElasticProblem<dim>::load_at(const double load_factor) const
+  ElasticProblem<dim>::load_at(const LoadFactors factors) const
   {
     dealii::Vector<double> load = system_load;
-    load *= load_factor;
-    if (gap_load.size() > 0)
-      load.add(1. - load_factor, gap_load);
+    load *= factors.loads;
+    if (load_without_factor.size() > 0)
+      load.add(1. - factors.loads, load_without_factor);
+    if (load_of_displacements.size() > 0)
+      load.add(factors.displacements - factors.loads, load_of_displacements);
     return load;
   }
 
@@ -227,11 +250,11 @@ namespace Debond
 
   template <int dim>
   double
-  ElasticProblem<dim>::lifting_energy(const double load_factor) const
+  ElasticProblem<dim>::lifting_energy(const LoadFactors factors) const
   {
     return elastic_unknowns.has_lifting() ?
              elastic_fields->elastic_functional(
-               dealii::Vector<double>(elastic_unknowns.n_dofs()), load_factor) :
+               dealii::Vector<double>(elastic_unknowns.n_dofs()), factors) :
              0.;
   }
 

@@ -17,15 +17,20 @@ namespace Debond
     const ElasticUnknowns<dim>   &unknowns,
     const ByRegion<Material>     &materials,
     const dealii::Vector<double> &applied_forces,
-    const std::vector<double>    &thermal_stresses)
+    const std::vector<double>    &thermal_stresses,
+    const dealii::Vector<double> &dead_forces)
     : unknowns(unknowns)
     , materials(materials)
     , stiffness(materials.transformed([](const Material &material) {
       return material.elasticity_tensor<dim>();
     }))
-    , applied_forces(applied_forces)
+    , live_forces(applied_forces)
+    , dead_forces(dead_forces)
     , thermal_stresses(thermal_stresses)
-  {}
+  {
+    if (dead_forces.size() > 0)
+      live_forces -= dead_forces;
+  }
 
 
 
@@ -39,10 +44,14 @@ namespace Debond
 
 
   template <int dim>
-  const dealii::Vector<double> &
-  ElasticFields<dim>::applied_nodal_forces() const
+  dealii::Vector<double>
+  ElasticFields<dim>::applied_nodal_forces(const LoadFactors factors) const
   {
-    return applied_forces;
+    dealii::Vector<double> forces = live_forces;
+    forces *= factors.loads;
+    if (dead_forces.size() > 0)
+      forces += dead_forces;
+    return forces;
   }
 
 
@@ -50,10 +59,10 @@ namespace Debond
   template <int dim>
   dealii::Vector<double>
   ElasticFields<dim>::residual(const dealii::Vector<double> &u,
-                               const double                  load_factor) const
+                               const LoadFactors             factors) const
   {
     const dealii::Vector<double> displacement =
-      unknowns.cartesian_displacement(u, load_factor);
+      unknowns.cartesian_displacement(u, factors);
 
     dealii::Vector<double> forces(unknowns.n_dofs());
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
@@ -69,7 +78,7 @@ namespace Debond
               forces[cell->vertex_dof_index(v, d)] += force[d];
           }
       }
-    forces.add(-load_factor, applied_forces);
+    forces -= applied_nodal_forces(factors);
     return unknowns.in_frames(forces);
   }
 
@@ -78,10 +87,10 @@ namespace Debond
   template <int dim>
   dealii::Vector<double>
   ElasticFields<dim>::residual_rounding(const dealii::Vector<double> &u,
-                                        const double load_factor) const
+                                        const LoadFactors factors) const
   {
     const dealii::Vector<double> displacement =
-      unknowns.cartesian_displacement(u, load_factor);
+      unknowns.cartesian_displacement(u, factors);
 
     dealii::Vector<double> rounding(unknowns.n_dofs());
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
@@ -101,9 +110,10 @@ namespace Debond
             rounding[cell->vertex_dof_index(v, d)] +=
               simplex.volume * modulus * gradient * simplex.gradients[v].norm();
       }
+    const dealii::Vector<double> forces = applied_nodal_forces(factors);
     for (unsigned int i = 0; i < rounding.size(); ++i)
       rounding[i] = std::numeric_limits<double>::epsilon() *
-                    (rounding[i] + std::abs(load_factor * applied_forces[i]));
+                    (rounding[i] + std::abs(forces[i]));
     return rounding;
   }
 
@@ -114,13 +124,13 @@ namespace Debond
   ElasticFields<dim>::stress(
     const Cell                   &cell,
     const dealii::Vector<double> &cartesian_displacement,
-    const double                  load_factor) const
+    const LoadFactors             factors) const
   {
     dealii::SymmetricTensor<2, dim> stress =
       stiffness(cell->material_id()) *
       dealii::symmetrize(displacement_gradient(cell, cartesian_displacement));
     if (!thermal_stresses.empty())
-      stress -= load_factor * thermal_stress(cell) *
+      stress -= factors.loads * thermal_stress(cell) *
                 dealii::unit_symmetric_tensor<dim>();
     return stress;
   }
@@ -132,12 +142,12 @@ namespace Debond
   ElasticFields<dim>::solid_stress(
     const Cell                   &cell,
     const dealii::Vector<double> &cartesian_displacement,
-    const double                  load_factor) const
+    const LoadFactors             factors) const
   {
     return material(cell).solid_stress(stress(cell,
                                               cartesian_displacement,
-                                              load_factor),
-                                       load_factor * thermal_stress(cell));
+                                              factors),
+                                       factors.loads * thermal_stress(cell));
   }
 
 
@@ -179,9 +189,11 @@ namespace Debond
   template <int dim>
   double
   ElasticFields<dim>::elastic_functional(const dealii::Vector<double> &u,
-                                         const double load_factor) const
+                                         const LoadFactors factors) const
   {
-    return energy(u, load_factor, load_factor);
+    return energy(u,
+                  factors,
+                  unknowns.in_frames(applied_nodal_forces(factors)));
   }
 
 
@@ -189,9 +201,9 @@ namespace Debond
   template <int dim>
   double
   ElasticFields<dim>::strain_energy(const dealii::Vector<double> &u,
-                                    const double load_factor) const
+                                    const LoadFactors             factors) const
   {
-    return energy(u, load_factor, 0.);
+    return energy(u, factors, dealii::Vector<double>(u.size()));
   }
 
 
@@ -199,9 +211,9 @@ namespace Debond
   template <int dim>
   double
   ElasticFields<dim>::load_work(const dealii::Vector<double> &u,
-                                const double                  load_factor) const
+                                const LoadFactors             factors) const
   {
-    return unknowns.in_frames(applied_forces) * lifted(u, load_factor);
+    return unknowns.in_frames(live_forces) * lifted(u, factors);
   }
 
 
@@ -209,11 +221,11 @@ namespace Debond
   template <int dim>
   dealii::Vector<double>
   ElasticFields<dim>::lifted(const dealii::Vector<double> &u,
-                             const double                  load_factor) const
+                             const LoadFactors             factors) const
   {
     dealii::Vector<double> x = u;
     if (unknowns.has_lifting())
-      x += unknowns.lifting(load_factor);
+      x += unknowns.lifting(factors);
     return x;
   }
 
@@ -222,11 +234,11 @@ namespace Debond
   template <int dim>
   double
   ElasticFields<dim>::energy(const dealii::Vector<double> &u,
-                             const double                  load_factor,
-                             const double                  work_factor) const
+                             const LoadFactors             factors,
+                             const dealii::Vector<double> &load) const
   {
     const dealii::Vector<double> displacement =
-      unknowns.cartesian_displacement(u, load_factor);
+      unknowns.cartesian_displacement(u, factors);
     namespace accumulators = boost::accumulators;
     accumulators::
       accumulator_set<double, accumulators::stats<accumulators::tag::sum_kahan>>
@@ -238,10 +250,9 @@ namespace Debond
         sum(0.5 * LinearSimplex<dim>(cell).volume *
             (strain * (stiffness(cell->material_id()) * strain)));
       }
-    const dealii::Vector<double> load = unknowns.in_frames(applied_forces);
-    const dealii::Vector<double> x    = lifted(u, load_factor);
+    const dealii::Vector<double> x = lifted(u, factors);
     for (unsigned int i = 0; i < x.size(); ++i)
-      sum(-work_factor * load(i) * x(i));
+      sum(-load(i) * x(i));
     return accumulators::sum_kahan(sum);
   }
 
@@ -249,10 +260,11 @@ namespace Debond
 
   template <int dim>
   dealii::Tensor<1, dim>
-  ElasticFields<dim>::total_load() const
+  ElasticFields<dim>::total_load(const LoadFactors factors) const
   {
-    dealii::Tensor<1, dim> result;
-    std::vector<bool>      visited(
+    const dealii::Vector<double> applied_forces = applied_nodal_forces(factors);
+    dealii::Tensor<1, dim>       result;
+    std::vector<bool>            visited(
       unknowns.dof_handler().get_triangulation().n_vertices(), false);
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
       for (const unsigned int v : cell->vertex_indices())

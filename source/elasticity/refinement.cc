@@ -140,7 +140,7 @@ namespace Debond
   double
   energy_rounding(const ElasticProblem<dim>    &problem,
                   const PiecewiseQuadratic     &phi,
-                  const double                  load_factor,
+                  const LoadFactors             factors,
                   const dealii::Vector<double> &u)
   {
     // <A u, u> = <f, u> - <xi, s> at a minimum: contact forces do no work.
@@ -154,18 +154,17 @@ namespace Debond
     if (unknowns.has_lifting())
       {
         // Of u itself, what is large in w is not.
-        dealii::Vector<double> x = unknowns.lifting(load_factor);
+        dealii::Vector<double> x = unknowns.lifting(factors);
         x += u;
         terms = 0.;
         for (unsigned int i = 0; i < x.size(); ++i)
           terms += problem.diagonal_entry(i) * x(i) * x(i);
-        const double energy =
-          2. * problem.fields().strain_energy(u, load_factor);
+        const double energy = 2. * problem.fields().strain_energy(u, factors);
         return energy > 0. ?
                  std::numeric_limits<double>::epsilon() * terms / energy :
                  std::numeric_limits<double>::infinity();
       }
-    double energy = problem.load_at(load_factor) * u;
+    double energy = problem.load_at(factors) * u;
 
     const dealii::Vector<double> s = problem.unknowns().contact().trace(u);
     dealii::Vector<double>       xi(s.size());
@@ -190,7 +189,7 @@ namespace Debond
     public:
       ExtendedMajorant(const ElasticProblem<dim>    &elastic_problem,
                        const PiecewiseQuadratic     &nonsmooth,
-                       const double                  load_factor,
+                       const LoadFactors             factors,
                        CorrectionSolver             &correction_solver,
                        const std::function<bool()>  &go_on,
                        const dealii::Vector<double> &start,
@@ -203,7 +202,7 @@ namespace Debond
         , result(counts)
         , normals(problem.unknowns().contact().normals())
         , u(to_extended(start))
-        , f(to_extended(problem.load_at(load_factor)))
+        , f(to_extended(problem.load_at(factors)))
       {
         for (const double s : problem.unknowns().contact().trace(start))
           active.push_back(s == 0.);
@@ -417,14 +416,14 @@ namespace Debond
   RefinementResult
   refine(const ElasticProblem<dim>   &problem,
          const PiecewiseQuadratic    &phi,
-         const double                 load_factor,
+         const LoadFactors            factors,
          CorrectionSolver            &solver,
          const std::function<bool()> &may_go_on,
          dealii::Vector<double>      &u)
   {
     RefinementResult      result;
     ExtendedMajorant<dim> majorant(
-      problem, phi, load_factor, solver, may_go_on, u, result);
+      problem, phi, factors, solver, may_go_on, u, result);
     while (majorant.majorise())
       if (!majorant.minimise())
         return result;
@@ -440,17 +439,17 @@ namespace Debond
   std::string
   refine_where_needed(const ElasticProblem<dim>   &problem,
                       const PiecewiseQuadratic    &phi,
-                      const double                 load_factor,
+                      const LoadFactors            factors,
                       CorrectionSolver            &solver,
                       const std::function<bool()> &may_go_on,
                       dealii::Vector<double>      &u)
   {
-    const double rounding = energy_rounding(problem, phi, load_factor, u);
+    const double rounding = energy_rounding(problem, phi, factors, u);
     if (rounding <= largest_energy_rounding)
       return "";
 
     const RefinementResult refined =
-      refine(problem, phi, load_factor, solver, may_go_on, u);
+      refine(problem, phi, factors, solver, may_go_on, u);
     std::ostringstream note;
     note.precision(1);
     note << std::scientific;
@@ -473,38 +472,38 @@ namespace Debond
   template double
   energy_rounding(const ElasticProblem<2> &,
                   const PiecewiseQuadratic &,
-                  const double,
+                  const LoadFactors,
                   const dealii::Vector<double> &);
   template double
   energy_rounding(const ElasticProblem<3> &,
                   const PiecewiseQuadratic &,
-                  const double,
+                  const LoadFactors,
                   const dealii::Vector<double> &);
   template std::string
   refine_where_needed(const ElasticProblem<2> &,
                       const PiecewiseQuadratic &,
-                      const double,
+                      const LoadFactors,
                       CorrectionSolver &,
                       const std::function<bool()> &,
                       dealii::Vector<double> &);
   template std::string
   refine_where_needed(const ElasticProblem<3> &,
                       const PiecewiseQuadratic &,
-                      const double,
+                      const LoadFactors,
                       CorrectionSolver &,
                       const std::function<bool()> &,
                       dealii::Vector<double> &);
   template RefinementResult
   refine(const ElasticProblem<2> &,
          const PiecewiseQuadratic &,
-         const double,
+         const LoadFactors,
          CorrectionSolver &,
          const std::function<bool()> &,
          dealii::Vector<double> &);
   template RefinementResult
   refine(const ElasticProblem<3> &,
          const PiecewiseQuadratic &,
-         const double,
+         const LoadFactors,
          CorrectionSolver &,
          const std::function<bool()> &,
          dealii::Vector<double> &);

@@ -799,6 +799,15 @@ namespace Debond
 
   template <int dim>
   bool
+  ElasticUnknowns<dim>::has_prescribed_displacements() const
+  {
+    return prescribed.size() > 0;
+  }
+
+
+
+  template <int dim>
+  bool
   ElasticUnknowns<dim>::has_gap() const
   {
     return gap.size() > 0;
@@ -808,11 +817,11 @@ namespace Debond
 
   template <int dim>
   dealii::Vector<double>
-  ElasticUnknowns<dim>::lifting(const double load_factor) const
+  ElasticUnknowns<dim>::lifting(const LoadFactors factors) const
   {
     dealii::Vector<double> G(n_dofs());
     if (prescribed.size() > 0)
-      G.equ(load_factor, prescribed);
+      G.equ(factors.displacements, prescribed);
     if (gap.size() > 0)
       G += gap;
     return G;
@@ -860,11 +869,11 @@ namespace Debond
   template <int dim>
   dealii::Vector<double>
   ElasticUnknowns<dim>::cartesian_displacement(const dealii::Vector<double> &w,
-                                               const double load_factor) const
+                                               const LoadFactors factors) const
   {
     dealii::Vector<double> u = w;
     if (has_lifting())
-      u += lifting(load_factor);
+      u += lifting(factors);
     dealii::Vector<double> result = u;
     for (const Frame &frame : vertex_frames)
       for (unsigned int d = 0; d < dim; ++d)

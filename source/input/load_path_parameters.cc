@@ -3,6 +3,7 @@
 
 #include <debond/input/load_path_parameters.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -85,13 +86,13 @@ namespace Debond
 
 
   std::vector<double>
-  parse_load_factors(const std::string &text)
+  parse_load_factors(const std::string &text, const bool repeats)
   {
     std::vector<double> factors;
     for (const std::string &item :
          dealii::Utilities::split_string_list(text, ','))
       for (const double factor : parse_item(item))
-        if (factors.empty() || factor != factors.back())
+        if (repeats || factors.empty() || factor != factors.back())
           factors.push_back(factor);
     if (factors.size() > most_factors)
       throw std::invalid_argument("there are more than " +
@@ -113,8 +114,27 @@ namespace Debond
       "Multiples of all loads that are applied one after the other, each solved from the state before it, the first one from rest, such as '0:0.05:1.2, 1.2:-0.05:0' for loading and unloading; empty for the loads as they are. Needs majorise minimise with a direct linear solver",
       "none",
       [&load_path](const std::string &text) {
-        load_path.factors = parse_load_factors(text);
+        load_path.factors = parse_load_factors(text, true);
       });
+    table.declare(
+      "Load path/Displacement factors",
+      "",
+      Pattern("nothing, or numbers and ranges FIRST:STEP:LAST, separated by "
+              "commas",
+              [](const std::string & /*value*/) { return true; }),
+      "Multiples of the prescribed displacements, step by step beside Factors, each list as long as the other; a single factor holds for all steps, and if Factors is empty the loads stay as they are. Empty: those of the loads",
+      "none",
+      [&load_path](const std::string &text) {
+        load_path.displacement_factors = parse_load_factors(text, true);
+      });
+    table.bind(
+      "Load path/Dead loads",
+      load_path.dead_loads,
+      "What stays as it is whatever the factor: names of boundaries with a traction, or body force");
+    table.bind(
+      "Load path/Bonds heal",
+      load_path.bonds_heal,
+      "Whether bonds hold again when they come back: false leaves each bond (with a stepped law each of its steps) broken for the rest of the path. Needs nodal quadrature, and leaves out the global branch");
     table.bind_choice(
       "Load path/Global branch",
       load_path.global_branch,
@@ -122,5 +142,53 @@ namespace Debond
        {"search", GlobalBranch::search},
        {"prove", GlobalBranch::prove}},
       "What is computed beside the states that the load path leads to: search is the lowest minimum that a search finds at each factor (full, unless Solver/Search is quick), prove has it proved as well, with the limits of Solver/Proof for each factor, and needs nodal quadrature");
+  }
+
+
+
+  void
+  complete_load_path(const LoadParameters    &loads,
+                     const SupportParameters &supports,
+                     LoadPathParameters      &load_path,
+                     ParameterTable          &table)
+  {
+    std::vector<double> &factors = load_path.factors;
+    std::vector<double> &others  = load_path.displacement_factors;
+    if (others.empty())
+      factors.erase(std::unique(factors.begin(), factors.end()), factors.end());
+    else
+      {
+        const std::string path = "Load path/Displacement factors";
+        if (supports.displacements.empty())
+          table.reject(path, "the scene prescribes no displacement");
+        if (factors.empty())
+          factors.push_back(1.);
+        if (factors.size() == 1)
+          factors.resize(others.size(), factors[0]);
+        if (others.size() == 1)
+          others.resize(factors.size(), others[0]);
+        if (others.size() != factors.size())
+          table.reject(path,
+                       "has " + std::to_string(others.size()) +
+                         " factors, Load path/Factors " +
+                         std::to_string(factors.size()),
+                       {"Load path/Factors"});
+      }
+    for (const std::string &name : load_path.dead_loads)
+      if (name == "body force" ? loads.body_force.empty() :
+                                 loads.tractions.count(name) == 0)
+        table.reject("Load path/Dead loads",
+                     "the scene has no " +
+                       (name == "body force" ? name : "traction " + name));
+  }
+
+
+
+  LoadFactors
+  LoadPathParameters::at(const unsigned int step) const
+  {
+    return {factors[step],
+            displacement_factors.empty() ? factors[step] :
+                                           displacement_factors[step]};
   }
 } // namespace Debond

@@ -6,6 +6,7 @@
 #include <debond/input/mesh_parameters.h>
 #include <debond/input/parameters.h>
 #include <debond/input/part_parameters.h>
+#include <debond/input/probe_parameters.h>
 #include <debond/input/solver_parameters.h>
 
 #include <filesystem>
@@ -90,6 +91,7 @@ namespace Debond
       "Dimension", p.dimension, whole_number(2, 3), "Space dimension", "none");
     bind_mesh(body, *this);
     bind_parts(parts, *this);
+    bind_probes(p.probes, *this);
     bind_material(p.materials, *this);
     bind_boundaries(p, *this);
     bind_loads(p.loads, *this);
@@ -164,6 +166,12 @@ namespace Debond
                      "is for bonds that are the same everywhere",
                      {"Contact law/Bond stiffness",
                       "Contact law/Bond threshold"});
+      if (!p.load_path.bonds_heal &&
+          p.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
+        table.reject("Load path/Bonds heal",
+                     "needs Contact law/Quadrature = nodal, which gives each "
+                     "node a bond of its own",
+                     {"Contact law/Quadrature"});
     }
 
 
@@ -176,11 +184,16 @@ namespace Debond
     {
       std::set<std::string> used = p.clamped_boundaries;
       used.insert(p.contact_boundaries.begin(), p.contact_boundaries.end());
-      used.insert(p.supports.rollers.begin(), p.supports.rollers.end());
+      for (const std::string &name : p.supports.all_rollers())
+        used.insert(name);
       for (const auto &[name, unused] : p.supports.displacements)
         used.insert(name);
       for (const auto &[name, unused] : p.loads.tractions)
         used.insert(name);
+      for (const auto &[unused, text] : p.probes)
+        if (const std::size_t space = text.find(' ');
+            space != std::string::npos)
+          used.insert(dealii::Utilities::trim(text.substr(space)));
       for (const auto &[unused, text] : parts)
         used.insert(dealii::Utilities::trim(text.substr(0, text.find(':'))));
       for (const auto &[name, unused] : p.materials.of_regions())
@@ -229,6 +242,7 @@ namespace Debond
     parse();
     p.scene = scene;
     complete_loads(p.dimension, p.materials.everywhere, p.loads, *this);
+    complete_load_path(p.loads, p.supports, p.load_path, *this);
     p.body = with_parts(make_body(scene, p.dimension, body, *this),
                         parts,
                         p.dimension,
@@ -249,6 +263,11 @@ namespace Debond
                        p.loads.constants,
                        *this);
         check_material(p.dimension, p.materials, p.body->regions(), *this);
+        check_probes(p.probes,
+                     p.dimension,
+                     p.body->boundaries(),
+                     p.body->regions(),
+                     *this);
       }
     check_bonds(p, *this);
     check_exact_displacement(p, *this);

@@ -15,6 +15,10 @@ namespace Debond
       "Boundary conditions/Roller boundaries",
       supports.rollers,
       "Flat boundaries where the normal displacement alone is zero: rollers, or planes of symmetry");
+    table.bind(
+      "Boundary conditions/Symmetry boundaries",
+      supports.symmetry_planes,
+      "Flat boundaries that are planes of symmetry, with the other half of the body behind them: rollers by another name");
     table.bind_family(
       "Boundary conditions/Displacement",
       supports.displacements,
@@ -30,6 +34,16 @@ namespace Debond
               [](const std::string & /*value*/) { return true; }),
       "The distance g >= 0 between the body at rest and the foundation, an expression as in Loads: u_nu <= g, and bonds are stretched by g - u_nu",
       "length");
+  }
+
+
+
+  std::set<std::string>
+  SupportParameters::all_rollers() const
+  {
+    std::set<std::string> names = rollers;
+    names.insert(symmetry_planes.begin(), symmetry_planes.end());
+    return names;
   }
 
 
@@ -56,6 +70,10 @@ namespace Debond
   {
     check_names("Boundary conditions/Roller boundaries",
                 supports.rollers,
+                boundaries,
+                table);
+    check_names("Boundary conditions/Symmetry boundaries",
+                supports.symmetry_planes,
                 boundaries,
                 table);
     for (const auto &[name, text] : supports.displacements)

@@ -227,10 +227,10 @@ namespace Debond
     const dealii::Vector<double>            &f,
     const std::vector<unsigned int>         &kept,
     const std::function<bool(unsigned int)> &is_excluded,
-    const ConstantPart                      &constant,
+    const OtherParts                        &others,
     const bool                               is_semidefinite)
     : n(f.size())
-    , constant_energy(constant.energy)
+    , other_energy(others.energy)
   {
     std::vector<char> is_kept(n, 0);
     for (const unsigned int i : kept)
@@ -246,8 +246,10 @@ namespace Debond
                                       is_semidefinite ? 2. : 1.);
 
     given_y = forward(f);
-    if (constant.load.size() > 0)
-      constant_y = forward(constant.load);
+    if (others.constant_load.size() > 0)
+      constant_y = forward(others.constant_load);
+    if (others.second_load.size() > 0)
+      second_y = forward(others.second_load);
 
     L_ss = factor->trailing_block();
     S.reinit(kept.size(), kept.size());
@@ -266,12 +268,23 @@ namespace Debond
   void
   Condensation::scale_load(const double factor)
   {
-    constant_part = constant_energy ? constant_energy(factor) : 0.;
+    scale_load(factor, factor);
+  }
+
+
+
+  void
+  Condensation::scale_load(const double factor, const double second)
+  {
+    constant_part = other_energy ? other_energy(factor, second) : 0.;
     y             = given_y;
     for (double &entry : y)
       entry *= factor;
     for (unsigned int i = 0; i < constant_y.size(); ++i)
       y[i] += (1. - factor) * constant_y[i];
+    if (second != factor)
+      for (unsigned int i = 0; i < second_y.size(); ++i)
+        y[i] += (second - factor) * second_y[i];
     g = condensed_load(y);
   }
 

@@ -35,6 +35,11 @@ namespace Debond
         out << ',' << prefix << title;
       for (const auto &[name, part] : state.other_parts)
         out << ',' << prefix << name << "_part";
+      for (const char *title : {"broken_zone", "dissipated_energy"})
+        out << ',' << prefix << title;
+      for (const auto &[name, vector] : state.vectors)
+        for (unsigned int d = 0; d < dim; ++d)
+          out << ',' << prefix << name << '_' << "xyz"[d];
     }
 
 
@@ -65,6 +70,11 @@ namespace Debond
         out << ',' << shortest_text(number);
       for (const auto &[name, part] : state.other_parts)
         out << ',' << shortest_text(part);
+      for (const double number : {state.broken_zone, state.dissipated_energy})
+        out << ',' << shortest_text(number);
+      for (const auto &[name, vector] : state.vectors)
+        for (unsigned int d = 0; d < dim; ++d)
+          out << ',' << shortest_text(vector[d]);
     }
 
 
@@ -88,9 +98,9 @@ namespace Debond
     const LoadPathState<dim> first =
       steps.empty() ? LoadPathState<dim>() : steps[0].state;
     const std::size_t n_columns_of_state =
-      14 + 2 * dim + first.other_parts.size();
+      16 + 2 * dim + first.other_parts.size() + dim * first.vectors.size();
     write_atomically(file_name, [&](std::ostream &out) {
-      out << "step,factor,status";
+      out << "step,factor,displacement_factor,status";
       write_titles(first, "", out);
       out << ",iterations,change_factor";
       write_titles(first, "global_", out);
@@ -99,7 +109,7 @@ namespace Debond
       for (const LoadPathStep<dim> &step : steps)
         {
           out << step.step << ',' << shortest_text(step.factor) << ','
-              << step.status;
+              << shortest_text(step.displacement_factor) << ',' << step.status;
           write_state(step.state, out);
           out << ',' << step.iterations;
           write_optional(step.change_factor, out);

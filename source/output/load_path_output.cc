@@ -69,14 +69,14 @@ namespace Debond
         if (output.path_body_vtu)
           {
             const std::string name = name_of_step("body", step.step);
-            write_body_vtu(problem, u, path(name), step.factor);
+            write_body_vtu(problem, u, path(name), step.factors());
             bodies.emplace_back(step.step, name);
           }
         if (output.path_contact_vtu)
           {
             const std::string name = name_of_step("contact", step.step);
             write_contact_vtu(
-              problem, u, verification, path(name), step.factor);
+              problem, u, verification, path(name), step.factors());
             contacts.emplace_back(step.step, name);
           }
       }

@@ -281,6 +281,12 @@ namespace Debond
       record.add("/bond_states", states);
       record.line("contact nodes", join(texts, ", "));
 
+      record.add("/largest_opening", verification.largest_opening);
+      record.add("/broken_zone", verification.broken_zone);
+      record.line("opening",
+                  "largest " + scientific(verification.largest_opening, 3) +
+                    ", broken zone " + scientific(verification.broken_zone, 3));
+
       record.add("/largest_displacement", largest.displacement);
       record.add("/largest_displacement_gradient", largest.gradient);
       record.add("/largest_von_mises", largest.von_mises);
@@ -309,6 +315,24 @@ namespace Debond
       for (unsigned int d = 0; d < dim; ++d)
         components.push_back(scientific(force[d], 6));
       record.line(label, "(" + join(components, ", ") + ")");
+    }
+
+
+
+    /// What the scene wants to know, and the means over all named pieces.
+    template <int dim>
+    void
+    report_probes(const RunResult<dim> &result, Record &record)
+    {
+      record.add("/probes", Json::object());
+      for (const auto &[name, vector] : result.probes)
+        report_force("probes/" + name, "probe " + name, vector, true, record);
+      record.add("/mean_displacements", Json::object());
+      for (const auto &[name, vector] : result.means)
+        report_force("mean_displacements/" + name, "", vector, false, record);
+      if (!result.path.empty())
+        record.add("/dissipated_energy",
+                   result.path.back().state.dissipated_energy);
     }
 
 
@@ -430,6 +454,8 @@ namespace Debond
       record.line("clamped", list(parameters.clamped_boundaries));
       if (!parameters.supports.rollers.empty())
         record.line("roller", list(parameters.supports.rollers));
+      if (!parameters.supports.symmetry_planes.empty())
+        record.line("symmetry", list(parameters.supports.symmetry_planes));
       for (const auto &[side, displacement] : parameters.supports.displacements)
         record.line("displacement " + side, displacement);
       if (!parameters.supports.gap.empty())
@@ -535,6 +561,7 @@ namespace Debond
     if (!result.has_displacement())
       return;
     report_state(result.verification, result.largest, record);
+    report_probes(result, record);
     report_verification(parameters, result, record);
   }
 

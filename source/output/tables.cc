@@ -36,7 +36,7 @@ namespace Debond
       for (unsigned int d = 0; d < dim; ++d)
         out << ",tangential_force_"
             << "xyz"[d];
-      out << '\n';
+      out << ",bond_stiffness,bond_threshold,initial_gap\n";
 
       for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
         {
@@ -51,7 +51,8 @@ namespace Debond
               << verification.name(state.state);
           for (unsigned int d = 0; d < dim; ++d)
             out << ',' << verification.tangential_forces[i][d];
-          out << '\n';
+          out << ',' << state.bond_stiffness << ',' << state.bond_threshold
+              << ',' << node.gap << '\n';
         }
     });
   }

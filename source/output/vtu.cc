@@ -94,10 +94,13 @@ namespace Debond
     const std::vector<std::string> contact_scalars = {"u_nu",
                                                       "gap",
                                                       "normal_force_density",
-                                                      "law_violation"};
+                                                      "law_violation",
+                                                      "bond_stiffness",
+                                                      "bond_threshold",
+                                                      "initial_gap"};
 
     template <int dim>
-    using ContactValues = std::array<double, 2 * dim + 4>;
+    using ContactValues = std::array<double, 2 * dim + 7>;
 
 
 
@@ -130,11 +133,11 @@ namespace Debond
     std::vector<dealii::Tensor<1, dim>>
     contact_displacements(const ElasticProblem<dim>    &problem,
                           const dealii::Vector<double> &u,
-                          const double                  load_factor)
+                          const LoadFactors             factors)
     {
       const auto &normals = problem.unknowns().contact().normals();
       const dealii::Vector<double> cartesian =
-        problem.unknowns().cartesian_displacement(u, load_factor);
+        problem.unknowns().cartesian_displacement(u, factors);
 
       std::vector<unsigned int> node_of_dof(
         problem.unknowns().n_dofs(), dealii::numbers::invalid_unsigned_int);
@@ -165,13 +168,13 @@ namespace Debond
   write_body_vtu(const ElasticProblem<dim>    &problem,
                  const dealii::Vector<double> &u,
                  const std::string            &file_name,
-                 const double                  load_factor)
+                 const LoadFactors             factors)
   {
     using dealii::DataComponentInterpretation::component_is_part_of_vector;
 
     const std::string            axes = "xyz";
     const dealii::Vector<double> displacement =
-      problem.unknowns().cartesian_displacement(u, load_factor);
+      problem.unknowns().cartesian_displacement(u, factors);
 
     dealii::DataOut<dim> data_out;
     data_out.set_flags(vtk_flags());
@@ -221,7 +224,7 @@ namespace Debond
          problem.unknowns().dof_handler().active_cell_iterators())
       {
         const dealii::SymmetricTensor<2, 3> stress =
-          problem.fields().solid_stress(cell, displacement, load_factor);
+          problem.fields().solid_stress(cell, displacement, factors);
         auto       field = fields.begin();
         const auto add   = [&field](const double number) {
           (field++)->second.push_back(static_cast<float>(number));
@@ -253,13 +256,13 @@ namespace Debond
                     const dealii::Vector<double> &u,
                     const Verification<dim>      &verification,
                     const std::string            &file_name,
-                    const double                  load_factor)
+                    const LoadFactors             factors)
   {
     constexpr double            nan = std::numeric_limits<double>::quiet_NaN();
     const ContactBoundary<dim> &boundary =
       problem.unknowns().contact().boundary();
     const std::vector<dealii::Tensor<1, dim>> displacements =
-      contact_displacements(problem, u, load_factor);
+      contact_displacements(problem, u, factors);
 
     const auto values_of = [&](const unsigned int node) {
       ContactValues<dim> values = {};
@@ -267,7 +270,7 @@ namespace Debond
         {
           // What a clamp bears there is not the foundation's.
           std::fill(values.begin() + dim, values.begin() + 2 * dim, nan);
-          values[2 * dim + 2] = values[2 * dim + 3] = nan;
+          std::fill(values.begin() + 2 * dim + 2, values.end(), nan);
           return values;
         }
       const ContactNodeState &state   = verification.nodes[node];
@@ -281,6 +284,9 @@ namespace Debond
       values[2 * dim + 1] = -state.s;
       values[2 * dim + 2] = state.normal_force / measure;
       values[2 * dim + 3] = state.violation;
+      values[2 * dim + 4] = state.bond_stiffness;
+      values[2 * dim + 5] = state.bond_threshold;
+      values[2 * dim + 6] = state.u_nu - state.s;
       return values;
     };
 
@@ -365,22 +371,22 @@ namespace Debond
   write_body_vtu(const ElasticProblem<2> &,
                  const dealii::Vector<double> &,
                  const std::string &,
-                 const double);
+                 const LoadFactors);
   template void
   write_body_vtu(const ElasticProblem<3> &,
                  const dealii::Vector<double> &,
                  const std::string &,
-                 const double);
+                 const LoadFactors);
   template void
   write_contact_vtu(const ElasticProblem<2> &,
                     const dealii::Vector<double> &,
                     const Verification<2> &,
                     const std::string &,
-                    const double);
+                    const LoadFactors);
   template void
   write_contact_vtu(const ElasticProblem<3> &,
                     const dealii::Vector<double> &,
                     const Verification<3> &,
                     const std::string &,
-                    const double);
+                    const LoadFactors);
 } // namespace Debond

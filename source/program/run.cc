@@ -173,11 +173,19 @@ namespace Debond
         }
 
       dealii::Timer timer;
-      result.verification = verify(scene.problem(),
-                                   scene.adhesion(),
-                                   scene.law(),
-                                   result.solve.u,
-                                   result.solve.load_factor);
+      // What bonds have left for good only the path knows.
+      if (result.path.empty())
+        result.verification = verify(scene.problem(),
+                                     scene.adhesion(),
+                                     scene.law(),
+                                     result.solve.u,
+                                     result.solve.load_factor);
+      result.probes = scene.probes().values(scene.problem(),
+                                            result.solve.u,
+                                            result.solve.load_factor);
+      result.means  = scene.means().values(scene.problem(),
+                                          result.solve.u,
+                                          result.solve.load_factor);
       result.times.emplace_back("verification", timer.wall_time());
       judge(verification_message(parameters, result), result);
 
@@ -306,7 +314,12 @@ namespace Debond
         parameters.solver,
         parameters.verification.tolerance,
         scene,
-        [&](const auto &...step) { path_output.add(step...); },
+        [&](const LoadPathStep<dim>      &step,
+            const dealii::Vector<double> &u,
+            const Verification<dim>      &verification) {
+          result.verification = verification;
+          path_output.add(step, u, verification);
+        },
         record.has_details() ? &out : nullptr,
         result.path);
     result.times.emplace_back("solve", timer.wall_time());

@@ -48,17 +48,17 @@ namespace Debond
       {
         timer.restart();
         print_titles("broken part");
-        for (const double factor : parameters.factors)
+        for (unsigned int k = 0; k < parameters.factors.size(); ++k)
           {
             if (!steps.empty() && guard.requested())
               {
                 interrupt("the path is not complete");
                 break;
               }
-            if (!solve(factor, observer))
+            if (!solve(parameters.at(k), observer))
               break;
             const LoadPathStep<dim> &step = steps.back();
-            print(factor,
+            print(step.factor,
                   step.state.functional,
                   step.state.broken_part,
                   step.state.minimum.empty() ? step.status :
@@ -132,9 +132,10 @@ namespace Debond
             result.functional = std::numeric_limits<double>::quiet_NaN();
             return result;
           }
-        scale_load(steps.back().factor);
-        result.load_factor  = steps.back().factor;
-        result.u            = displacement(steps.back().factor, points.back());
+        const LoadFactors factors = steps.back().factors();
+        scale_load(factors);
+        result.load_factor  = factors;
+        result.u            = displacement(factors, points.back());
         result.functional   = steps.back().state.functional;
         result.minimum.kind = kinds.back();
         return result;
@@ -142,20 +143,21 @@ namespace Debond
 
     private:
       void
-      scale_load(const double factor)
+      scale_load(const LoadFactors factors)
       {
-        adhesion.scale_load(factor);
-        condensed.scale_load(factor);
+        adhesion.scale_load(factors.displacements);
+        condensed.scale_load(factors.loads, factors.displacements);
       }
 
       /// Returns whether there is a next step: not if the body comes off.
       bool
-      solve(const double factor, const LoadPathObserver<dim> &observer)
+      solve(const LoadFactors factors, const LoadPathObserver<dim> &observer)
       {
-        const dealii::Vector<double> last = s;
+        const dealii::Vector<double> last   = s;
+        const double                 factor = factors.loads;
         const double last_factor = steps.empty() ? 0. : steps.back().factor;
 
-        scale_load(factor);
+        scale_load(factors);
         CondensedProblem             problem(condensed.schur_complement(),
                                  condensed.load(),
                                  adhesion,
@@ -185,15 +187,20 @@ namespace Debond
           }
 
         LoadPathStep<dim> step;
-        step.step       = static_cast<unsigned int>(steps.size() + 1);
-        step.factor     = factor;
-        step.iterations = static_cast<unsigned int>(minimum.history.size());
-        const dealii::Vector<double> u            = displacement(factor, s);
-        const Verification<dim>      verification = verify(factor, u);
-        step.state =
-          load_path_state(scene.problem(), adhesion, factor, u, verification);
+        step.step                = static_cast<unsigned int>(steps.size() + 1);
+        step.factor              = factor;
+        step.displacement_factor = factors.displacements;
+        step.iterations    = static_cast<unsigned int>(minimum.history.size());
         step.change_factor = change_factor(last_factor, last, factor);
-        step.status        = to_string(minimum.status);
+        if (!parameters.bonds_heal)
+          {
+            adhesion.break_for_good(s);
+            scale_load(factors);
+          }
+        const dealii::Vector<double> u            = displacement(factors, s);
+        const Verification<dim>      verification = verify(factors, u);
+        step.state  = state(factors, u, verification);
+        step.status = to_string(minimum.status);
         kinds.push_back(kind_without_search(scene.law(), adhesion, s));
         if (!can_be_verified(minimum.status))
           step.message = result.message = location(step) + minimum.message;
@@ -224,14 +231,15 @@ namespace Debond
 
       /// Of all unknowns, refined where rounding has a say in it.
       dealii::Vector<double>
-      displacement(const double factor, const dealii::Vector<double> &point)
+      displacement(const LoadFactors             factors,
+                   const dealii::Vector<double> &point)
       {
         dealii::Vector<double> u = condensed.expand(point);
         CondensedCorrection    solver(condensed);
         const std::string      note = refine_where_needed(
           scene.problem(),
           adhesion,
-          factor,
+          factors,
           solver,
           [this]() { return !guard.requested(); },
           u);
@@ -241,10 +249,24 @@ namespace Debond
       }
 
       Verification<dim>
-      verify(const double factor, const dealii::Vector<double> &u) const
+      verify(const LoadFactors factors, const dealii::Vector<double> &u) const
       {
         return Debond::verify(
-          scene.problem(), adhesion, scene.law(), u, factor);
+          scene.problem(), adhesion, scene.law(), u, factors);
+      }
+
+      LoadPathState<dim>
+      state(const LoadFactors             factors,
+            const dealii::Vector<double> &u,
+            const Verification<dim>      &verification) const
+      {
+        return load_path_state(scene.problem(),
+                               adhesion,
+                               scene.means(),
+                               scene.probes(),
+                               factors,
+                               u,
+                               verification);
       }
 
       bool
@@ -275,14 +297,16 @@ namespace Debond
                     const dealii::Vector<double> &last,
                     const double                  factor) const
       {
-        // Without a slope and gaps displacements are proportional to the
-        // factor.
+        // Without a slope, gaps and other factors displacements are
+        // proportional to the factor.
         const BranchMinimum &branches  = scene.law().branches();
         bool                 has_slope = false;
         for (unsigned int k = 0; k < branches.size(); ++k)
           has_slope = has_slope || branches[k].slope != 0.;
         if (branches.size() == 1 || has_slope || last_factor == 0. ||
-            scene.problem().unknowns().has_gap() || !adhesion.is_separable())
+            scene.problem().unknowns().has_gap() || !adhesion.is_separable() ||
+            !parameters.displacement_factors.empty() ||
+            !parameters.dead_loads.empty())
           return {};
 
         double     first     = factor / last_factor;
@@ -293,7 +317,8 @@ namespace Debond
             {
               const double       stretch = adhesion.bonds_at(i).stretch;
               const unsigned int k       = branches.index(last(i) / stretch);
-              if (increases ? k + 1 == branches.size() : k == 0)
+              if (increases ? k + 1 == branches.size() :
+                              k <= adhesion.least_piece(i))
                 continue;
               const double reached =
                 stretch * (increases ? branches[k].lower : branches[k].upper) /
@@ -315,16 +340,15 @@ namespace Debond
         scale_load(factor);
         const dealii::Vector<double> u = displacement(factor, point.s);
         const Verification<dim>      verification = verify(factor, u);
-        LoadPathState<dim>           state =
-          load_path_state(scene.problem(), adhesion, factor, u, verification);
-        const bool verified = is_verified(verification);
+        LoadPathState<dim>           global   = state(factor, u, verification);
+        const bool                   verified = is_verified(verification);
         if (verified)
-          state.minimum = to_string(point.which.kind);
+          global.minimum = to_string(point.which.kind);
         for (unsigned int k = 0; k < steps.size(); ++k)
           if (steps[k].factor == factor)
             {
               LoadPathStep<dim> &step = steps[k];
-              step.global             = state;
+              step.global             = global;
               if (point.which.proof_attempted)
                 step.relative_gap = point.which.relative_gap;
               if (!verified && step.message.empty())
@@ -333,11 +357,11 @@ namespace Debond
               // The followed state is this one, or as good.
               if (step.message.empty() &&
                   step.state.functional <=
-                    state.functional + solver_parameters.proof.tolerance *
-                                         std::abs(state.functional))
+                    global.functional + solver_parameters.proof.tolerance *
+                                          std::abs(global.functional))
                 {
                   kinds[k]           = point.which.kind;
-                  step.state.minimum = state.minimum;
+                  step.state.minimum = global.minimum;
                 }
             }
       }
@@ -407,6 +431,7 @@ namespace Debond
     path.follow(observer);
     // Where only bonds hold the body J may fall without end.
     if (parameters.global_branch != GlobalBranch::none &&
+        parameters.has_global_branch() && !steps.empty() &&
         scene.problem().unknowns().held_by_contact().motions.empty() &&
         steps.back().message.empty())
       path.find_global_branch();

@@ -70,6 +70,11 @@ namespace Debond
                "follows minima that need not be global: in place of "
                "Solver/Prove = true use Load path/Global branch = prove");
       if (parameters.load_path.global_branch == GlobalBranch::prove &&
+          !parameters.load_path.has_global_branch())
+        refuse("Global branch",
+               "= prove needs bonds that heal and the same factors for "
+               "prescribed displacements");
+      if (parameters.load_path.global_branch == GlobalBranch::prove &&
           parameters.quadrature.rule !=
             ContactQuadratureParameters::Rule::nodal)
         refuse("Global branch",

@@ -4,6 +4,7 @@
 #include <debond/contact/field_value.h>
 #include <debond/elasticity/temperature_load.h>
 #include <debond/input/expression.h>
+#include <debond/input/probe_parameters.h>
 #include <debond/solve/displacement.h>
 #include <debond/solve/scene.h>
 
@@ -117,17 +118,23 @@ namespace Debond
 
 
 
+    /// The dead ones or the others.
     template <int dim>
     Loads<dim>
-    make_loads(const LoadParameters &parameters,
-               const BoundaryNames  &boundaries)
+    make_loads(const LoadParameters        &parameters,
+               const std::set<std::string> &dead_loads,
+               const bool                   wants_dead,
+               const BoundaryNames         &boundaries)
     {
+      const auto is_wanted = [&](const std::string &name) {
+        return wants_dead == (dead_loads.count(name) > 0);
+      };
       Loads<dim> loads;
       loads.boundary_names = boundaries;
-      if (!parameters.body_force.empty())
+      if (!parameters.body_force.empty() && is_wanted("body force"))
         loads.body_force =
           make_function<dim>(parameters.body_force, parameters.constants);
-      if (!parameters.temperature_change.empty())
+      if (!parameters.temperature_change.empty() && !wants_dead)
         loads.temperature_change =
           make_function<dim>(parameters.temperature_change,
                              parameters.constants,
@@ -135,6 +142,8 @@ namespace Debond
       for (const auto &[name, expression] : parameters.tractions)
         for (const dealii::types::boundary_id id : boundaries.at(name))
           {
+            if (!is_wanted(name))
+              continue;
             const std::shared_ptr<const dealii::Function<dim>> added =
               make_function<dim>(expression, parameters.constants);
             auto &traction = loads.tractions[id];
@@ -178,12 +187,24 @@ namespace Debond
             prescribed_displacement<dim>(name, text, constants));
           supports.displacements.back().boundaries = boundaries.at(name);
         }
-      for (const std::string &name : parameters.supports.rollers)
+      for (const std::string &name : parameters.supports.all_rollers())
         supports.displacements.push_back({name, boundaries.at(name), true});
       if (!parameters.supports.gap.empty())
         supports.gap =
           make_function<dim>(parameters.supports.gap, constants, 1);
       return supports;
+    }
+
+
+
+    /// At all steps.
+    std::vector<double>
+    displacement_factors(const LoadPathParameters &load_path)
+    {
+      std::vector<double> factors;
+      for (unsigned int k = 0; k < load_path.factors.size(); ++k)
+        factors.push_back(load_path.at(k).displacements);
+      return factors.empty() ? std::vector<double>{1.} : factors;
     }
 
 
@@ -231,12 +252,14 @@ namespace Debond
 
 
     std::string
-    entry_of(const SupportError &error)
+    entry_of(const SupportError &error, const SupportParameters &supports)
     {
       switch (error.subject)
         {
           case SupportError::Subject::roller:
-            return "Boundary conditions/Roller boundaries";
+            return supports.rollers.count(error.name) > 0 ?
+                     "Boundary conditions/Roller boundaries" :
+                     "Boundary conditions/Symmetry boundaries";
           case SupportError::Subject::gap:
             return "Contact law/Initial gap";
           default:
@@ -279,15 +302,22 @@ namespace Debond
           boundary_conditions(parameters, boundaries),
           make_supports<dim>(parameters, boundaries));
         check_held_vertices(elastic_problem->unknowns(),
-                            parameters.load_path.factors.empty() ?
-                              std::vector<double>{1.} :
-                              parameters.load_path.factors);
+                            displacement_factors(parameters.load_path));
         entry = "Material/Poisson ratio";
-        elastic_problem->assemble(make_materials(parameters.materials,
-                                                 names.regions),
-                                  make_loads<dim>(parameters.loads, boundaries),
-                                  storage);
-        entry = "Contact law/Quadrature";
+        const std::set<std::string> &dead_loads =
+          parameters.load_path.dead_loads;
+        elastic_problem->assemble(
+          make_materials(parameters.materials, names.regions),
+          make_loads<dim>(parameters.loads, dead_loads, false, boundaries),
+          storage,
+          make_loads<dim>(parameters.loads, dead_loads, true, boundaries));
+        named_probes = Probes<dim>(elastic_problem->unknowns(),
+                                   names,
+                                   make_probes<dim>(parameters.probes));
+        piece_means  = Probes<dim>(elastic_problem->unknowns(),
+                                  names,
+                                  means_of_pieces<dim>(names));
+        entry        = "Contact law/Quadrature";
         add_contact(parameters, storage);
         entry = "Solver/Euclidean bundle/Start";
         // A run that restarts has its start already.
@@ -315,7 +345,9 @@ namespace Debond
         if (const auto *part = dynamic_cast<const PartError *>(&error))
           entry = "Parts/" + part->part;
         if (const auto *support = dynamic_cast<const SupportError *>(&error))
-          entry = entry_of(*support);
+          entry = entry_of(*support, parameters.supports);
+        if (const auto *probe = dynamic_cast<const ProbeError *>(&error))
+          entry = "Probes/" + probe->probe;
         if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))
           entry = bonds->is_threshold ? "Contact law/Bond threshold" :
                                         "Contact law/Bond stiffness";
@@ -418,6 +450,24 @@ namespace Debond
   Scene<dim>::start() const
   {
     return first_iterate;
+  }
+
+
+
+  template <int dim>
+  const Probes<dim> &
+  Scene<dim>::probes() const
+  {
+    return named_probes;
+  }
+
+
+
+  template <int dim>
+  const Probes<dim> &
+  Scene<dim>::means() const
+  {
+    return piece_means;
   }
 
 

@@ -613,7 +613,7 @@ namespace
                                             node.allowed_force.upper,
                                             node.violation};
         const auto               &row    = rows.at(i + 1);
-        same &= row.size() == 2 * dim + values.size() + 1;
+        same &= row.size() == 2 * dim + values.size() + 4;
         for (unsigned int d = 0; d < dim; ++d)
           same &= std::stod(row[d]) == boundary.nodes[i].position[d];
         for (unsigned int k = 0; k < values.size(); ++k)
@@ -622,6 +622,9 @@ namespace
         for (unsigned int d = 0; d < dim; ++d)
           same &= std::stod(row.at(dim + values.size() + 1 + d)) ==
                   result.tangential_forces[i][d];
+        same &= std::stod(row.at(2 * dim + values.size() + 1)) == a &&
+                std::stod(row.at(2 * dim + values.size() + 2)) == M &&
+                std::stod(row.at(2 * dim + values.size() + 3)) == 0.;
       }
     check("every number is read back to the last bit", same);
 
@@ -651,7 +654,10 @@ namespace
                       "gap",
                       "normal_force_density",
                       "bond_state",
-                      "law_violation"}));
+                      "law_violation",
+                      "bond_stiffness",
+                      "bond_threshold",
+                      "initial_gap"}));
     print_error(
       [&] { write_body_vtu(problem, u, "no-such-directory/body.vtu"); });
   }

@@ -5,6 +5,7 @@ against closed forms (doc/cookbook/): the error on the finest mesh is within a
 bound, and that on each mesh less than on the one before.
 """
 
+import csv
 import json
 import math
 import os
@@ -81,6 +82,20 @@ def bimaterial():
                          0.5 / rate**2)
 
 
+def path_rows():
+    """Of the load path of the last run, by the titles of the columns."""
+    with open("output/load_path.csv") as table:
+        return [{title: float(value) for title, value in row.items()
+                 if title not in ("status", "minimum") and value}
+                for row in csv.DictReader(table)]
+
+
+def crack_couple():
+    """The moment at which a beam of the cookbook's strips comes off."""
+    E, h, k, M = 70000., 2., 200., 0.02
+    return math.sqrt(k * M**2 * E * h**3 / 12.)
+
+
 def main(debond, directory):
     failures = []
 
@@ -111,6 +126,55 @@ def main(debond, directory):
                        ["Mesh/Cells=" + cells, "Solver/Search=none"]
                        )[1]["u_nu"])
              for cells in ("100, 2", "200, 4", "400, 8")], 0.02)
+    # Turning the end by an angle supplies the moment times that.
+    peel = directory + "/peel.prm"
+    plateau, energies = [], []
+    for cells in "160, 2", "320, 4", "640, 8":
+        run(debond, peel, ["Mesh/Cells=" + cells,
+                           "Output/Load path plots=false"])
+        rows = path_rows()
+        first, last = rows[len(rows) // 2], rows[-1]
+        angle = 1e-3 * (last["displacement_factor"] -
+                        first["displacement_factor"])
+        plateau.append((last["J"] - first["J"]) / angle)
+        energies.append((last["dissipated_energy"] -
+                         first["dissipated_energy"]) /
+                        (last["broken_zone"] - first["broken_zone"]))
+    compare("peel, moment", crack_couple(), plateau, 0.01)
+    print("peel, energy by crack length:", energies)
+    if any(abs(energy / 0.04 - 1.) > 0.05 for energy in energies):
+        failures.append("peel, energy")
+
+    tack = directory + "/tack.prm"
+    openings, ends = [], []
+    for cells in "8, 4", "16, 8", "32, 16":
+        summary = run(debond, tack, ["Mesh/Cells=" + cells,
+                                     "Output/Load path plots=false"])[0]
+        if summary["status"] != "comes off":
+            failures.append("tack, status")
+        openings.append(path_rows()[9]["largest_gap"])
+        ends.append(summary["load_path"]["comes_off_at"])
+    compare("tack, opening of the edge at p = 0.05", 0.05 * 1.5, openings, 2e-3)
+    print("tack, comes off at:", ends)
+    if any(end != 1.4 for end in ends):
+        failures.append("tack, end")
+
+    # Stiffer bonds of the same energy: the limit of linear fracture mechanics.
+    products = []
+    for cells in "160, 2", "320, 4", "640, 8":
+        run(debond, directory + "/double-cantilever.prm",
+            ["Mesh/Cells=" + cells,
+             "Contact law/Bond stiffness=if(x < 60, 0, 2000)",
+             "Contact law/Bond threshold=0.0063246",
+             "Boundary conditions/Displacement left=free; 1",
+             "Load path/Displacement factors=0.8:0.8:2.4",
+             "Load path/Bonds heal=false",
+             "Output/Load path plots=false"])
+        last = path_rows()[-1]
+        products.append(last["reaction_left_y"] * last["broken_zone"])
+    compare("double cantilever, force times crack length", crack_couple(),
+            products, 0.06)
+
     for failure in failures:
         print("FAILED:", failure)
     return 1 if failures else 0

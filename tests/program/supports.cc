@@ -412,6 +412,149 @@ namespace
 
 
 
+  /// A column that may widen, lifted by d at its top and pulled by q at its
+  /// right side: the springs H/E and 1/a in series bear d + H nu q/E.
+  void
+  test_factors(const unsigned int dim, const Units &units)
+  {
+    std::cout << "== Two lists of factors, " << dim << "D, " << units.name
+              << std::endl;
+    const double L = 2. * units.length, H = 0.5 * units.length,
+                 depth = dim == 3 ? 0.3 * units.length : 1.,
+                 E = 70. * units.modulus, nu = 0.3, a = 0.5 * E / H,
+                 M = 1e-3 * H, d = 1e-3 * H, q = 1e-3 * E;
+    const Values scene = {
+      "Dimension=" + std::to_string(dim),
+      "Mesh/Lengths=" + text(L) + ", " + text(H) +
+        (dim == 3 ? ", " + text(depth) : ""),
+      dim == 3 ? "Mesh/Cells=4, 2, 1" : "Mesh/Cells=6, 3",
+      "Material/Young modulus=" + text(E),
+      "Material/Poisson ratio=" + text(nu),
+      "Boundary conditions/Clamped boundaries=",
+      "Boundary conditions/Contact boundary=bottom",
+      std::string("Boundary conditions/Roller boundaries=") +
+        (dim == 3 ? "left, back" : "left"),
+      std::string("Boundary conditions/Displacement top=free; ") + text(d) +
+        (dim == 3 ? "; free" : ""),
+      "Loads/Traction right=" + text(q) + (dim == 3 ? "; 0; 0" : "; 0"),
+      "Contact law/Tangential displacement=free",
+      "Contact law/Bond stiffness=" + text(a),
+      "Contact law/Bond threshold=" + text(M),
+      "Parts/half=bottom: x > " + text(0.5 * L),
+      "Probes/tip=" + text(L) + ", " + text(H) +
+        (dim == 3 ? ", " + text(depth) : ""),
+      "Probes/wall=mean right",
+      "Probes/all of it=mean half",
+      "Probes/glue=force bottom",
+      "Output/Contact profile=false"};
+
+    /// The largest errors of a path in which bonds hold where @p bonded says
+    /// so.
+    const auto check_path = [&](const std::string               &name,
+                                const Values                    &settings,
+                                const std::vector<double>       &loads,
+                                const std::vector<double>       &displacements,
+                                const std::vector<unsigned int> &bonded,
+                                const double                     dissipated) {
+      const Json path  = solve_scene(scene + settings);
+      bool       same  = path["path"].size() == bonded.size();
+      double     force = 0., displacement = 0., energy = 0.;
+      for (unsigned int k = 0; same && k < bonded.size(); ++k)
+        {
+          const Json  &row  = path["path"][k];
+          const double lift = displacements[k] * d, pull = loads[k] * q;
+          const double sigma =
+            bonded[k] == 1 ? (lift + H * nu * pull / E) / (1. / a + H / E) : 0.;
+          const double area = L * depth, wall = L * (pull - nu * sigma) / E,
+                       opening = lift - H * (sigma - nu * pull) / E;
+          const auto error     = [&row](const std::string &column,
+                                    const double       value,
+                                    const double       scale) {
+            return std::abs(number(row, column) - value) / scale;
+          };
+          force =
+            std::max({force,
+                      error("reaction_top_y", sigma * area, E * area),
+                      error("probe_glue_y", -sigma * area, E * area),
+                      error("contact_reaction_y", -sigma * area, E * area)});
+          displacement =
+            std::max({displacement,
+                      error("mean_top_y", lift, d),
+                      error("probe_tip_y", lift, d),
+                      error("mean_right_x", wall, d),
+                      error("probe_wall_x", wall, d),
+                      error("probe_tip_x", wall, d),
+                      error("mean_half_y", opening, d),
+                      error("probe_all_of_it_y", opening, d),
+                      error("broken_zone", bonded[k] == 1 ? 0. : area, area)});
+          const double strain_energy =
+            0.5 * (sigma * sigma + pull * pull - 2. * nu * sigma * pull) / E *
+            area * H;
+          energy = std::max(
+            {energy,
+             error("elastic_energy", strain_energy, E * d * d * area / H),
+             error("dissipated_energy",
+                   bonded[k] == 1 ? 0. : dissipated * area,
+                   a * M * M * area)});
+          same = same && number(row, "factor") == loads[k] &&
+                 number(row, "displacement_factor") == displacements[k];
+        }
+      std::cout << name << std::endl;
+      check("factors", same);
+      check("forces", force, 1e-13);
+      check("displacements", displacement, 1e-11);
+      check("energies", energy, 1e-11);
+      return path;
+    };
+
+    // Bonds break at d = M (1 + a H/E) = 1.5 d without q; q opens by 0.3 d.
+    const Json   path  = check_path("together",
+                                 {"Load path/Factors=0:0.25:1"},
+                                 {0., 0.25, 0.5, 0.75, 1.},
+                                 {0., 0.25, 0.5, 0.75, 1.},
+                                 {1, 1, 1, 1, 1},
+                                 0.);
+    const double sigma = (d + H * nu * q / E) / (1. / a + H / E);
+    check("summary",
+          std::max(relative(path["probes"]["tip"][0], L * (q - nu * sigma) / E),
+                   relative(path["mean_displacements"]["top"][1], d)),
+          1e-11);
+    check_path("each its own",
+               {"Load path/Factors=0, 0, 1, 1, 0.5",
+                "Load path/Displacement factors=0, 1, 1, 0.5, 0.5"},
+               {0., 0., 1., 1., 0.5},
+               {0., 1., 1., 0.5, 0.5},
+               {1, 1, 1, 1, 1},
+               0.);
+    check_path("loads as they are, bonds heal",
+               {"Load path/Displacement factors=0, 1, 2, 1, 0.5"},
+               {1., 1., 1., 1., 1.},
+               {0., 1., 2., 1., 0.5},
+               {1, 1, 0, 0, 1},
+               0.);
+    check_path("or not",
+               {"Load path/Displacement factors=0, 1, 2, 1, 0.5, 0",
+                "Load path/Bonds heal=false"},
+               {1., 1., 1., 1., 1., 1.},
+               {0., 1., 2., 1., 0.5, 0.},
+               {1, 1, 0, 0, 0, 0},
+               0.5 * a * M * M);
+    // What is dead has no factor.
+    const Json dead  = solve_scene(scene + Values{"Load path/Factors=0, 0.5, 1",
+                                                 "Load path/Dead loads=right"});
+    double     error = 0.;
+    for (const Json &row : dead["path"])
+      error =
+        std::max(error,
+                 std::abs(number(row, "reaction_top_y") /
+                            ((number(row, "factor") * d + H * nu * q / E) /
+                             (1. / a + H / E) * L * depth) -
+                          1.));
+    check("dead load", error, 1e-11);
+  }
+
+
+
   void
   test_refusals()
   {
@@ -456,6 +599,7 @@ main(int argc, char *[])
         test_stretched_column(dim, units);
         test_block_through_gap(dim, units);
         test_column_on_bonds(dim, units);
+        test_factors(dim, units);
       }
   test_half_of_symmetric_body();
   test_bonds();

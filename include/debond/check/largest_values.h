@@ -22,7 +22,7 @@ namespace Debond
   LargestValues
   largest_values(const ElasticProblem<dim>    &problem,
                  const dealii::Vector<double> &u,
-                 const double                  load_factor = 1.);
+                 const LoadFactors             factors = 1.);
 } // namespace Debond
 
 #endif

@@ -2,6 +2,7 @@
 #ifndef debond_check_load_path_state_h
 #define debond_check_load_path_state_h
 
+#include <debond/check/probes.h>
 #include <debond/check/verification.h>
 
 #include <string>
@@ -46,14 +47,25 @@ namespace Debond
     double law_violation;
     double equilibrium_residual;
     double force_imbalance;
+
+    double broken_zone;       ///< see Verification
+    double dissipated_energy; ///< by bonds that do not heal
+
+    /// By the titles of their columns, without the axis.
+    ProbeValues<dim> vectors;
   };
 
-  /// @p verification is that of @p u under @p factor times the loads.
+  /// @p verification is that of @p u under @p factors times the loads. The
+  /// vectors are the reactions of the supports, the @p means over pieces and
+  /// the
+  /// @p probes.
   template <int dim>
   LoadPathState<dim>
   load_path_state(const ElasticProblem<dim>    &problem,
                   const AdhesionIntegral<dim>  &adhesion,
-                  const double                  factor,
+                  const Probes<dim>            &means,
+                  const Probes<dim>            &probes,
+                  const LoadFactors             factors,
                   const dealii::Vector<double> &u,
                   const Verification<dim>      &verification);
 } // namespace Debond

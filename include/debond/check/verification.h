@@ -53,6 +53,11 @@ namespace Debond
     /// Distance to the law's graph, see Verification::law_violation.
     double violation;
 
+    /// Of the bond, without what it has left for good: its stiffness at 0 and
+    /// the displacement below which it is on its last branch, positive.
+    double bond_stiffness;
+    double bond_threshold;
+
     BondState state;
 
     /// That of the branch of the law that holds, whatever contact and kink (at
@@ -92,6 +97,10 @@ namespace Debond
      * not resolved, and rounding alone is a violation of 1e-4.
      */
     double law_violation;
+
+    /// The largest distance to the foundation, and broken_zone().
+    double largest_opening;
+    double broken_zone;
 
     /// Largest s > 0 (zero if there is none), in length.
     double penetration;
@@ -142,7 +151,7 @@ namespace Debond
 
 
 
-  /// @p load_factor: the multiple of the problem's loads that @p u belongs to.
+  /// @p factors: the multiple of the problem's loads that @p u belongs to.
   ///
   /// @p tolerance: displacements within tolerance * M (and tolerance times the
   /// largest |u_nu|) of 0 and the kinks count as
@@ -154,8 +163,8 @@ namespace Debond
          const AdhesionIntegral<dim>  &adhesion,
          const AdhesiveLaw            &law,
          const dealii::Vector<double> &u,
-         const double                  load_factor = 1.,
-         const double                  tolerance   = 1e-6);
+         const LoadFactors             factors   = 1.,
+         const double                  tolerance = 1e-6);
 } // namespace Debond
 
 #endif

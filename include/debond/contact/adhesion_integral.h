@@ -37,11 +37,39 @@ namespace Debond
     void
     scale_load(const double factor);
 
+    /// From now on bonds do not return to pieces of the law that they have left
+    /// at @p s or before. Needs the nodal rule.
+    void
+    break_for_good(const dealii::Vector<double> &s);
+
+    /// The piece of the law that the bonds of a node have not left for good.
+    unsigned int
+    least_piece(const unsigned int node) const;
+
+    /// What bonds that do not return have taken: Phi(0) with nothing
+    /// prescribed.
+    double
+    dissipated_energy() const;
+
+    /// s at a vertex of a face, unknown or prescribed, and the bonds there.
+    double
+    trace_at(const typename ContactBoundary<dim>::Face &face,
+             const unsigned int                         vertex,
+             const dealii::Vector<double>              &s) const;
+
+    BondScale
+    bonds_at(const typename ContactBoundary<dim>::Face &face,
+             const unsigned int                         vertex) const;
+
+    unsigned int
+    least_piece_at(const typename ContactBoundary<dim>::Face &face,
+                   const unsigned int                         vertex) const;
+
     /// Phi(s), an energy.
     double
     energy(const dealii::Vector<double> &s) const;
 
-    /// Phi(s) - Phi(0); Phi(0) = 0 if nothing is prescribed.
+    /// Phi(s) - Phi(0); Phi(0) = 0 if nothing is prescribed and bonds return.
     double
     value(const dealii::Vector<double> &s) const override;
 
@@ -101,6 +129,7 @@ namespace Debond
       double                        weight; ///< length or area
       double                        offset; ///< what is prescribed of the trace
       BondScale                     bonds;
+      unsigned int                  least_piece; ///< of the law
 
       bool
       is_on_a_node() const;
@@ -142,6 +171,10 @@ namespace Debond
 
     double load_factor = 1.;
     double phi_at_zero = 0.;
+
+    /// Pieces that bonds have not left for good; empty if they return.
+    std::vector<unsigned int> least_of_nodes;
+    std::vector<unsigned int> least_of_held;
 
     /// Made once unless the rule depends on the trace.
     mutable std::vector<Point> point_list;

@@ -52,6 +52,22 @@ namespace Debond
     Interval
     goldstein_interval(const double s, const double delta) const;
 
+    /// The same for a bond that has left the pieces before @p least for good:
+    /// that piece holds towards 0 as well.
+    double
+    value(const double s, const unsigned int least) const;
+
+    double
+    derivative(const double s, const unsigned int least) const;
+
+    double
+    curvature(const double s, const unsigned int least) const;
+
+    Interval
+    goldstein_interval(const double       s,
+                       const double       delta,
+                       const unsigned int least) const;
+
     /// Where j_1 is not twice differentiable, in ascending order.
     std::vector<double>
     kinks() const;
@@ -79,6 +95,13 @@ namespace Debond
     bond_strength() const;
 
   private:
+    /// Whether such a bond is on the piece @p least at s.
+    bool
+    is_before(const double s, const unsigned int least) const;
+
+    Interval
+    clarke_interval(const double s, const unsigned int least) const;
+
     BranchMinimum            minimum;
     std::vector<std::string> names;
   };

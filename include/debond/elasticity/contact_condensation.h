@@ -17,10 +17,10 @@ namespace Debond
   double
   prescribed_energy(const ElasticProblem<dim>   &problem,
                     const AdhesionIntegral<dim> &adhesion,
-                    const double                 load_factor = 1.)
+                    const LoadFactors            factors = 1.)
   {
-    return problem.lifting_energy(load_factor) +
-           adhesion.energy_at_zero(load_factor);
+    return problem.lifting_energy(factors) +
+           adhesion.energy_at_zero(factors.displacements);
   }
 
 
@@ -42,8 +42,11 @@ namespace Debond
         return problem.unknowns().is_constrained(i);
       },
       {problem.constant_load(),
-       [&problem, &adhesion](const double load_factor) {
-         return prescribed_energy(problem, adhesion, load_factor);
+       problem.displacement_load(),
+       [&problem, &adhesion](const double loads, const double displacements) {
+         return prescribed_energy(problem,
+                                  adhesion,
+                                  LoadFactors(loads, displacements));
        }},
       !problem.unknowns().held_by_contact().motions.empty());
   }

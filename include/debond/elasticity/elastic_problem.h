@@ -45,11 +45,13 @@ namespace Debond
 
     /// Computes A and f. Throws std::invalid_argument if a material is not
     /// valid or a load is not, see load_vector() and
-    /// thermal_stresses(). May be called again.
+    /// thermal_stresses(). May be called again. @p dead_loads are applied
+    /// besides, whatever the load factor.
     void
     assemble(const ByRegion<Material> &materials,
              const Loads<dim>         &loads,
-             const MatrixStorage       storage = MatrixStorage::serial);
+             const MatrixStorage       storage    = MatrixStorage::serial,
+             const Loads<dim>         &dead_loads = {});
 
     const ElasticUnknowns<dim> &
     unknowns() const;
@@ -75,19 +77,24 @@ namespace Debond
     const dealii::Vector<double> &
     load() const;
 
-    /// The part of load() that does not grow with the load factor, from the
-    /// gap; empty if there is none.
+    /// The part of load() that has no factor, from the gap and dead loads;
+    /// empty if there is none.
     const dealii::Vector<double> &
     constant_load() const;
 
-    /// For @p load_factor times what is applied and prescribed.
-    dealii::Vector<double>
-    load_at(const double load_factor) const;
+    /// The part of load() that grows with prescribed displacements; empty if
+    /// there are none.
+    const dealii::Vector<double> &
+    displacement_load() const;
 
-    /// J of w = 0 without bonds, 1/2 <A G, G> - load_factor <f, G>: what J is
+    /// For @p factors times what is applied and prescribed.
+    dealii::Vector<double>
+    load_at(const LoadFactors factors) const;
+
+    /// J of w = 0 without bonds, 1/2 <A G, G> - <f, G>: what J is
     /// more than 1/2 <A w, w> - <load, w>.
     double
-    lifting_energy(const double load_factor = 1.) const;
+    lifting_energy(const LoadFactors factors = 1.) const;
 
   private:
     template <typename MatrixType>
@@ -104,7 +111,8 @@ namespace Debond
     // An empty one would need MPI already.
     std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix> distributed_matrix;
     dealii::Vector<double>                                  system_load;
-    dealii::Vector<double>                                  gap_load;
+    dealii::Vector<double>                                  load_without_factor;
+    dealii::Vector<double> load_of_displacements;
   };
 } // namespace Debond
 

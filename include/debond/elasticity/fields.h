@@ -24,61 +24,63 @@ namespace Debond
     using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
     /// Keeps a reference to the unknowns. @p applied_forces: the Cartesian
-    /// nodal forces of all loads, at every degree of freedom.
+    /// nodal forces of all loads, at every degree of freedom; @p dead_forces:
+    /// those of them that do not grow with the load factor, empty for none.
     /// @p thermal_stresses: of each active cell the pressure that its change of
     /// temperature makes if it cannot expand; none if empty.
     ElasticFields(const ElasticUnknowns<dim>   &unknowns,
                   const ByRegion<Material>     &materials,
                   const dealii::Vector<double> &applied_forces,
-                  const std::vector<double>    &thermal_stresses = {});
+                  const std::vector<double>    &thermal_stresses = {},
+                  const dealii::Vector<double> &dead_forces      = {});
 
     const Material &
     material(const Cell &cell) const;
 
     /// The Cartesian nodal forces of all loads, at every degree of freedom, the
     /// constrained ones included.
-    const dealii::Vector<double> &
-    applied_nodal_forces() const;
+    dealii::Vector<double>
+    applied_nodal_forces(const LoadFactors factors = 1.) const;
 
     /// The resultant of all applied loads, in Cartesian components.
     dealii::Tensor<1, dim>
-    total_load() const;
+    total_load(const LoadFactors factors = 1.) const;
 
     /**
-     * A u - f, f being @p load_factor times the load (and prescribed
-     * displacements as many times as large), at every degree of freedom, the
-     * constrained ones included: internal forces, from the cells' stresses,
-     * minus the applied nodal forces, in the unknowns' frames. At constrained
-     * degrees of freedom this is the reaction of the support, at u_nu of a
-     * contact node minus the normal force of the foundation.
+     * A u - f with @p factors times the load and prescribed displacements, at
+     * every degree of freedom, the constrained ones included: internal forces,
+     * from the cells' stresses, minus the applied nodal forces, in the
+     * unknowns' frames. At constrained degrees of freedom this is the reaction
+     * of the support, at u_nu of a contact node minus the normal force of the
+     * foundation.
      */
     dealii::Vector<double>
     residual(const dealii::Vector<double> &u,
-             const double                  load_factor = 1.) const;
+             const LoadFactors             factors = 1.) const;
 
     /**
      * What the rounding of u to double precision can make of residual(u,
-     * load_factor) at each degree of freedom: epsilon (|A| |u| + |f|), with
+     * factors) at each degree of freedom: epsilon (|A| |u| + |f|), with
      * norms of each cell's entries. No u can be expected to have a smaller
      * residual.
      */
     dealii::Vector<double>
     residual_rounding(const dealii::Vector<double> &u,
-                      const double                  load_factor = 1.) const;
+                      const LoadFactors             factors = 1.) const;
 
     /// Strain-energy density, stress and displacement gradient are constant
     /// on each cell: the stress of the active cell, in the units of E, with
-    /// @p load_factor times the change of temperature.
+    /// @p factors times the change of temperature.
     dealii::SymmetricTensor<2, dim>
     stress(const Cell                   &cell,
            const dealii::Vector<double> &cartesian_displacement,
-           const double                  load_factor) const;
+           const LoadFactors             factors) const;
 
     /// The same with what the hypothesis of plane bodies implies.
     dealii::SymmetricTensor<2, 3>
     solid_stress(const Cell                   &cell,
                  const dealii::Vector<double> &cartesian_displacement,
-                 const double                  load_factor) const;
+                 const LoadFactors             factors) const;
 
     /// The displacement gradient of the cell, its row d that of component d.
     dealii::Tensor<2, dim>
@@ -87,34 +89,34 @@ namespace Debond
       const dealii::Vector<double> &cartesian_displacement) const;
 
     /**
-     * 1/2 <A u, u> - load_factor <f, u> from the strains of the cells, with
-     * compensated sums: in a product with A, whose rows nearly cancel, rounding
-     * grows with the condition of A, in the strains it does not.
+     * 1/2 <A u, u> - <f, u>, f with @p factors, from the strains of the cells,
+     * with compensated sums: in a product with A, whose rows nearly cancel,
+     * rounding grows with the condition of A, in the strains it does not.
      */
     double
     elastic_functional(const dealii::Vector<double> &u,
-                       const double                  load_factor = 1.) const;
+                       const LoadFactors             factors = 1.) const;
 
     /// The strain energy 1/2 <A u, u>, likewise.
     double
     strain_energy(const dealii::Vector<double> &u,
-                  const double                  load_factor = 1.) const;
+                  const LoadFactors             factors = 1.) const;
 
-    /// <f, u>, the work of the whole load.
+    /// <f, u>, the work of the whole load that grows with its factor.
     double
     load_work(const dealii::Vector<double> &u,
-              const double                  load_factor = 1.) const;
+              const LoadFactors             factors = 1.) const;
 
   private:
     /// u with its lifting, in the unknowns.
     dealii::Vector<double>
-    lifted(const dealii::Vector<double> &u, const double load_factor) const;
+    lifted(const dealii::Vector<double> &u, const LoadFactors factors) const;
 
-    /// 1/2 <A u, u> - work_factor <f, u>.
+    /// 1/2 <A u, u> - <load, u>, the load given in the unknowns' frames.
     double
     energy(const dealii::Vector<double> &u,
-           const double                  load_factor,
-           const double                  work_factor) const;
+           const LoadFactors             factors,
+           const dealii::Vector<double> &load) const;
 
     /// Of the cell, for the whole load.
     double
@@ -123,7 +125,8 @@ namespace Debond
     const ElasticUnknowns<dim>               &unknowns;
     ByRegion<Material>                        materials;
     ByRegion<dealii::SymmetricTensor<4, dim>> stiffness;
-    dealii::Vector<double>                    applied_forces;
+    dealii::Vector<double>                    live_forces;
+    dealii::Vector<double>                    dead_forces; ///< or empty
     std::vector<double>                       thermal_stresses;
   };
 } // namespace Debond

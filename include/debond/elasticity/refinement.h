@@ -114,7 +114,7 @@ namespace Debond
   double
   energy_rounding(const ElasticProblem<dim>    &problem,
                   const PiecewiseQuadratic     &phi,
-                  const double                  load_factor,
+                  const LoadFactors             factors,
                   const dealii::Vector<double> &u);
 
 
@@ -128,13 +128,13 @@ namespace Debond
    * double precision are wrong take a few steps more.
    *
    * u becomes the result if it converged, and stays as it is otherwise. The
-   * load is @p load_factor times that of the last assemble().
+   * load is @p factors times that of the last assemble().
    */
   template <int dim>
   RefinementResult
   refine(const ElasticProblem<dim>   &problem,
          const PiecewiseQuadratic    &phi,
-         const double                 load_factor,
+         const LoadFactors            factors,
          CorrectionSolver            &solver,
          const std::function<bool()> &may_go_on,
          dealii::Vector<double>      &u);
@@ -148,7 +148,7 @@ namespace Debond
   std::string
   refine_where_needed(const ElasticProblem<dim>   &problem,
                       const PiecewiseQuadratic    &phi,
-                      const double                 load_factor,
+                      const LoadFactors            factors,
                       CorrectionSolver            &solver,
                       const std::function<bool()> &may_go_on,
                       dealii::Vector<double>      &u);

@@ -12,6 +12,7 @@
 #include <deal.II/lac/vector.h>
 
 #include <debond/contact/contact_space.h>
+#include <debond/elasticity/load_factors.h>
 #include <debond/elasticity/rigid_motions.h>
 #include <debond/mesh/body.h>
 
@@ -193,18 +194,21 @@ namespace Debond
     bool
     has_lifting() const;
 
+    bool
+    has_prescribed_displacements() const;
+
     /// Whether a part of G does not grow with the load.
     bool
     has_gap() const;
 
-    /// G, with @p load_factor times the prescribed displacements and the gap.
+    /// G, with @p factors times the prescribed displacements and the gap.
     dealii::Vector<double>
-    lifting(const double load_factor = 1.) const;
+    lifting(const LoadFactors factors = 1.) const;
 
     /// The Cartesian components of the displacement u = w + G, at every vertex.
     dealii::Vector<double>
     cartesian_displacement(const dealii::Vector<double> &w,
-                           const double load_factor = 1.) const;
+                           const LoadFactors             factors = 1.) const;
 
     /// The vector w of a displacement that is given by its Cartesian
     /// components; constrained degrees of freedom are zero.

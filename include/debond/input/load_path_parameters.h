@@ -3,7 +3,11 @@
 #define debond_input_load_path_parameters_h
 
 #include <debond/base/parameter_table.h>
+#include <debond/elasticity/load_factors.h>
+#include <debond/input/load_parameters.h>
+#include <debond/input/support_parameters.h>
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,20 +28,49 @@ namespace Debond
     /// Multiples of the loads in their order; empty if there is no load path.
     std::vector<double> factors;
 
+    /// Those of prescribed displacements, as many; empty if they are the same.
+    std::vector<double> displacement_factors;
+
+    /// What has no factor: names of boundaries with a traction, "body force".
+    std::set<std::string> dead_loads;
+
+    /// Whether bonds return to branches that they have left.
+    bool bonds_heal = true;
+
+    /// Whether states depend on one factor and not on those before.
+    bool
+    has_global_branch() const
+    {
+      return bonds_heal && displacement_factors.empty();
+    }
+
+    /// Of a step, from 0.
+    LoadFactors
+    at(const unsigned int step) const;
+
     GlobalBranch global_branch = GlobalBranch::search;
   };
 
   /// Reads numbers and ranges FIRST:STEP:LAST, separated by commas, such as
   /// "0:0.05:1.2, 1.2:-0.05:0". A factor that equals the one before it is left
-  /// out. The values of a range are rounded to 12 decimal digits, so that
-  /// loading and unloading meet the same factors. Throws std::invalid_argument
-  /// that says what is wrong with which part of the list.
+  /// out unless @p repeats are wanted. The values of a range are rounded to 12
+  /// decimal digits, so that loading and unloading meet the same factors.
+  /// Throws std::invalid_argument that says what is wrong with which part of
+  /// the list.
   std::vector<double>
-  parse_load_factors(const std::string &text);
+  parse_load_factors(const std::string &text, const bool repeats = false);
 
   /// The section Load path.
   void
   bind_load_path(LoadPathParameters &load_path, ParameterTable &table);
+
+  /// Makes the two lists of factors equally long. What does not fit together,
+  /// or the scene, is left in the table as an error.
+  void
+  complete_load_path(const LoadParameters    &loads,
+                     const SupportParameters &supports,
+                     LoadPathParameters      &load_path,
+                     ParameterTable          &table);
 } // namespace Debond
 
 #endif

@@ -51,19 +51,20 @@ namespace Debond
     unsigned int                           dimension = 2;
     std::shared_ptr<const BodyDescription> body;
     MaterialParameters                     materials;
-    std::set<std::string>       clamped_boundaries = {"left", "right"};
-    std::set<std::string>       contact_boundaries = {"bottom"};
-    bool                        tangential_displacement_fixed = true;
-    SupportParameters           supports;
-    LoadParameters              loads;
-    LoadPathParameters          load_path;
-    ContactLawParameters        law;
-    ContactQuadratureParameters quadrature;
-    std::string                 quadrature_name = "nodal";
-    SolverParameters            solver;
-    CheckpointParameters        checkpoints;
-    VerificationParameters      verification;
-    OutputParameters            output;
+    std::set<std::string>              clamped_boundaries = {"left", "right"};
+    std::set<std::string>              contact_boundaries = {"bottom"};
+    bool                               tangential_displacement_fixed = true;
+    SupportParameters                  supports;
+    LoadParameters                     loads;
+    LoadPathParameters                 load_path;
+    std::map<std::string, std::string> probes; ///< texts by name
+    ContactLawParameters               law;
+    ContactQuadratureParameters        quadrature;
+    std::string                        quadrature_name = "nodal";
+    SolverParameters                   solver;
+    CheckpointParameters               checkpoints;
+    VerificationParameters             verification;
+    OutputParameters                   output;
 
     /// The scene with all entries that it leaves to their defaults.
     std::string effective_scene;

@@ -12,13 +12,14 @@
 
 namespace Debond
 {
-  /// What Condensation::scale_load() does not scale.
-  struct ConstantPart
+  /// What Condensation::scale_load() does not scale by the first factor.
+  struct OtherParts
   {
-    dealii::Vector<double> load = {}; ///< a part of f, empty for none
+    dealii::Vector<double> constant_load = {}; ///< a part of f, empty for none
+    dealii::Vector<double> second_load   = {}; ///< that has the second factor
 
-    /// A part of the energy, by the load factor; none for null.
-    std::function<double(double)> energy = {};
+    /// A part of the energy, by both factors; none for null.
+    std::function<double(double, double)> energy = {};
   };
 
 
@@ -53,15 +54,20 @@ namespace Debond
                  const dealii::Vector<double>            &f,
                  const std::vector<unsigned int>         &kept,
                  const std::function<bool(unsigned int)> &is_excluded,
-                 const ConstantPart                      &constant = {},
-                 const bool is_semidefinite                        = false);
+                 const OtherParts                        &others = {},
+                 const bool is_semidefinite                      = false);
 
     Condensation(const Condensation &) = delete;
 
     ~Condensation();
 
     /// From now on f is @p factor times the load that the constructor got, but
-    /// for its constant part; S and the factorisation stay.
+    /// for its constant part and the one that has the @p second factor; S and
+    /// the factorisation stay.
+    void
+    scale_load(const double factor, const double second);
+
+    /// With both factors the same.
     void
     scale_load(const double factor);
 
@@ -73,13 +79,13 @@ namespace Debond
     const dealii::Vector<double> &
     load() const;
 
-    /// c_0 with the constant part, the energy of s = 0.
+    /// c_0 with the other part, the energy of s = 0.
     double
     energy_at_zero() const;
 
     /// 1/2 <A u, u> >= 0 of the solution of A u = f, without any contact: a
     /// scale for energies. The functional's minimum over all s is minus this,
-    /// but for the constant part of the energy. With S_+ if A is semidefinite.
+    /// but for the other part of the energy. With S_+ if A is semidefinite.
     double
     energy_without_contact() const;
 
@@ -120,17 +126,18 @@ namespace Debond
     backward(const std::vector<double>    &y,
              const dealii::Vector<double> &s) const;
 
-    unsigned int                  n;        ///< size of f
-    std::vector<unsigned int>     unknowns; ///< rows of A, the kept ones last
-    std::unique_ptr<Factor>       factor;
-    std::vector<double>           y;          ///< L^{-1} P f of the load
-    std::vector<double>           given_y;    ///< of the given one
-    std::vector<double>           constant_y; ///< of its constant part, if any
-    std::function<double(double)> constant_energy;
-    double                        constant_part = 0.; ///< of the energy
-    dealii::FullMatrix<double>    L_ss;
-    dealii::FullMatrix<double>    S;
-    dealii::Vector<double>        g;
+    unsigned int              n;        ///< size of f
+    std::vector<unsigned int> unknowns; ///< rows of A, the kept ones last
+    std::unique_ptr<Factor>   factor;
+    std::vector<double>       y;          ///< L^{-1} P f of the load
+    std::vector<double>       given_y;    ///< of the given one
+    std::vector<double>       constant_y; ///< of its constant part, if any
+    std::vector<double>       second_y;   ///< of the one with a factor
+    std::function<double(double, double)> other_energy;
+    double                                constant_part = 0.; ///< of the energy
+    dealii::FullMatrix<double>            L_ss;
+    dealii::FullMatrix<double>            S;
+    dealii::Vector<double>                g;
   };
 } // namespace Debond
 

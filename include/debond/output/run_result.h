@@ -28,6 +28,8 @@ namespace Debond
     SolveResult       solve;
     Verification<dim> verification;
     LargestValues     largest;
+    ProbeValues<dim>  probes;
+    ProbeValues<dim>  means; ///< over the pieces with a name
 
     /// If the exact displacement is known.
     std::optional<DisplacementError> displacement_error;

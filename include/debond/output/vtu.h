@@ -19,7 +19,7 @@ namespace Debond
   write_body_vtu(const ElasticProblem<dim>    &problem,
                  const dealii::Vector<double> &u,
                  const std::string            &file_name,
-                 const double                  load_factor = 1.);
+                 const LoadFactors             factors = 1.);
 
   /**
    * Writes the contact boundary as VTU: displacement, u_nu, gap (-u_nu),
@@ -36,7 +36,7 @@ namespace Debond
                     const dealii::Vector<double> &u,
                     const Verification<dim>      &verification,
                     const std::string            &file_name,
-                    const double                  load_factor = 1.);
+                    const LoadFactors             factors = 1.);
 } // namespace Debond
 
 #endif

@@ -15,6 +15,7 @@ namespace Debond
   {
     unsigned int step;   ///< from 1
     double       factor; ///< of the loads
+    double       displacement_factor;
     std::string  status; ///< a SolverStatus, or "not verified"
 
     LoadPathState<dim> state;
@@ -28,6 +29,12 @@ namespace Debond
     /// The global branch at this factor, if it was computed.
     std::optional<LoadPathState<dim>> global;
     std::optional<double>             relative_gap; ///< of its proof
+
+    LoadFactors
+    factors() const
+    {
+      return {factor, displacement_factor};
+    }
 
     /// Of the first thing that went wrong, empty if nothing did.
     std::string message;

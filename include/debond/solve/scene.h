@@ -4,6 +4,7 @@
 
 #include <deal.II/lac/vector.h>
 
+#include <debond/check/probes.h>
 #include <debond/contact/functional.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/input/parameters.h>
@@ -54,6 +55,14 @@ namespace Debond
     const dealii::Vector<double> &
     start() const;
 
+    /// What the scene wants to know by name.
+    const Probes<dim> &
+    probes() const;
+
+    /// The means of the displacement over all pieces with a name.
+    const Probes<dim> &
+    means() const;
+
     /// What the user should know of the body's pieces.
     const std::vector<std::string> &
     notes() const;
@@ -77,6 +86,8 @@ namespace Debond
     std::shared_ptr<const Body<dim>>                   elastic_body;
     dealii::Triangulation<dim>                         triangulation;
     std::vector<std::string>                           body_notes;
+    Probes<dim>                                        named_probes;
+    Probes<dim>                                        piece_means;
     std::unique_ptr<ElasticProblem<dim>>               elastic_problem;
     std::unique_ptr<AdhesiveLaw>                       adhesive_law;
     std::unique_ptr<ContactQuadrature<dim>>            quadrature;

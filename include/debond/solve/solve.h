@@ -24,7 +24,7 @@ namespace Debond
     std::string  message;
 
     dealii::Vector<double> u;                ///< of all degrees of freedom
-    double                 load_factor = 1.; ///< of the loads that u belongs to
+    LoadFactors            load_factor = 1.; ///< of the loads that u belongs to
     double                 functional;       ///< J(u), from the strains of u
 
     /// The first factor of a load path at which the body comes off; the rest is

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_check_probes_h
+#define debond_check_probes_h
+
+#include <debond/elasticity/elastic_problem.h>
+#include <debond/mesh/body.h>
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// What is to be known of a displacement.
+  template <int dim>
+  struct Probe
+  {
+    enum class Kind
+    {
+      point, ///< the displacement at a point
+      mean,  ///< its mean over a piece of the boundary or of the body
+      force  ///< what supports and foundation exert on a piece of the boundary
+    };
+
+    std::string        name;
+    Kind               kind  = Kind::point;
+    dealii::Point<dim> point = {};
+    std::string        piece = {}; ///< a name of PieceNames
+  };
+
+
+
+  /// A point that is not in the body.
+  class ProbeError : public std::invalid_argument
+  {
+  public:
+    ProbeError(const std::string &probe, const std::string &message)
+      : std::invalid_argument(message)
+      , probe(probe)
+    {}
+
+    const std::string probe; ///< its name
+  };
+
+
+
+  /// Cartesian vectors, by the names of the probes.
+  template <int dim>
+  using ProbeValues =
+    std::vector<std::pair<std::string, dealii::Tensor<1, dim>>>;
+
+
+
+  /**
+   * Probes of the displacements on one mesh: each is a sum over vertices, of
+   * the displacement or of the forces A u - f times a weight. A force is that
+   * of all vertices of a piece, also of those that it shares with another one.
+   */
+  template <int dim>
+  class Probes
+  {
+  public:
+    Probes() = default;
+
+    /// @p pieces: of the mesh of @p unknowns. Throws ProbeError, or
+    /// std::out_of_range if there is no such piece.
+    Probes(const ElasticUnknowns<dim>    &unknowns,
+           const PieceNames              &pieces,
+           const std::vector<Probe<dim>> &probes);
+
+    ProbeValues<dim>
+    values(const ElasticProblem<dim>    &problem,
+           const dealii::Vector<double> &u,
+           const LoadFactors             factors = 1.) const;
+
+  private:
+    struct Vertex
+    {
+      std::array<dealii::types::global_dof_index, dim> dofs;
+      double                                           weight;
+    };
+
+    struct Sum
+    {
+      std::string         name;
+      bool                of_forces;
+      std::vector<Vertex> vertices;
+    };
+
+    std::vector<Sum> sums;
+  };
+
+  /// The mean over each piece that has a name; of regions only if there are
+  /// several.
+  template <int dim>
+  std::vector<Probe<dim>>
+  means_of_pieces(const PieceNames &pieces);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_load_factors_h
+#define debond_elasticity_load_factors_h
+
+namespace Debond
+{
+  /// Multiples of what is applied (but for dead loads, which are constant) and
+  /// of prescribed displacements.
+  struct LoadFactors
+  {
+    LoadFactors(const double of_all = 1.)
+      : loads(of_all)
+      , displacements(of_all)
+    {}
+
+    LoadFactors(const double loads, const double displacements)
+      : loads(loads)
+      , displacements(displacements)
+    {}
+
+    double loads;
+    double displacements;
+  };
+} // namespace Debond
+
+#endif

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_input_probe_parameters_h
+#define debond_input_probe_parameters_h
+
+#include <debond/base/parameter_table.h>
+#include <debond/check/probes.h>
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// The section Probes: texts by name.
+  void
+  bind_probes(std::map<std::string, std::string> &probes,
+              ParameterTable                     &table);
+
+  /// What is wrong is left in the table as an error.
+  void
+  check_probes(const std::map<std::string, std::string> &probes,
+               const unsigned int                        dimension,
+               const std::set<std::string>              &boundaries,
+               const std::set<std::string>              &regions,
+               ParameterTable                           &table);
+
+  /// Of texts that have been checked.
+  template <int dim>
+  std::vector<Probe<dim>>
+  make_probes(const std::map<std::string, std::string> &probes);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/check/probes.h>
+#include <debond/elasticity/linear_simplex.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace Debond
+{
+  template <int dim>
+  Probes<dim>::Probes(const ElasticUnknowns<dim>    &unknowns,
+                      const PieceNames              &pieces,
+                      const std::vector<Probe<dim>> &probes)
+  {
+    using Kind = typename Probe<dim>::Kind;
+    for (const Probe<dim> &probe : probes)
+      {
+        // By vertex.
+        std::map<unsigned int, Vertex> vertices;
+        const auto                     add = [&vertices](const auto        &cell,
+                                     const unsigned int v,
+                                     const double       weight) {
+          Vertex &vertex = vertices[cell->vertex_index(v)];
+          for (unsigned int d = 0; d < dim; ++d)
+            vertex.dofs[d] = cell->vertex_dof_index(v, d);
+          vertex.weight += weight;
+        };
+
+        if (probe.kind == Kind::point)
+          {
+            // The cell in which the point lies deepest.
+            double least = -std::numeric_limits<double>::max();
+            typename dealii::DoFHandler<dim>::active_cell_iterator inside;
+            std::array<double, dim + 1> barycentric = {};
+            for (const auto &cell :
+                 unknowns.dof_handler().active_cell_iterators())
+              {
+                const LinearSimplex<dim>    simplex(cell);
+                std::array<double, dim + 1> coordinates;
+                coordinates.fill(0.);
+                coordinates[0] = 1.;
+                for (unsigned int v = 0; v <= dim; ++v)
+                  coordinates[v] +=
+                    simplex.gradients[v] * (probe.point - cell->vertex(0));
+                const double here =
+                  *std::min_element(coordinates.begin(), coordinates.end());
+                if (here > least)
+                  {
+                    least       = here;
+                    inside      = cell;
+                    barycentric = coordinates;
+                  }
+              }
+            constexpr double rounding = 1e-8;
+            if (least < -rounding)
+              throw ProbeError(probe.name, "the point is not in the body");
+            for (unsigned int v = 0; v <= dim; ++v)
+              add(inside, v, barycentric[v]);
+          }
+        else if (const auto boundary = pieces.boundaries.find(probe.piece);
+                 boundary != pieces.boundaries.end())
+          for (const auto &cell :
+               unknowns.dof_handler().active_cell_iterators())
+            for (const unsigned int f : cell->face_indices())
+              {
+                if (!cell->face(f)->at_boundary() ||
+                    boundary->second.count(cell->face(f)->boundary_id()) == 0)
+                  continue;
+                for (unsigned int v = 0; v < dim; ++v)
+                  add(cell,
+                      cell->reference_cell().face_to_cell_vertices(f, v, 1),
+                      cell->face(f)->measure());
+              }
+        else
+          {
+            const auto &ids = pieces.regions.at(probe.piece);
+            for (const auto &cell :
+                 unknowns.dof_handler().active_cell_iterators())
+              if (ids.count(cell->material_id()) > 0)
+                for (unsigned int v = 0; v <= dim; ++v)
+                  add(cell, v, LinearSimplex<dim>(cell).volume);
+          }
+
+        double total = 0.;
+        for (const auto &[unused, vertex] : vertices)
+          total += vertex.weight;
+        Sum sum = {probe.name, probe.kind == Kind::force, {}};
+        for (const auto &[unused, vertex] : vertices)
+          sum.vertices.push_back(
+            {vertex.dofs, sum.of_forces ? 1. : vertex.weight / total});
+        sums.push_back(sum);
+      }
+  }
+
+
+
+  template <int dim>
+  ProbeValues<dim>
+  Probes<dim>::values(const ElasticProblem<dim>    &problem,
+                      const dealii::Vector<double> &u,
+                      const LoadFactors             factors) const
+  {
+    const dealii::Vector<double> displacement =
+      problem.unknowns().cartesian_displacement(u, factors);
+    dealii::Vector<double> forces;
+    if (std::any_of(sums.begin(), sums.end(), [](const Sum &sum) {
+          return sum.of_forces;
+        }))
+      forces = problem.unknowns().cartesian_forces(
+        problem.fields().residual(u, factors));
+
+    ProbeValues<dim> result;
+    for (const Sum &sum : sums)
+      {
+        dealii::Tensor<1, dim> value;
+        for (const Vertex &vertex : sum.vertices)
+          for (unsigned int d = 0; d < dim; ++d)
+            value[d] +=
+              vertex.weight * (sum.of_forces ? forces(vertex.dofs[d]) :
+                                               displacement(vertex.dofs[d]));
+        result.emplace_back(sum.name, value);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<Probe<dim>>
+  means_of_pieces(const PieceNames &pieces)
+  {
+    std::vector<Probe<dim>> probes;
+    const auto              add = [&probes](const std::string &name) {
+      probes.push_back({name, Probe<dim>::Kind::mean, {}, name});
+    };
+    for (const auto &[name, unused] : pieces.boundaries)
+      add(name);
+    if (pieces.regions.size() > 1)
+      for (const auto &[name, unused] : pieces.regions)
+        add(name);
+    return probes;
+  }
+
+
+
+  template class Probes<2>;
+  template class Probes<3>;
+  template std::vector<Probe<2>>
+  means_of_pieces(const PieceNames &);
+  template std::vector<Probe<3>>
+  means_of_pieces(const PieceNames &);
+} // namespace Debond
