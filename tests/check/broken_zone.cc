@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The part of a face that is open and not bonded against sampling it, and bonds
+// that do not heal.
+
+#include <debond/check/broken_zone.h>
+#include <debond/contact/laws/winkler.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "../check.h"
+
+using namespace Debond;
+
+namespace
+{
+  constexpr double M = 0.1;
+
+
+
+  /// One face with the vertices of the reference simplex.
+  template <int dim>
+  ContactBoundary<dim>
+  one_face()
+  {
+    ContactBoundary<dim>                boundary;
+    typename ContactBoundary<dim>::Face face;
+    face.measure = 3.;
+    for (unsigned int k = 0; k < dim; ++k)
+      {
+        typename ContactBoundary<dim>::Node node = {};
+        if (k > 0)
+          node.position[k - 1] = 1.;
+        node.measure = face.measure / dim;
+        boundary.nodes.push_back(node);
+        face.nodes[k]    = k;
+        face.vertices[k] = node.position;
+      }
+    boundary.faces.push_back(face);
+    return boundary;
+  }
+
+
+
+  /// The part of the face where the opening is beyond @p threshold.
+  template <int dim>
+  double
+  sampled(const dealii::Vector<double> &s, const double threshold)
+  {
+    const unsigned int n    = dim == 2 ? 100000 : 1000;
+    unsigned int       open = 0, all = 0;
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < (dim == 2 ? 1 : n - i); ++j)
+        {
+          const double x = (i + 1. / 3.) / n,
+                       y = dim == 2 ? 0. : (j + 1. / 3.) / n;
+          const double value =
+            s(0) * (1. - x - y) + s(1) * x + (dim == 2 ? 0. : s(dim - 1) * y);
+          ++all;
+          open += value < -threshold;
+        }
+    return double(open) / all;
+  }
+
+
+
+  template <int dim>
+  void
+  test()
+  {
+    const ContactBoundary<dim>   boundary = one_face<dim>();
+    const AdhesiveLaw            law(winkler_law(5., M).branches);
+    const ContactQuadrature<dim> nodal({}, law.kinks());
+    std::mt19937                 random(7);
+    double                       error = 0., error_for_good = 0.;
+    for (unsigned int k = 0; k < 50; ++k)
+      {
+        AdhesionIntegral<dim>  adhesion(boundary, law, nodal);
+        dealii::Vector<double> s(dim);
+        for (unsigned int i = 0; i < dim; ++i)
+          s(i) = -2. * M * (random() % 1000) / 1000.;
+        error = std::max(error,
+                         std::abs(broken_zone(boundary, law, adhesion, s) / 3. -
+                                  sampled<dim>(s, M)));
+
+        // Once all bonds are broken, all that is open counts.
+        dealii::Vector<double> far(dim);
+        far = -2. * M;
+        adhesion.break_for_good(far);
+        s(0) = 0.;
+        error_for_good =
+          std::max(error_for_good,
+                   std::abs(broken_zone(boundary, law, adhesion, s) / 3. - 1.));
+        error_for_good = std::max(error_for_good,
+                                  std::abs(adhesion.dissipated_energy() /
+                                             (0.5 * 5. * M * M * 3.) -
+                                           1.));
+      }
+    check(std::to_string(dim) + "D, sampled", error, 3e-3);
+    check("broken for good", error_for_good, 1e-12);
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *[])
+{
+  print_figures = argc > 1;
+  test<2>();
+  test<3>();
+}
