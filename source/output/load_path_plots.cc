@@ -26,18 +26,34 @@ namespace Debond
 
 
 
-    /// The steps at which the factor turns, with the first and the last one.
+    /// The factor of the loads by step, or that of prescribed displacements if
+    /// the loads are constant.
     template <int dim>
+    std::vector<double>
+    factors_of(const std::vector<LoadPathStep<dim>> &steps)
+    {
+      const bool constant_loads =
+        std::all_of(steps.begin(), steps.end(), [&](const auto &step) {
+          return step.factor == steps[0].factor;
+        });
+      std::vector<double> factors;
+      for (const LoadPathStep<dim> &step : steps)
+        factors.push_back(constant_loads ? step.displacement_factor :
+                                           step.factor);
+      return factors;
+    }
+
+
+
+    /// The steps at which the factor turns, with the first and the last one.
     std::vector<unsigned int>
-    turning_points(const std::vector<LoadPathStep<dim>> &steps)
+    turning_points(const std::vector<double> &factors)
     {
       std::vector<unsigned int> turns = {0};
-      for (unsigned int k = 1; k + 1 < steps.size(); ++k)
-        if ((steps[k + 1].factor - steps[k].factor) *
-              (steps[k].factor - steps[k - 1].factor) <
-            0.)
+      for (unsigned int k = 1; k + 1 < factors.size(); ++k)
+        if ((factors[k + 1] - factors[k]) * (factors[k] - factors[k - 1]) < 0.)
           turns.push_back(k);
-      turns.push_back(static_cast<unsigned int>(steps.size() - 1));
+      turns.push_back(static_cast<unsigned int>(factors.size() - 1));
       return turns;
     }
 
@@ -49,15 +65,15 @@ namespace Debond
            const PointOfState<dim>               point)
     {
       std::vector<Curve>              result;
-      const std::vector<unsigned int> turns = turning_points(steps);
+      const std::vector<double>       factors = factors_of(steps);
+      const std::vector<unsigned int> turns   = turning_points(factors);
       for (unsigned int t = 0; t + 1 < turns.size(); ++t)
         {
-          Curve curve{curve_title(steps[turns[t]].factor,
-                                  steps[turns[t + 1]].factor),
+          Curve curve{curve_title(factors[turns[t]], factors[turns[t + 1]]),
                       {},
                       "linespoints pt 7 ps 0.4"};
           for (unsigned int k = turns[t]; k <= turns[t + 1]; ++k)
-            curve.points.push_back(point(steps[k].factor, steps[k].state));
+            curve.points.push_back(point(factors[k], steps[k].state));
           result.push_back(curve);
         }
 
@@ -106,21 +122,21 @@ namespace Debond
     const std::vector<std::string> names = load_path_plot_names();
     return {make(names[0],
                  "The broken part of the contact boundary.",
-                 "load factor",
+                 "factor",
                  "broken part",
                  [](const double factor, const State &state) {
                    return std::make_pair(factor, state.broken_part);
                  }),
             make(names[1],
                  "The energy.",
-                 "load factor",
+                 "factor",
                  "J",
                  [](const double factor, const State &state) {
                    return std::make_pair(factor, state.functional);
                  }),
             make(names[2],
                  "The normal force of the foundation; negative: it pulls.",
-                 "load factor",
+                 "factor",
                  "normal force",
                  [](const double factor, const State &state) {
                    return std::make_pair(factor, state.normal_force);
@@ -128,7 +144,7 @@ namespace Debond
             make(names[3],
                  "The loads over the displacement that belongs to them.",
                  "<f, u>",
-                 "load factor",
+                 "factor",
                  [](const double factor, const State &state) {
                    return std::make_pair(state.unit_load_work, factor);
                  })};
