@@ -413,6 +413,37 @@ namespace Debond
 
 
   template <int dim>
+  double
+  AdhesionIntegral<dim>::trace(const typename ContactBoundary<dim>::Face &face,
+                               const std::array<double, dim> &barycentric,
+                               const dealii::Vector<double>  &s) const
+  {
+    double result = 0.;
+    for (unsigned int k = 0; k < dim; ++k)
+      result += barycentric[k] *
+                (face.nodes[k] == dealii::numbers::invalid_unsigned_int ?
+                   held_trace(face, k) :
+                   s(face.nodes[k]));
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  AdhesionIntegral<dim>::traction(
+    const typename ContactBoundary<dim>::Face &face,
+    const std::array<double, dim>             &barycentric,
+    const dealii::Vector<double>              &s) const
+  {
+    const BondScale bonds = bonds_of(face, barycentric);
+    return bonds.energy / bonds.stretch *
+           law.derivative(trace(face, barycentric, s) / bonds.stretch);
+  }
+
+
+
+  template <int dim>
   bool
   AdhesionIntegral<dim>::has_field() const
   {

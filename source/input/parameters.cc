@@ -100,6 +100,7 @@ namespace Debond
     bind_supports(p.supports, *this);
     bind_contact(p, *this);
     bind_solver(p.solver, p.checkpoints, *this);
+    bind_accuracy(p.accuracy, *this);
     bind_verification(p.verification, *this);
     bind_output(p.output, *this);
   }
@@ -232,6 +233,37 @@ namespace Debond
                      "belongs to the given loads, not to those of a load path",
                      {"Load path/Factors"});
     }
+    /// What cannot be together with meshes that are refined.
+    void
+    check_accuracy(const Parameters &p, ParameterTable &table)
+    {
+      if (!p.accuracy.is_adaptive())
+        return;
+      const auto refuse = [&](const bool         is_set,
+                              const std::string &entry,
+                              const std::string &reason) {
+        if (is_set)
+          table.reject(entry,
+                       reason,
+                       {"Accuracy/Target", "Accuracy/Maximum unknowns"});
+      };
+      refuse(p.solver.method == "euclidean bundle",
+             "Solver/Method",
+             "meshes that are refined need automatic, energy bundle or "
+             "majorise minimise");
+      refuse(p.solver.linear_solver == "multigrid",
+             "Solver/Linear solver",
+             "meshes that are refined need a direct one");
+      refuse(p.solver.prove,
+             "Solver/Prove",
+             "nothing is proved on meshes that are refined");
+      refuse(!p.load_path.factors.empty(),
+             "Load path/Factors",
+             "a load path has one mesh, that of Mesh");
+      refuse(p.checkpoints.interval > 0.,
+             "Solver/Checkpoint interval",
+             "there are no checkpoints of meshes that are refined");
+    }
   } // namespace
 
 
@@ -271,6 +303,7 @@ namespace Debond
       }
     check_bonds(p, *this);
     check_exact_displacement(p, *this);
+    check_accuracy(p, *this);
     if (!errors().empty())
       throw BadInput(errors());
 

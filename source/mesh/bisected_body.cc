@@ -100,6 +100,7 @@ namespace Debond
     const double finer = std::pow(n_cells() / whole->n_cells(), 1. / dim);
     for (double &cells : shape.cells)
       cells *= finer;
+    shape.is_box = shape.is_box && finer == 1.;
     return shape;
   }
 

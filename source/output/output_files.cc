@@ -55,7 +55,8 @@ namespace Debond
          write_body_vtu(scene.problem(),
                         result.solve.u,
                         path,
-                        result.solve.load_factor);
+                        result.solve.load_factor,
+                        result.estimate ? &*result.estimate : nullptr);
        }},
       {{"contact.vtu"},
        [&]() { return output.contact_vtu && result.has_displacement(); },

@@ -173,6 +173,21 @@ namespace Debond
 
 
 
+    void
+    report_estimate(const ErrorEstimate &estimate, Record &record)
+    {
+      record.add("/estimated_error", estimate.relative());
+      record.add("/estimated_error_of",
+                 estimate.is_of_J ? "J" : "stress energy");
+      record.line("error of the mesh",
+                  "about " + scientific(estimate.relative(), 1) +
+                    (estimate.is_of_J ?
+                       " of J" :
+                       " of the energy of the stresses, as J is near zero"));
+    }
+
+
+
     /// @p n_nodes: all contact nodes.
     void
     report_minimum(const WhichMinimum &minimum,
@@ -538,6 +553,36 @@ namespace Debond
 
 
 
+  void
+  report_level(const unsigned int   number,
+               const AdaptiveLevel &level,
+               Record              &record)
+  {
+    if (number == 0)
+      record.heading("Meshes");
+    record.add("/levels/" + std::to_string(number),
+               {{"cells", level.cells},
+                {"unknowns", level.unknowns},
+                {"contact_nodes", level.contact_nodes},
+                {"iterations", level.iterations},
+                {"functional", level.functional},
+                {"estimated_error", level.estimated_error},
+                {"seconds", level.seconds}});
+    record.line(words("mesh ", number),
+                words(level.unknowns,
+                      " unknowns, ",
+                      level.contact_nodes,
+                      " contact nodes, J ",
+                      scientific(level.functional, 10),
+                      ", error about ",
+                      scientific(level.estimated_error, 1)) +
+                  (record.has_details() ?
+                     ", " + fixed(level.seconds, 2) + " s" :
+                     ""));
+  }
+
+
+
   template <int dim>
   void
   report_result(const Parameters     &parameters,
@@ -552,7 +597,18 @@ namespace Debond
                                           parameters.load_path.factors.size())),
                        result.solve.comes_off_at,
                        record);
+    if (!result.levels.empty())
+      {
+        // Of the first mesh before.
+        record.add("/cells", scene.n_cells());
+        record.add("/degrees_of_freedom",
+                   scene.problem().unknowns().n_free_dofs());
+        record.add("/contact_nodes",
+                   scene.problem().unknowns().contact().size());
+      }
     report_status(result, record);
+    if (result.estimate)
+      report_estimate(*result.estimate, record);
     report_minimum(result.solve.minimum,
                    result.is_success(),
                    scene.problem().unknowns().contact().size(),

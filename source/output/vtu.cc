@@ -168,7 +168,8 @@ namespace Debond
   write_body_vtu(const ElasticProblem<dim>    &problem,
                  const dealii::Vector<double> &u,
                  const std::string            &file_name,
-                 const LoadFactors             factors)
+                 const LoadFactors             factors,
+                 const ErrorEstimate          *estimate)
   {
     using dealii::DataComponentInterpretation::component_is_part_of_vector;
 
@@ -218,6 +219,8 @@ namespace Debond
       add_field("region");
     add_field("von_mises");
     add_field("strain_energy_density");
+    if (estimate != nullptr)
+      add_field("error_density");
 
     // In the order of deal.II's patches.
     for (const auto &cell :
@@ -238,6 +241,8 @@ namespace Debond
           add(cell->material_id());
         add(von_mises(stress));
         add(problem.fields().material(cell).energy_density(stress));
+        if (estimate != nullptr)
+          add(estimate->cells[cell->active_cell_index()] / cell->measure());
       }
 
     data_out.build_patches(problem.unknowns().mapping());
@@ -371,12 +376,14 @@ namespace Debond
   write_body_vtu(const ElasticProblem<2> &,
                  const dealii::Vector<double> &,
                  const std::string &,
-                 const LoadFactors);
+                 const LoadFactors,
+                 const ErrorEstimate *);
   template void
   write_body_vtu(const ElasticProblem<3> &,
                  const dealii::Vector<double> &,
                  const std::string &,
-                 const LoadFactors);
+                 const LoadFactors,
+                 const ErrorEstimate *);
   template void
   write_contact_vtu(const ElasticProblem<2> &,
                     const dealii::Vector<double> &,

@@ -13,6 +13,7 @@
 #include <debond/program/run.h>
 #include <debond/solve/load_path.h>
 #include <debond/solve/run_checkpoints.h>
+#include <debond/solve/scene_size.h>
 
 #include <filesystem>
 #include <iostream>
@@ -122,13 +123,15 @@ namespace Debond
     /// the method left is said in either case.
     template <int dim>
     void
-    judge(const std::string &failure, RunResult<dim> &result)
+    judge(const std::string &failure,
+          const std::string &shortfall,
+          RunResult<dim>    &result)
     {
       SolveResult &solve = result.solve;
       if (solve.status == SolverStatus::stagnated && failure.empty())
         {
           solve.status = SolverStatus::success;
-          solve.notes.push_back(solve.message);
+          result.notes.push_back(solve.message);
           solve.message.clear();
         }
       else if (solve.status == SolverStatus::stagnated)
@@ -141,6 +144,11 @@ namespace Debond
         {
           result.status  = "not verified";
           result.message = failure;
+        }
+      else if (solve.status == SolverStatus::success && !shortfall.empty())
+        {
+          result.status  = "not accurate enough";
+          result.message = shortfall;
         }
     }
 
@@ -155,12 +163,41 @@ namespace Debond
 
 
 
+    template <int dim>
+    void
+    estimate(const Scene<dim> &scene, RunResult<dim> &result)
+    {
+      try
+        {
+          result.estimate = estimate_error(scene.problem(),
+                                           scene.adhesion(),
+                                           scene.conditions(),
+                                           scene.supports(),
+                                           scene.loads(),
+                                           result.solve.u,
+                                           result.solve.functional,
+                                           result.solve.load_factor,
+                                           &scene.dead_loads());
+        }
+      catch (const std::invalid_argument &error)
+        {
+          result.notes.push_back(
+            std::string(
+              "the error of the mesh is not known: a load or a bond "
+              "is none between the points that the solution needs, ") +
+            error.what());
+        }
+    }
+
+
+
     /// Verifies what the solver found and adds what else is to be said of it.
     template <int dim>
     void
-    check_result(const Parameters &parameters,
-                 const Scene<dim> &scene,
-                 RunResult<dim>   &result)
+    check_result(const Parameters  &parameters,
+                 const Scene<dim>  &scene,
+                 const std::string &shortfall,
+                 RunResult<dim>    &result)
     {
       result.notes = result.solve.notes;
       append(result.solve.minimum.notes, result.notes);
@@ -168,7 +205,7 @@ namespace Debond
       append(scene.notes(), result.notes);
       if (result.solve.status == SolverStatus::comes_off && result.path.empty())
         {
-          judge("", result);
+          judge("", "", result);
           return;
         }
 
@@ -187,7 +224,19 @@ namespace Debond
                                           result.solve.u,
                                           result.solve.load_factor);
       result.times.emplace_back("verification", timer.wall_time());
-      judge(verification_message(parameters, result), result);
+      judge(verification_message(parameters, result), shortfall, result);
+
+      // A loop that was interrupted has the solution of the mesh before.
+      const bool is_solution =
+        result.is_success() || !shortfall.empty() ||
+        (result.solve.status == SolverStatus::interrupted &&
+         !result.levels.empty());
+      if (is_solution)
+        {
+          timer.restart();
+          estimate(scene, result);
+          result.times.emplace_back("error estimate", timer.wall_time());
+        }
 
       result.largest = largest_values(scene.problem(),
                                       result.solve.u,
@@ -260,15 +309,16 @@ namespace Debond
   ExitCode
   run(const Parameters &parameters, std::ostream &out, const bool terminal)
   {
-    dealii::Timer              total;
-    const MethodChoice         choice = choose_method(parameters);
-    const std::unique_ptr<MPI> mpi    = initialize_mpi(choice);
-    const Scene<dim>           scene(parameters, matrix_storage(choice));
-    check_supports_of_method(choice, parameters, scene);
+    dealii::Timer                     total;
+    MethodChoice                      choice = choose_method(parameters);
+    const std::unique_ptr<MPI>        mpi    = initialize_mpi(choice);
+    std::unique_ptr<const Scene<dim>> scene =
+      make_first_scene<dim>(parameters, matrix_storage(choice));
+    check_supports_of_method(choice, parameters, *scene);
     // Before the solve, so that nothing is lost if it is not finite somewhere.
     error_of(parameters,
-             scene.problem(),
-             dealii::Vector<double>(scene.problem().unknowns().n_dofs()));
+             scene->problem(),
+             dealii::Vector<double>(scene->problem().unknowns().n_dofs()));
     RunCheckpoints checkpoints(parameters.checkpoints,
                                parameters.output.directory,
                                choice);
@@ -276,9 +326,9 @@ namespace Debond
     RunResult<dim>          result;
     std::string             no_pictures;
     std::vector<OutputFile> files =
-      output_files(parameters.output, scene, result, no_pictures);
+      output_files(parameters.output, *scene, result, no_pictures);
     LoadPathOutput<dim> path_output(parameters.output,
-                                    scene.problem(),
+                                    scene->problem(),
                                     result.path,
                                     no_pictures);
     append(path_output.files(), files);
@@ -298,22 +348,41 @@ namespace Debond
       }
 
     Record record(parameters.output.machine_details);
-    report_problem(parameters, scene, choice, record);
+    report_problem(parameters, *scene, choice, record);
     report_checkpoints(checkpoints, record);
     record.print(out);
 
-    result.times = {{"mesh", scene.mesh_seconds()},
-                    {"assembly", scene.assembly_seconds()}};
+    result.times = {{"mesh", scene->mesh_seconds()},
+                    {"assembly", scene->assembly_seconds()}};
     dealii::Timer timer;
-    if (parameters.load_path.factors.empty())
+    std::string   shortfall;
+    if (parameters.accuracy.is_adaptive())
+      {
+        const auto report = [&](const AdaptiveLevel &level) {
+          report_level(static_cast<unsigned int>(result.levels.size()),
+                       level,
+                       record);
+          record.print(out);
+          result.levels.push_back(level);
+        };
+        AdaptiveResult adaptive =
+          solve_adaptively(choice, parameters, report, scene);
+        result.solve = std::move(adaptive.solve);
+        shortfall    = adaptive.shortfall;
+        // On the last mesh.
+        choice.memory = memory_with_factorisation(
+          scene_size(scene->body(), dim, parameters.contact_boundaries), dim);
+        files = output_files(parameters.output, *scene, result, no_pictures);
+      }
+    else if (parameters.load_path.factors.empty())
       result.solve =
-        solve(choice, parameters, scene, out, terminal, &checkpoints);
+        solve(choice, parameters, *scene, out, terminal, &checkpoints);
     else
       result.solve = follow_load_path<dim>(
         parameters.load_path,
         parameters.solver,
         parameters.verification.tolerance,
-        scene,
+        *scene,
         [&](const LoadPathStep<dim>      &step,
             const dealii::Vector<double> &u,
             const Verification<dim>      &verification) {
@@ -323,9 +392,9 @@ namespace Debond
         record.has_details() ? &out : nullptr,
         result.path);
     result.times.emplace_back("solve", timer.wall_time());
-    check_result(parameters, scene, result);
+    check_result(parameters, *scene, shortfall, result);
     std::string output_error = finish_checkpoints(checkpoints, result, written);
-    report_result(parameters, scene, choice, result, record);
+    report_result(parameters, *scene, choice, result, record);
 
     timer.restart();
     try

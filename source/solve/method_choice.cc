@@ -132,6 +132,9 @@ namespace Debond
                  "automatic"});
             choice.linear_solver = LinearSolver::direct;
           }
+        else if (choice.linear_solver == LinearSolver::automatic &&
+                 parameters.accuracy.is_adaptive())
+          choice.linear_solver = LinearSolver::direct;
         else if (choice.linear_solver == LinearSolver::automatic)
           {
             choice.linear_solver = LinearSolver::direct;

@@ -53,8 +53,8 @@ namespace Debond
 
 
     BoundaryConditions
-    boundary_conditions(const Parameters    &parameters,
-                        const BoundaryNames &boundaries)
+    make_conditions(const Parameters    &parameters,
+                    const BoundaryNames &boundaries)
     {
       BoundaryConditions conditions;
       for (const std::string &name : parameters.clamped_boundaries)
@@ -296,21 +296,27 @@ namespace Debond
         seconds_for_mesh       = timer.wall_time();
 
         timer.restart();
-        entry           = "Boundary conditions/Clamped boundaries";
-        elastic_problem = std::make_unique<ElasticProblem<dim>>(
-          triangulation,
-          boundary_conditions(parameters, boundaries),
-          make_supports<dim>(parameters, boundaries));
+        entry               = "Boundary conditions/Clamped boundaries";
+        boundary_conditions = make_conditions(parameters, boundaries);
+        body_supports       = make_supports<dim>(parameters, boundaries);
+        elastic_problem =
+          std::make_unique<ElasticProblem<dim>>(triangulation,
+                                                boundary_conditions,
+                                                body_supports);
         check_held_vertices(elastic_problem->unknowns(),
                             displacement_factors(parameters.load_path));
         entry = "Material/Poisson ratio";
         const std::set<std::string> &dead_loads =
           parameters.load_path.dead_loads;
-        elastic_problem->assemble(
-          make_materials(parameters.materials, names.regions),
-          make_loads<dim>(parameters.loads, dead_loads, false, boundaries),
-          storage,
-          make_loads<dim>(parameters.loads, dead_loads, true, boundaries));
+        body_loads =
+          make_loads<dim>(parameters.loads, dead_loads, false, boundaries);
+        body_dead_loads =
+          make_loads<dim>(parameters.loads, dead_loads, true, boundaries);
+        elastic_problem->assemble(make_materials(parameters.materials,
+                                                 names.regions),
+                                  body_loads,
+                                  storage,
+                                  body_dead_loads);
         named_probes = Probes<dim>(elastic_problem->unknowns(),
                                    names,
                                    make_probes<dim>(parameters.probes));
@@ -414,6 +420,42 @@ namespace Debond
   Scene<dim>::problem() const
   {
     return *elastic_problem;
+  }
+
+
+
+  template <int dim>
+  const BoundaryConditions &
+  Scene<dim>::conditions() const
+  {
+    return boundary_conditions;
+  }
+
+
+
+  template <int dim>
+  const Supports<dim> &
+  Scene<dim>::supports() const
+  {
+    return body_supports;
+  }
+
+
+
+  template <int dim>
+  const Loads<dim> &
+  Scene<dim>::loads() const
+  {
+    return body_loads;
+  }
+
+
+
+  template <int dim>
+  const Loads<dim> &
+  Scene<dim>::dead_loads() const
+  {
+    return body_dead_loads;
   }
 
 

@@ -226,6 +226,7 @@ namespace Debond
     solve_by_majorise_minimise(const MajoriseMinimise &method,
                                const Scene<dim>       &scene,
                                const Condensation     &condensed,
+                               const bool              has_start,
                                Watch                  &watch,
                                Vector                 &s,
                                SolveResult            &result)
@@ -233,9 +234,11 @@ namespace Debond
       // Coarser spaces do not know the gaps of bodies at rest, and what only
       // bonds hold has to start with all of them.
       const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
-      if (unknowns.has_gap() || !unknowns.held_by_contact().motions.empty())
+      const bool                  is_loose =
+        unknowns.has_gap() || !unknowns.held_by_contact().motions.empty();
+      if (!has_start && is_loose)
         s = unknowns.contact().at_rest();
-      else
+      else if (!has_start)
         s = coarse_start(condensed.schur_complement(),
                          condensed.load(),
                          scene.adhesion(),
@@ -298,6 +301,7 @@ namespace Debond
                     const SolverParameters &parameters,
                     const Scene<dim>       &scene,
                     Checkpoints            *checkpoints,
+                    const Vector           *start,
                     Watch                  &watch,
                     SolveResult            &result)
     {
@@ -322,6 +326,12 @@ namespace Debond
       watch.add_energy(condensed.energy_at_zero());
       timer.restart();
       Vector s(problem.unknowns().contact().size());
+      if (start != nullptr)
+        {
+          s = problem.unknowns().contact().trace(*start);
+          for (double &opening : s)
+            opening = std::min(opening, 0.);
+        }
       // If no contact node is free, there is no metric either.
       if (method == SolverMethod::energy_bundle && s.size() > 0)
         solve_by_energy_bundle(parameters.energy_bundle,
@@ -336,6 +346,7 @@ namespace Debond
                                      parameters.majorise_minimise),
                                    scene,
                                    condensed,
+                                   start != nullptr,
                                    watch,
                                    s,
                                    result);
@@ -420,6 +431,7 @@ namespace Debond
         solve_condensed(SolverMethod::majorise_minimise,
                         coarse.solver,
                         coarse_scene,
+                        nullptr,
                         nullptr,
                         watch,
                         result);
@@ -554,7 +566,8 @@ namespace Debond
         const Scene<dim>   &scene,
         std::ostream       &out,
         const bool          terminal,
-        Checkpoints        *checkpoints)
+        Checkpoints        *checkpoints,
+        const Vector       *start)
   {
     SolveResult result;
     {
@@ -568,8 +581,13 @@ namespace Debond
       else if (choice.linear_solver == LinearSolver::multigrid)
         solve_by_multigrid(parameters, scene, guard, *watch, result);
       else
-        solve_condensed(
-          choice.method, parameters.solver, scene, checkpoints, *watch, result);
+        solve_condensed(choice.method,
+                        parameters.solver,
+                        scene,
+                        checkpoints,
+                        start,
+                        *watch,
+                        result);
     }
     if (choice.linear_solver != LinearSolver::direct)
       result.minimum.kind =
@@ -602,12 +620,14 @@ namespace Debond
         const Scene<2> &,
         std::ostream &,
         const bool,
-        Checkpoints *);
+        Checkpoints *,
+        const Vector *);
   template SolveResult
   solve(const MethodChoice &,
         const Parameters &,
         const Scene<3> &,
         std::ostream &,
         const bool,
-        Checkpoints *);
+        Checkpoints *,
+        const Vector *);
 } // namespace Debond

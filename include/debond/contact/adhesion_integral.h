@@ -110,6 +110,19 @@ namespace Debond
     std::vector<double>
     held_forces(const dealii::Vector<double> &s) const;
 
+    /// s at a point of a face.
+    double
+    trace(const typename ContactBoundary<dim>::Face &face,
+          const std::array<double, dim>             &barycentric,
+          const dealii::Vector<double>              &s) const;
+
+    /// The derivative of j_1 at a point of a face (at a kink: that of the
+    /// branch on the side of 0), minus the traction of the bonds on the body.
+    double
+    traction(const typename ContactBoundary<dim>::Face &face,
+             const std::array<double, dim>             &barycentric,
+             const dealii::Vector<double>              &s) const;
+
     /// Whether bonds are not the same everywhere.
     bool
     has_field() const;

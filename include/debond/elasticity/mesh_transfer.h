@@ -7,8 +7,25 @@
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/mesh/body.h>
 
+#include <vector>
+
 namespace Debond
 {
+  /// The displacement that belongs to u, by vertex index.
+  template <int dim>
+  std::vector<dealii::Tensor<1, dim>>
+  vertex_displacements(const ElasticProblem<dim>    &problem,
+                       const dealii::Vector<double> &u);
+
+  /// The vector of unknowns of the displacement with these values, but for what
+  /// the supports prescribe and, if there are gaps, for what would enter the
+  /// foundation.
+  template <int dim>
+  dealii::Vector<double>
+  from_vertex_displacements(
+    const std::vector<dealii::Tensor<1, dim>> &displacements,
+    const ElasticProblem<dim>                 &problem);
+
   /**
    * The P1 displacement u of a problem on the mesh of @p body, at the
    * vertices of another mesh of the same body: a vector of unknowns of

@@ -5,6 +5,7 @@
 #include <debond/base/parameter_table.h>
 #include <debond/contact/law.h>
 #include <debond/contact/quadrature.h>
+#include <debond/input/accuracy_parameters.h>
 #include <debond/input/load_parameters.h>
 #include <debond/input/load_path_parameters.h>
 #include <debond/input/material_parameters.h>
@@ -63,6 +64,7 @@ namespace Debond
     std::string                        quadrature_name = "nodal";
     SolverParameters                   solver;
     CheckpointParameters               checkpoints;
+    AccuracyParameters                 accuracy;
     VerificationParameters             verification;
     OutputParameters                   output;
 

@@ -49,7 +49,8 @@ namespace Debond
     double
     n_vertices_on(const std::string &boundary) const override;
 
-    /// With as many cells as there would be if they were alike.
+    /// With as many cells as there would be if they were alike. Refined it is
+    /// no box of so many cells.
     BodyShape
     shape() const override;
 

@@ -22,6 +22,12 @@ namespace Debond
                  const MethodChoice &choice,
                  Record             &record);
 
+  /// A mesh of a loop that refines, as the @p number-th one, when it is done.
+  void
+  report_level(const unsigned int   number,
+               const AdaptiveLevel &level,
+               Record              &record);
+
   /// How the run goes on from a checkpoint, if it does.
   void
   report_checkpoints(const RunCheckpoints &checkpoints, Record &record);

@@ -3,7 +3,9 @@
 #define debond_output_run_result_h
 
 #include <debond/check/displacement_error.h>
+#include <debond/check/error_estimate.h>
 #include <debond/check/largest_values.h>
+#include <debond/solve/adaptive_loop.h>
 #include <debond/solve/load_path_steps.h>
 #include <debond/solve/solve.h>
 
@@ -30,6 +32,12 @@ namespace Debond
     LargestValues     largest;
     ProbeValues<dim>  probes;
     ProbeValues<dim>  means; ///< over the pieces with a name
+
+    /// Of what the solver found, if it has come to its end.
+    std::optional<ErrorEstimate> estimate;
+
+    /// If the mesh was refined; all the rest is of the last one.
+    std::vector<AdaptiveLevel> levels;
 
     /// If the exact displacement is known.
     std::optional<DisplacementError> displacement_error;

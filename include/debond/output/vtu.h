@@ -2,6 +2,7 @@
 #ifndef debond_output_vtu_h
 #define debond_output_vtu_h
 
+#include <debond/check/error_estimate.h>
 #include <debond/check/verification.h>
 
 #include <string>
@@ -11,7 +12,8 @@ namespace Debond
   /**
    * Writes the body as VTU: displacement (vector, nodal; warp by it), and as
    * cell data, where P1 elements have them, stress components (with stress_zz
-   * in plane strain), von Mises stress and strain-energy density. Throws
+   * in plane strain), von Mises stress, strain-energy density and, if
+   * @p estimate is not null, the estimated error of J per volume. Throws
    * std::runtime_error naming the file if it cannot be written.
    */
   template <int dim>
@@ -19,7 +21,8 @@ namespace Debond
   write_body_vtu(const ElasticProblem<dim>    &problem,
                  const dealii::Vector<double> &u,
                  const std::string            &file_name,
-                 const LoadFactors             factors = 1.);
+                 const LoadFactors             factors  = 1.,
+                 const ErrorEstimate          *estimate = nullptr);
 
   /**
    * Writes the contact boundary as VTU: displacement, u_nu, gap (-u_nu),

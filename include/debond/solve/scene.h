@@ -41,6 +41,20 @@ namespace Debond
     const ElasticProblem<dim> &
     problem() const;
 
+    /// What acts on which boundaries and regions of the mesh.
+    const BoundaryConditions &
+    conditions() const;
+
+    const Supports<dim> &
+    supports() const;
+
+    const Loads<dim> &
+    loads() const;
+
+    /// Those that do not grow with the load factor.
+    const Loads<dim> &
+    dead_loads() const;
+
     const AdhesiveLaw &
     law() const;
 
@@ -88,6 +102,10 @@ namespace Debond
     std::vector<std::string>                           body_notes;
     Probes<dim>                                        named_probes;
     Probes<dim>                                        piece_means;
+    BoundaryConditions                                 boundary_conditions;
+    Supports<dim>                                      body_supports;
+    Loads<dim>                                         body_loads;
+    Loads<dim>                                         body_dead_loads;
     std::unique_ptr<ElasticProblem<dim>>               elastic_problem;
     std::unique_ptr<AdhesiveLaw>                       adhesive_law;
     std::unique_ptr<ContactQuadrature<dim>>            quadrature;

@@ -69,15 +69,17 @@ namespace Debond
   /// Minimises the functional of the scene, whose matrix must be stored as
   /// matrix_storage() says, by the given method, the bundle methods with
   /// @p checkpoints if there are any. Iterations are printed to @p out unless
-  /// the scene wants no machine details.
+  /// the scene wants no machine details. Methods with a factorisation begin at
+  /// @p start, if there is one.
   template <int dim>
   SolveResult
-  solve(const MethodChoice &choice,
-        const Parameters   &parameters,
-        const Scene<dim>   &scene,
-        std::ostream       &out,
-        const bool          terminal,
-        Checkpoints        *checkpoints = nullptr);
+  solve(const MethodChoice           &choice,
+        const Parameters             &parameters,
+        const Scene<dim>             &scene,
+        std::ostream                 &out,
+        const bool                    terminal,
+        Checkpoints                  *checkpoints = nullptr,
+        const dealii::Vector<double> *start       = nullptr);
 
   /// Throws BadInput if the method cannot do with a body that only its bonds
   /// and the foundation hold.

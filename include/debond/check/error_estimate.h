@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_check_error_estimate_h
+#define debond_check_error_estimate_h
+
+#include <deal.II/lac/vector.h>
+
+#include <debond/contact/adhesion_integral.h>
+#include <debond/elasticity/elastic_problem.h>
+
+#include <vector>
+
+namespace Debond
+{
+  /// How far J is above the one of the continuous problem near by, as the
+  /// stresses of the cells tell: an estimate, no bound.
+  struct ErrorEstimate
+  {
+    double functional = 0.; ///< energy
+
+    /// What it is compared with: |J|, or where J is near zero the energy of the
+    /// stresses.
+    double scale   = 0.;
+    bool   is_of_J = true;
+
+    /// The parts of the active cells, which add up to `functional`.
+    std::vector<double> cells;
+
+    /// Zero if there is nothing to compare with.
+    double
+    relative() const;
+  };
+
+
+
+  /**
+   * The residual estimate of the error of J at a displacement u. Tractions do
+   * not fit together at the faces F of the cells,
+   *
+   *     r = [sigma n] inside, t - sigma n (- j_1'(u_nu) n on Gamma_C) outside,
+   *
+   * together with half of the body force of the cells at the face. To r the
+   * body could yield by a function b_F on these cells that is a product of
+   * barycentric coordinates, 1 in the middle of F; J would fall by
+   *
+   *     1/2 (mean_F b_F)^2 |F| int_F |r|^2 / sum_K M_K int_K |grad b_F|^2,
+   *
+   * M being mu, and lambda + 2 mu for jumps of the pressure, lambda times the
+   * dilation, between cells of one material (in nearly incompressible ones it
+   * may alternate from cell to cell without harm). The sum of these numbers
+   * over all faces, times a constant that depends on the dimension only, is the
+   * estimate; doc/notes/accuracy.md compares it with errors that are known.
+   *
+   * Directions in which the boundary is held have no r; where all nodes of a
+   * face are in contact, only what pulls the body off counts. What the
+   * quadrature of j_1, and the polygon in place of a curved boundary, change in
+   * J is not in it.
+   *
+   * @p conditions, @p supports and @p loads are what @p problem was made of,
+   * @p functional is J(u), @p factors the multiples of the loads that @p u
+   * belongs to, @p dead_loads those that have none, if there are any. Throws
+   * std::invalid_argument with the place if a load or a bond is none at a point
+   * of a face that the solution did not ask for.
+   */
+  template <int dim>
+  ErrorEstimate
+  estimate_error(const ElasticProblem<dim>    &problem,
+                 const AdhesionIntegral<dim>  &adhesion,
+                 const BoundaryConditions     &conditions,
+                 const Supports<dim>          &supports,
+                 const Loads<dim>             &loads,
+                 const dealii::Vector<double> &u,
+                 const double                  functional,
+                 const LoadFactors             factors    = 1.,
+                 const Loads<dim>             *dead_loads = nullptr);
+} // namespace Debond
+
+#endif

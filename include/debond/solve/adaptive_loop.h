@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_adaptive_loop_h
+#define debond_solve_adaptive_loop_h
+
+#include <debond/check/error_estimate.h>
+#include <debond/solve/solve.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// A mesh of the loop and the solution on it.
+  struct AdaptiveLevel
+  {
+    unsigned int cells;
+    unsigned int unknowns;
+    unsigned int contact_nodes;
+    unsigned int iterations;
+    double       functional;      ///< J
+    double       estimated_error; ///< ErrorEstimate::relative()
+    double       seconds;         ///< wall time of mesh, assembly and solve
+  };
+
+
+
+  struct AdaptiveResult
+  {
+    SolveResult solve; ///< on the last mesh
+
+    /// What kept the loop from its target; empty if nothing did.
+    std::string shortfall;
+  };
+
+  /// The scene on the first mesh, which can be refined if its parameters ask
+  /// for it. Throws as Scene does, and BadInput if the mesh cannot be refined.
+  template <int dim>
+  std::unique_ptr<const Scene<dim>>
+  make_first_scene(const Parameters &parameters, const MatrixStorage storage);
+
+  /// Solves the scene of make_first_scene(), and again and again on a mesh that
+  /// is refined where the estimate is large, from the state before; with the
+  /// search that the scene wants on each. @p scene becomes that of the result,
+  /// the last mesh on which there is one. @p report gets each level when it is
+  /// done.
+  template <int dim>
+  AdaptiveResult
+  solve_adaptively(const MethodChoice                               &choice,
+                   const Parameters                                 &parameters,
+                   const std::function<void(const AdaptiveLevel &)> &report,
+                   std::unique_ptr<const Scene<dim>>                &scene);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,490 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+
+#include <debond/check/error_estimate.h>
+#include <debond/contact/field_value.h>
+#include <debond/elasticity/linear_simplex.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Debond
+{
+  namespace
+  {
+    /// What the estimate of the faces is multiplied by, see
+    /// doc/notes/accuracy.md.
+    template <int dim>
+    constexpr double calibration = dim == 2 ? 0.97 : 2.65;
+
+    /// J that is less than so much of the energy of the stresses is what large
+    /// terms leave.
+    constexpr double least_part_of_energy = 0.01;
+
+    /// The mean of b_F over F.
+    template <int dim>
+    constexpr double mean_on_face = dim == 2 ? 2. / 3. : 9. / 20.;
+
+    /// The mean of b_F over a cell, by the one over F.
+    constexpr double mean_in_cell = 0.5;
+
+
+
+    /// int_K |grad b_F|^2, F being opposite to a vertex.
+    template <int dim>
+    double
+    bubble_energy(const LinearSimplex<dim> &cell, const unsigned int opposite)
+    {
+      double sum = 0.;
+      for (unsigned int i = 0; i <= dim; ++i)
+        for (unsigned int j = 0; j <= i; ++j)
+          if (i != opposite && j != opposite)
+            sum += cell.gradients[i] * cell.gradients[j];
+      return (dim == 2 ? 8. / 3. : 243. / 70.) * cell.volume * sum;
+    }
+
+
+
+    template <int dim>
+    struct FaceRule
+    {
+      std::vector<std::array<double, dim>> barycentric;
+      std::vector<double>                  weights; ///< their sum is 1
+
+      FaceRule()
+      {
+        const auto add = [this](const auto &rule, const double measure) {
+          for (unsigned int q = 0; q < rule.size(); ++q)
+            {
+              std::array<double, dim> point;
+              point[0] = 1.;
+              for (unsigned int d = 1; d < dim; ++d)
+                {
+                  point[d] = rule.point(q)[d - 1];
+                  point[0] -= point[d];
+                }
+              barycentric.push_back(point);
+              weights.push_back(rule.weight(q) / measure);
+            }
+        };
+        // Loads and bonds may jump within a face.
+        if constexpr (dim == 2)
+          add(dealii::QGauss<1>(4), 1.);
+        else
+          add(dealii::QGaussSimplex<2>(3), 0.5);
+      }
+    };
+
+
+
+    /// The tractions that do not fit, cell by cell.
+    template <int dim>
+    class Residuals
+    {
+    public:
+      Residuals(const ElasticProblem<dim>    &problem,
+                const AdhesionIntegral<dim>  &adhesion,
+                const BoundaryConditions     &conditions,
+                const Supports<dim>          &supports,
+                const Loads<dim>             &loads,
+                const dealii::Vector<double> &u,
+                const LoadFactors             factors,
+                const Loads<dim>             *dead_loads)
+        : adhesion(adhesion)
+        , boundary(problem.unknowns().contact().boundary())
+        , conditions(conditions)
+        , supports(supports)
+        , loads(loads)
+        , s(problem.unknowns().contact().trace(u))
+        , dead_loads(dead_loads)
+        , load_factor(factors.loads)
+        , largest_s(s.size() > 0 ? s.linfty_norm() : 0.)
+      {
+        const dealii::Vector<double> displacement =
+          problem.unknowns().cartesian_displacement(u, factors);
+        const auto &dofs = problem.unknowns().dof_handler();
+        cells.reserve(dofs.get_triangulation().n_active_cells());
+        for (const auto &cell : dofs.active_cell_iterators())
+          {
+            const Material &material = problem.fields().material(cell);
+            CellStress      here     = {LinearSimplex<dim>(cell),
+                                        material.shear_modulus(),
+                                        material.template lame_lambda<dim>(),
+                                        problem.fields().stress(cell,
+                                                       displacement,
+                                                       factors),
+                                        0.,
+                                        {},
+                                        0.,
+                                        {}};
+            if (loads.body_force || loads.temperature_change ||
+                (dead_loads != nullptr && dead_loads->body_force))
+              add_volume_forces(cell, material, here);
+            const double trace    = dealii::trace(here.stress);
+            const double dilation = (trace + dim * here.thermal_pressure) /
+                                    (2. * here.mu + dim * here.lambda);
+            here.pressure = here.thermal_pressure - here.lambda * dilation;
+            stress_energy += here.simplex.volume *
+                             (here.stress * here.stress -
+                              here.lambda / (2. * here.mu + dim * here.lambda) *
+                                trace * trace) /
+                             (4. * here.mu);
+            cells.push_back(here);
+          }
+        parts.assign(cells.size(), 0.);
+        for (const auto &cell : dofs.active_cell_iterators())
+          for (const unsigned int f : cell->face_indices())
+            if (!cell->face(f)->at_boundary())
+              add_inner_face(cell, f);
+            else
+              add_boundary_face(cell, f);
+      }
+
+      /// What J would fall, of each cell.
+      std::vector<double> parts;
+
+      /// That of an elastic body with these stresses.
+      double stress_energy = 0.;
+
+    private:
+      struct CellStress
+      {
+        LinearSimplex<dim>              simplex;
+        double                          mu;
+        double                          lambda;
+        dealii::SymmetricTensor<2, dim> stress;
+
+        /// sigma is what shears minus this times the identity.
+        double pressure;
+
+        /// int_K (f_0 + div sigma).
+        dealii::Tensor<1, dim> force;
+
+        /// What keeps the cell from expanding, and its gradient.
+        double                 thermal_pressure;
+        dealii::Tensor<1, dim> pressure_gradient;
+      };
+
+      struct Face
+      {
+        unsigned int           cell;
+        unsigned int           opposite; ///< vertex of the cell
+        double                 measure;
+        dealii::Tensor<1, dim> normal;
+
+        /// In the order of ContactBoundary's faces.
+        std::array<dealii::Point<dim>, dim> vertices;
+
+        dealii::Point<dim>
+        point(const std::array<double, dim> &barycentric) const
+        {
+          dealii::Point<dim> result;
+          for (unsigned int v = 0; v < dim; ++v)
+            result += barycentric[v] * vertices[v];
+          return result;
+        }
+      };
+
+      /// Loads are evaluated where load_vector() and thermal_stresses() do it:
+      /// there they are finite.
+      template <typename CellIterator>
+      void
+      add_volume_forces(const CellIterator &cell,
+                        const Material     &material,
+                        CellStress         &here) const
+      {
+        const double stress_of_one =
+          loads.temperature_change ?
+            load_factor * material.template thermal_stress<dim>() :
+            0.;
+        for (unsigned int q = 0; q < cell_rule.size(); ++q)
+          {
+            const double weight = cell_rule.weight(q) * (dim == 2 ? 2. : 6.);
+            dealii::Point<dim> point = cell->vertex(0);
+            // Times the basis' gradients at the vertices.
+            dealii::Tensor<1, dim> towards = here.simplex.gradients[0];
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const double lambda = cell_rule.point(q)[d];
+                point += lambda * (cell->vertex(d + 1) - cell->vertex(0));
+                towards += lambda * (here.simplex.gradients[d + 1] -
+                                     here.simplex.gradients[0]);
+              }
+            const auto add_force = [&](const Loads<dim> &load,
+                                       const double      factor) {
+              if (load.body_force)
+                for (unsigned int d = 0; d < dim; ++d)
+                  here.force[d] += factor * weight * here.simplex.volume *
+                                   field_value(*load.body_force, point, d);
+            };
+            add_force(loads, load_factor);
+            if (dead_loads != nullptr)
+              add_force(*dead_loads, 1.);
+            if (stress_of_one != 0.)
+              {
+                // The linear function with the same mean and moments.
+                const double pressure =
+                  stress_of_one * field_value(*loads.temperature_change, point);
+                here.thermal_pressure += weight * pressure;
+                here.pressure_gradient +=
+                  (dim + 1.) * (dim + 2.) * weight * pressure * towards;
+              }
+          }
+        here.force -= here.simplex.volume * here.pressure_gradient;
+      }
+
+      template <typename CellIterator>
+      Face
+      face_of(const CellIterator &cell, const unsigned int f) const
+      {
+        Face face = {
+          cell->active_cell_index(), dim * (dim + 1) / 2, 0., {}, {}};
+        for (unsigned int v = 0; v < dim; ++v)
+          {
+            const unsigned int vertex =
+              cell->reference_cell().face_to_cell_vertices(f, v, 1);
+            face.opposite -= vertex;
+            face.vertices[v] = cell->vertex(vertex);
+          }
+        const LinearSimplex<dim>     &simplex = cells[face.cell].simplex;
+        const dealii::Tensor<1, dim> &inward = simplex.gradients[face.opposite];
+        face.measure = dim * simplex.volume * inward.norm();
+        face.normal  = -inward / inward.norm();
+        return face;
+      }
+
+      /// - sigma n and its share of the volume's force, in the middle of the
+      /// face.
+      template <typename CellIterator>
+      dealii::Tensor<1, dim>
+      traction(const CellIterator &cell,
+               const unsigned int  f,
+               const Face         &face) const
+      {
+        const CellStress &here = cells[face.cell];
+        return -(here.stress * face.normal) +
+               pressure_change(cell, f, face) * face.normal +
+               mean_in_cell / face.measure * here.force;
+      }
+
+      /// From the middle of the cell to that of the face.
+      template <typename CellIterator>
+      double
+      pressure_change(const CellIterator &cell,
+                      const unsigned int  f,
+                      const Face         &face) const
+      {
+        return cells[face.cell].pressure_gradient *
+               (cell->face(f)->center() - cell->center());
+      }
+
+      double
+      bubble(const Face &face) const
+      {
+        return bubble_energy(cells[face.cell].simplex, face.opposite);
+      }
+
+      /// What J would fall by r with the given mean square.
+      static double
+      fall(const double square, const double measure, const double stiffness)
+      {
+        const double force = mean_on_face<dim> * measure;
+        return 0.5 * force * force * square / stiffness;
+      }
+
+      template <typename CellIterator>
+      void
+      add_inner_face(const CellIterator &cell, const unsigned int f)
+      {
+        const auto neighbor = cell->neighbor(f);
+        if (neighbor->active_cell_index() < cell->active_cell_index())
+          return;
+        const Face         face  = face_of(cell, f);
+        const unsigned int g     = cell->neighbor_face_no(f);
+        const Face         back  = face_of(neighbor, g);
+        const CellStress  &here  = cells[face.cell];
+        const CellStress  &there = cells[back.cell];
+        const double       a = bubble(face), b = bubble(back);
+
+        dealii::Tensor<1, dim> r =
+          traction(cell, f, face) + traction(neighbor, g, back);
+        double energy = 0.;
+        // At the interface of two materials only their sum has no jump.
+        if (here.mu == there.mu && here.lambda == there.lambda)
+          {
+            const double jump = here.pressure + pressure_change(cell, f, face) -
+                                there.pressure -
+                                pressure_change(neighbor, g, back);
+            r -= jump * face.normal;
+            energy = fall(jump * jump,
+                          face.measure,
+                          (here.lambda + 2. * here.mu) * (a + b));
+          }
+        energy +=
+          fall(r.norm_square(), face.measure, here.mu * a + there.mu * b);
+        parts[face.cell] += 0.5 * energy;
+        parts[back.cell] += 0.5 * energy;
+      }
+
+      template <typename CellIterator>
+      void
+      add_boundary_face(const CellIterator &cell, const unsigned int f)
+      {
+        const auto id         = cell->face(f)->boundary_id();
+        const bool is_contact = conditions.contact.count(id) > 0;
+        // They are numbered in this order.
+        const unsigned int contact_face = n_contact_faces;
+        n_contact_faces += is_contact;
+        if (conditions.clamped.count(id) > 0)
+          return;
+
+        const Face                   face   = face_of(cell, f);
+        const dealii::Tensor<1, dim> inner  = traction(cell, f, face);
+        double                       square = 0.;
+        for (unsigned int q = 0; q < rule.weights.size(); ++q)
+          {
+            dealii::Tensor<1, dim> r            = inner;
+            const auto             add_traction = [&](const Loads<dim> &load,
+                                          const double      factor) {
+              const auto entry = load.tractions.find(id);
+              if (entry == load.tractions.end())
+                return;
+              const dealii::Point<dim> point = face.point(rule.barycentric[q]);
+              for (unsigned int d = 0; d < dim; ++d)
+                r[d] += factor * field_value(*entry->second, point, d);
+            };
+            add_traction(loads, load_factor);
+            if (dead_loads != nullptr)
+              add_traction(*dead_loads, 1.);
+            if (is_contact)
+              r = with_foundation(r,
+                                  face.normal,
+                                  boundary.faces[contact_face],
+                                  rule.barycentric[q]);
+            square +=
+              rule.weights[q] * free_part(r, face.normal, id).norm_square();
+          }
+        parts[face.cell] +=
+          fall(square, face.measure, cells[face.cell].mu * bubble(face));
+      }
+
+      /// With what bonds bear, as far as the foundation lets the body go.
+      dealii::Tensor<1, dim>
+      with_foundation(const dealii::Tensor<1, dim>              &r,
+                      const dealii::Tensor<1, dim>              &normal,
+                      const typename ContactBoundary<dim>::Face &face,
+                      const std::array<double, dim> &barycentric) const
+      {
+        // Displacements of iterative methods may be off by so much.
+        constexpr double tolerance = 1e-6;
+        double r_nu = r * normal - adhesion.traction(face, barycentric, s);
+        if (std::all_of(face.nodes.begin(),
+                        face.nodes.end(),
+                        [this](const unsigned int node) {
+                          return node ==
+                                   dealii::numbers::invalid_unsigned_int ||
+                                 s(node) >= -tolerance * largest_s;
+                        }))
+          r_nu = std::min(r_nu, 0.);
+        return conditions.tangential_displacement_fixed ?
+                 r_nu * normal :
+                 r + (r_nu - r * normal) * normal;
+      }
+
+      /// Without the directions that supports hold.
+      dealii::Tensor<1, dim>
+      free_part(dealii::Tensor<1, dim>           r,
+                const dealii::Tensor<1, dim>    &normal,
+                const dealii::types::boundary_id id) const
+      {
+        for (const PrescribedDisplacement<dim> &held : supports.displacements)
+          if (held.boundaries.count(id) > 0)
+            {
+              if (held.is_roller)
+                r -= (r * normal) * normal;
+              else
+                for (unsigned int d = 0; d < dim; ++d)
+                  if (held.components[d])
+                    r[d] = 0.;
+            }
+        return r;
+      }
+
+      const AdhesionIntegral<dim>     &adhesion;
+      const ContactBoundary<dim>      &boundary;
+      const BoundaryConditions        &conditions;
+      const Supports<dim>             &supports;
+      const Loads<dim>                &loads;
+      const dealii::Vector<double>     s;
+      const Loads<dim>                *dead_loads;
+      const double                     load_factor;
+      const double                     largest_s;
+      const FaceRule<dim>              rule;
+      const dealii::QGaussSimplex<dim> cell_rule =
+        dealii::QGaussSimplex<dim>(2);
+      std::vector<CellStress> cells;
+      unsigned int            n_contact_faces = 0;
+    };
+  } // namespace
+
+
+
+  double
+  ErrorEstimate::relative() const
+  {
+    return scale > 0. ? functional / scale : 0.;
+  }
+
+
+
+  template <int dim>
+  ErrorEstimate
+  estimate_error(const ElasticProblem<dim>    &problem,
+                 const AdhesionIntegral<dim>  &adhesion,
+                 const BoundaryConditions     &conditions,
+                 const Supports<dim>          &supports,
+                 const Loads<dim>             &loads,
+                 const dealii::Vector<double> &u,
+                 const double                  functional,
+                 const LoadFactors             factors,
+                 const Loads<dim>             *dead_loads)
+  {
+    Residuals<dim> residuals(
+      problem, adhesion, conditions, supports, loads, u, factors, dead_loads);
+    ErrorEstimate result;
+    result.cells = std::move(residuals.parts);
+    for (double &part : result.cells)
+      {
+        part *= calibration<dim>;
+        result.functional += part;
+      }
+    result.is_of_J =
+      std::abs(functional) >= least_part_of_energy * residuals.stress_energy;
+    result.scale =
+      result.is_of_J ? std::abs(functional) : residuals.stress_energy;
+    return result;
+  }
+
+
+
+  template ErrorEstimate
+  estimate_error(const ElasticProblem<2> &,
+                 const AdhesionIntegral<2> &,
+                 const BoundaryConditions &,
+                 const Supports<2> &,
+                 const Loads<2> &,
+                 const dealii::Vector<double> &,
+                 const double,
+                 const LoadFactors,
+                 const Loads<2> *);
+  template ErrorEstimate
+  estimate_error(const ElasticProblem<3> &,
+                 const AdhesionIntegral<3> &,
+                 const BoundaryConditions &,
+                 const Supports<3> &,
+                 const Loads<3> &,
+                 const dealii::Vector<double> &,
+                 const double,
+                 const LoadFactors,
+                 const Loads<3> *);
+} // namespace Debond

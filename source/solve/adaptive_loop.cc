@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+
+#include <debond/base/interrupt.h>
+#include <debond/elasticity/mesh_transfer.h>
+#include <debond/mesh/bisected_body.h>
+#include <debond/solve/adaptive_loop.h>
+#include <debond/solve/scene_size.h>
+
+#include <cmath>
+#include <iomanip>
+#include <queue>
+#include <sstream>
+
+namespace Debond
+{
+  namespace
+  {
+    /// The next mesh has so many times the cells, without those that have to be
+    /// cut for others.
+    constexpr double growth = 1.7;
+
+    /// How often each cell is to be cut. The cell with the largest part of the
+    /// estimate is next until there are enough; where the solution is smooth, a
+    /// half has 2^(-(2 + dim) / dim) of its part.
+    std::vector<unsigned int>
+    divisions(const std::vector<double> &parts, const unsigned int dim)
+    {
+      struct Piece
+      {
+        double       part;
+        unsigned int cell;
+
+        bool
+        operator<(const Piece &other) const
+        {
+          return part != other.part ? part < other.part : cell > other.cell;
+        }
+      };
+      std::priority_queue<Piece> pieces;
+      for (unsigned int cell = 0; cell < parts.size(); ++cell)
+        pieces.push({parts[cell], cell});
+
+      const double              of_a_half = std::pow(2., -(2. + dim) / dim);
+      std::vector<unsigned int> times(parts.size(), 0);
+      double                    n    = static_cast<double>(parts.size());
+      const double              goal = growth * n;
+      while (n < goal && pieces.top().part > 0.)
+        {
+          const Piece largest = pieces.top();
+          pieces.pop();
+          n += std::ldexp(1., static_cast<int>(times[largest.cell]++));
+          pieces.push({largest.part * of_a_half, largest.cell});
+        }
+      return times;
+    }
+
+
+
+    template <int dim>
+    const BisectedBody<dim> &
+    bisected(const Scene<dim> &scene)
+    {
+      return dynamic_cast<const BisectedBody<dim> &>(scene.body());
+    }
+
+
+
+    /// Why there can be no mesh as large as that of @p body; empty if there
+    /// can.
+    template <int dim>
+    std::string
+    too_large(const Parameters &parameters, const Body<dim> &body)
+    {
+      const SceneSize size =
+        scene_size(body, dim, parameters.contact_boundaries);
+      std::ostringstream text;
+      text << "the next mesh would have " << std::fixed << std::setprecision(0)
+           << size.unknowns << " unknowns, ";
+      const double limit = parameters.solver.memory_limit > 0. ?
+                             parameters.solver.memory_limit :
+                             available_memory();
+      if (parameters.accuracy.maximum_unknowns > 0 &&
+          size.unknowns > parameters.accuracy.maximum_unknowns)
+        text << "Accuracy/Maximum unknowns is "
+             << parameters.accuracy.maximum_unknowns;
+      else if (memory_with_factorisation(size, dim) > limit)
+        text << "which need about " << std::setprecision(1)
+             << memory_with_factorisation(size, dim) / (1 << 30)
+             << " GiB of memory, the limit is " << limit / (1 << 30) << " GiB";
+      else
+        return "";
+      return text.str();
+    }
+
+
+
+    /// What is left of a loop that a signal ends on the way to the next mesh.
+    void
+    interrupt(SolveResult &solve)
+    {
+      solve.status  = SolverStatus::interrupted;
+      solve.message = "The result is that of the last mesh that was finished.";
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::unique_ptr<const Scene<dim>>
+  make_first_scene(const Parameters &parameters, const MatrixStorage storage)
+  {
+    if (!parameters.accuracy.is_adaptive())
+      return std::make_unique<const Scene<dim>>(parameters, storage);
+    std::shared_ptr<const Body<dim>> body;
+    try
+      {
+        body = std::make_shared<const BisectedBody<dim>>(
+          std::dynamic_pointer_cast<const Body<dim>>(parameters.body));
+      }
+    catch (const PartError &)
+      {
+        // The scene without refinement says which entry that is.
+        return std::make_unique<const Scene<dim>>(parameters, storage);
+      }
+    catch (const std::invalid_argument &error)
+      {
+        throw BadInput({parameters.scene + ": Accuracy: " + error.what()});
+      }
+    return std::make_unique<const Scene<dim>>(parameters, body, storage);
+  }
+
+
+
+  template <int dim>
+  AdaptiveResult
+  solve_adaptively(const MethodChoice                               &choice,
+                   const Parameters                                 &parameters,
+                   const std::function<void(const AdaptiveLevel &)> &report,
+                   std::unique_ptr<const Scene<dim>>                &scene)
+  {
+    Parameters quiet             = parameters;
+    quiet.output.machine_details = false;
+    std::ostringstream no_log;
+
+    AdaptiveResult                                result;
+    const InterruptGuard                          guard;
+    dealii::Timer                                 timer;
+    std::unique_ptr<const Scene<dim>>             next;
+    std::unique_ptr<const dealii::Vector<double>> start;
+    while (true)
+      {
+        const bool        is_first = !next;
+        const Scene<dim> &here     = is_first ? *scene : *next;
+        SolveResult       solution =
+          solve(choice, quiet, here, no_log, false, nullptr, start.get());
+        if (!is_first && solution.status == SolverStatus::interrupted)
+          {
+            interrupt(result.solve);
+            return result;
+          }
+        result.solve = std::move(solution);
+        if (!is_first)
+          scene = std::move(next);
+        if (!can_be_verified(result.solve.status) ||
+            result.solve.minimum.interrupted)
+          return result;
+
+        ErrorEstimate estimate;
+        try
+          {
+            estimate = estimate_error(scene->problem(),
+                                      scene->adhesion(),
+                                      scene->conditions(),
+                                      scene->supports(),
+                                      scene->loads(),
+                                      result.solve.u,
+                                      result.solve.functional,
+                                      1.,
+                                      &scene->dead_loads());
+          }
+        catch (const std::invalid_argument &error)
+          {
+            result.shortfall =
+              std::string("The error of the mesh is not known, ") +
+              error.what() + '.';
+            return result;
+          }
+        const ElasticUnknowns<dim> &unknowns = scene->problem().unknowns();
+        report({scene->n_cells(),
+                unknowns.n_free_dofs(),
+                unknowns.contact().size(),
+                result.solve.iterations,
+                result.solve.functional,
+                estimate.relative(),
+                timer.wall_time() + (is_first ? scene->mesh_seconds() +
+                                                  scene->assembly_seconds() :
+                                                0.)});
+        if (estimate.relative() <= parameters.accuracy.target)
+          return result;
+
+        timer.restart();
+        const std::shared_ptr<const BisectedBody<dim>> body =
+          bisected(*scene).refined(divisions(estimate.cells, dim));
+        const std::string limit = too_large<dim>(parameters, *body);
+        if (!limit.empty() || estimate.functional == 0.)
+          {
+            if (parameters.accuracy.target > 0.)
+              {
+                std::ostringstream text;
+                text << "The estimated error of " << std::setprecision(2)
+                     << estimate.relative() << " is above Accuracy/Target = "
+                     << parameters.accuracy.target << ": " << limit << '.';
+                result.shortfall = text.str();
+              }
+            return result;
+          }
+        std::vector<dealii::Tensor<1, dim>> displacements =
+          vertex_displacements(scene->problem(), result.solve.u);
+        body->extend(displacements);
+        next = std::make_unique<const Scene<dim>>(parameters,
+                                                  body,
+                                                  matrix_storage(choice));
+        if (guard.requested())
+          {
+            interrupt(result.solve);
+            return result;
+          }
+        start = std::make_unique<const dealii::Vector<double>>(
+          from_vertex_displacements(displacements, next->problem()));
+      }
+  }
+
+
+
+  template std::unique_ptr<const Scene<2>>
+  make_first_scene(const Parameters &, const MatrixStorage);
+  template std::unique_ptr<const Scene<3>>
+  make_first_scene(const Parameters &, const MatrixStorage);
+  template AdaptiveResult
+  solve_adaptively(const MethodChoice &,
+                   const Parameters &,
+                   const std::function<void(const AdaptiveLevel &)> &,
+                   std::unique_ptr<const Scene<2>> &);
+  template AdaptiveResult
+  solve_adaptively(const MethodChoice &,
+                   const Parameters &,
+                   const std::function<void(const AdaptiveLevel &)> &,
+                   std::unique_ptr<const Scene<3>> &);
+} // namespace Debond
