@@ -205,10 +205,9 @@ namespace Debond
     make_contact_boundary(conditions, supports, vertices, diameter, held);
     for (const auto &[index, vertex] : vertices)
       constrain(vertex, index, held);
-    if (prescribed.all_zero())
-      prescribed.reinit(0);
-    if (gap.all_zero())
-      gap.reinit(0);
+    for (dealii::Vector<double> *part : {&prescribed, &gap})
+      if (part->size() > 0 && part->all_zero())
+        part->reinit(0);
 
     free_motions = free_rigid_motions(held, diameter);
     if (!free_motions.motions.empty())

@@ -102,6 +102,7 @@ namespace Debond
     bind_solver(p.solver, p.checkpoints, *this);
     bind_accuracy(p.accuracy, *this);
     bind_verification(p.verification, *this);
+    bind_certificate(p.certificate, *this);
     bind_output(p.output, *this);
   }
 
@@ -173,6 +174,21 @@ namespace Debond
                      "needs Contact law/Quadrature = nodal, which gives each "
                      "node a bond of its own",
                      {"Contact law/Quadrature"});
+    }
+
+
+
+    void
+    check_certificate(const Parameters &p, ParameterTable &table)
+    {
+      if (p.certificate.kind == CertificateKind::none)
+        return;
+      if (p.dimension != 2)
+        table.reject("Certificate/Kind", "is for plane bodies", {"Dimension"});
+      if (!p.load_path.factors.empty() || !p.load_path.dead_loads.empty())
+        table.reject("Certificate/Kind",
+                     "is for a single load",
+                     {"Load path/Factors", "Load path/Dead loads"});
     }
 
 
@@ -302,6 +318,7 @@ namespace Debond
                      *this);
       }
     check_bonds(p, *this);
+    check_certificate(p, *this);
     check_exact_displacement(p, *this);
     check_accuracy(p, *this);
     if (!errors().empty())

@@ -5,6 +5,7 @@
 
 #include <debond/base/atomic_file.h>
 #include <debond/base/directory_lock.h>
+#include <debond/base/interrupt.h>
 #include <debond/check/plausibility.h>
 #include <debond/input/expression.h>
 #include <debond/output/load_path_output.h>
@@ -255,6 +256,67 @@ namespace Debond
 
 
 
+    /// What certifies results of the scene, null if that is not asked for.
+    /// Throws BadInput if it cannot be done.
+    template <int dim>
+    std::unique_ptr<const Certifier>
+    make_certifier([[maybe_unused]] const Parameters &parameters,
+                   [[maybe_unused]] const Scene<dim> &scene)
+    {
+      if constexpr (dim == 2)
+        if (parameters.certificate.kind != CertificateKind::none)
+          try
+            {
+              return std::make_unique<const Certifier>(
+                parameters.certificate.kind, scene);
+            }
+          catch (const EquilibriumError &error)
+            {
+              const std::string entry = "Certificate/Kind";
+              throw BadInput({parameters.locations.at(entry) + ": " + entry +
+                              ": " + error.what()});
+            }
+      return nullptr;
+    }
+
+
+
+    /// @p certifier: of the scene as it was before its mesh was refined.
+    template <int dim>
+    void
+    certify_result(const Certifier                   &certifier,
+                   const Parameters                  &parameters,
+                   [[maybe_unused]] const Scene<dim> &scene,
+                   RunResult<dim>                    &result)
+    {
+      dealii::Timer        timer;
+      const InterruptGuard guard;
+      const auto           certify = [&](const Certifier &current) {
+        result.certificate =
+          current.certify(result.solve.u, parameters.solver.proof, [&guard]() {
+            return !guard.requested();
+          });
+      };
+      try
+        {
+          if constexpr (dim == 2)
+            {
+              if (parameters.accuracy.is_adaptive())
+                certify(Certifier(parameters.certificate.kind, scene));
+              else
+                certify(certifier);
+            }
+        }
+      catch (const EquilibriumError &error)
+        {
+          result.notes.push_back(std::string("There is no certificate: ") +
+                                 error.what() + ".");
+        }
+      result.times.emplace_back("certificate", timer.wall_time());
+    }
+
+
+
     /// Removes the checkpoint of a success; otherwise adds it to the files that
     /// are @p written. Returns what kept it from being written.
     template <int dim>
@@ -319,6 +381,8 @@ namespace Debond
     error_of(parameters,
              scene->problem(),
              dealii::Vector<double>(scene->problem().unknowns().n_dofs()));
+    const std::unique_ptr<const Certifier> certifier =
+      make_certifier(parameters, *scene);
     RunCheckpoints checkpoints(parameters.checkpoints,
                                parameters.output.directory,
                                choice);
@@ -393,6 +457,8 @@ namespace Debond
         result.path);
     result.times.emplace_back("solve", timer.wall_time());
     check_result(parameters, *scene, shortfall, result);
+    if (certifier && result.is_success())
+      certify_result(*certifier, parameters, *scene, result);
     std::string output_error = finish_checkpoints(checkpoints, result, written);
     report_result(parameters, *scene, choice, result, record);
 

@@ -284,6 +284,7 @@ namespace Debond
                     std::shared_ptr<const Body<dim>> body,
                     const MatrixStorage              storage)
     : elastic_body(std::move(body))
+    , body_materials(parameters.materials.everywhere)
   {
     BoundaryNames boundaries;
     dealii::Timer timer;
@@ -312,8 +313,8 @@ namespace Debond
           make_loads<dim>(parameters.loads, dead_loads, false, boundaries);
         body_dead_loads =
           make_loads<dim>(parameters.loads, dead_loads, true, boundaries);
-        elastic_problem->assemble(make_materials(parameters.materials,
-                                                 names.regions),
+        body_materials = make_materials(parameters.materials, names.regions);
+        elastic_problem->assemble(body_materials,
                                   body_loads,
                                   storage,
                                   body_dead_loads);
@@ -438,6 +439,15 @@ namespace Debond
   Scene<dim>::supports() const
   {
     return body_supports;
+  }
+
+
+
+  template <int dim>
+  const ByRegion<Material> &
+  Scene<dim>::materials() const
+  {
+    return body_materials;
   }
 
 

@@ -6,6 +6,7 @@
 #include <debond/contact/law.h>
 #include <debond/contact/quadrature.h>
 #include <debond/input/accuracy_parameters.h>
+#include <debond/input/certificate_parameters.h>
 #include <debond/input/load_parameters.h>
 #include <debond/input/load_path_parameters.h>
 #include <debond/input/material_parameters.h>
@@ -66,6 +67,7 @@ namespace Debond
     CheckpointParameters               checkpoints;
     AccuracyParameters                 accuracy;
     VerificationParameters             verification;
+    CertificateParameters              certificate;
     OutputParameters                   output;
 
     /// The scene with all entries that it leaves to their defaults.

@@ -6,6 +6,7 @@
 #include <debond/check/error_estimate.h>
 #include <debond/check/largest_values.h>
 #include <debond/solve/adaptive_loop.h>
+#include <debond/solve/certificate.h>
 #include <debond/solve/load_path_steps.h>
 #include <debond/solve/solve.h>
 
@@ -41,6 +42,9 @@ namespace Debond
 
     /// If the exact displacement is known.
     std::optional<DisplacementError> displacement_error;
+
+    /// Of a success, if the scene asks for it.
+    std::optional<Certificate> certificate;
 
     /// If the scene has a load path; all the rest is of its last step.
     std::vector<LoadPathStep<dim>> path;

@@ -8,6 +8,7 @@
 #include <debond/contact/functional.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/input/parameters.h>
+#include <debond/mesh/by_region.h>
 
 #include <memory>
 
@@ -47,6 +48,9 @@ namespace Debond
 
     const Supports<dim> &
     supports() const;
+
+    const ByRegion<Material> &
+    materials() const;
 
     const Loads<dim> &
     loads() const;
@@ -106,6 +110,7 @@ namespace Debond
     Supports<dim>                                      body_supports;
     Loads<dim>                                         body_loads;
     Loads<dim>                                         body_dead_loads;
+    ByRegion<Material>                                 body_materials;
     std::unique_ptr<ElasticProblem<dim>>               elastic_problem;
     std::unique_ptr<AdhesiveLaw>                       adhesive_law;
     std::unique_ptr<ContactQuadrature<dim>>            quadrature;

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_equilibrium_problem_h
+#define debond_elasticity_equilibrium_problem_h
+
+#include <deal.II/grid/tria.h>
+#include <deal.II/lac/sparse_matrix.h>
+#include <deal.II/lac/sparsity_pattern.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/elasticity/equilibrium_element.h>
+#include <debond/elasticity/load_vector.h>
+#include <debond/elasticity/unknowns.h>
+#include <debond/linear_algebra/condensation.h>
+#include <debond/mesh/by_region.h>
+
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+namespace Debond
+{
+  /// A body or a load for which there are no equilibrated stresses.
+  class EquilibriumError : public std::invalid_argument
+  {
+  public:
+    using std::invalid_argument::invalid_argument;
+  };
+
+
+
+  /**
+   * The best equilibrated stress of a plane body for given normal displacements
+   * of its contact boundary, by EquilibriumElement on all cells: where the four
+   * triangles at a vertex are a parallelogram of one material they are one
+   * element, all other triangles are elements of their own. The tractions
+   * between elements are made continuous by the displacements of the sides
+   * (hybridisation), which are the unknowns: four numbers a side, normal and
+   * tangential ones on the contact boundary and on rollers. The matrix is
+   * symmetric and positive definite.
+   *
+   * Loads are represented by the linear tractions with the same moments on each
+   * side and by the mean body force of each element.
+   */
+  class EquilibriumProblem
+  {
+  public:
+    /// A side on the contact boundary.
+    struct ContactSide
+    {
+      std::array<dealii::Point<2>, 2> ends;
+      std::array<unsigned int, 2>     vertices; ///< in this order
+      dealii::Tensor<1, 2>            normal;   ///< outward unit normal
+      double                          length;
+      unsigned int                    element; ///< above it
+      unsigned int                    cell;    ///< above it, active
+      dealii::types::material_id      material;
+
+      /// The mean of the normal displacement and its slope, the coefficient of
+      /// xi from -1 at the first to 1 at the second end, as unknowns.
+      unsigned int mean, slope;
+    };
+
+    /// @p thermal_stresses: of each active cell, see thermal_stresses(); none
+    /// if empty. Keeps a reference to the mesh. Throws EquilibriumError for
+    /// what is not done: displacements that are prescribed and not zero, gaps,
+    /// and contact sides that are supported as well.
+    EquilibriumProblem(const dealii::Triangulation<2> &mesh,
+                       const BoundaryConditions       &conditions,
+                       const Supports<2>              &supports,
+                       const ByRegion<Material>       &materials,
+                       const Loads<2>                 &loads,
+                       const std::vector<double>      &thermal_stresses = {});
+
+    const std::vector<EquilibriumElement> &
+    elements() const;
+
+    const std::vector<ContactSide> &
+    contact_sides() const;
+
+    /// Fixes an unknown.
+    void
+    fix(const unsigned int unknown);
+
+    /// Unknowns that are not fixed.
+    unsigned int
+    n_unknowns() const;
+
+    /// Whether tractions are linear on each side, and body forces and
+    /// temperatures constant on each element, to rounding.
+    bool
+    loads_are_exact() const;
+
+    /// The problem condensed onto the means, or onto the means and then the
+    /// slopes, of the normal displacements of the contact sides in their
+    /// order:
+    ///     max_sigma -1/2 int (sigma + p 1) : C^{-1} (sigma + p 1)
+    ///               + int_{Gamma_C} sigma_nu (mean + slope xi)
+    ///         = c_0 + 1/2 s'S s - g's.
+    /// Each element is @p weights times as stiff (all as they are if empty);
+    /// @p added has unknowns and what is added to their diagonal entries of the
+    /// matrix.
+    ///
+    /// Throws std::runtime_error if the matrix is not positive definite.
+    std::unique_ptr<Condensation>
+    condense(
+      const bool                                          keep_slopes,
+      const std::vector<double>                          &weights = {},
+      const std::vector<std::pair<unsigned int, double>> &added   = {}) const;
+
+    /// 1/2 a(u,u) - L(u) of the P1 displacement u with the given Cartesian
+    /// values at the vertices, for the loads as represented here.
+    double
+    elastic_functional(
+      const std::vector<dealii::Tensor<1, 2>> &vertex_values) const;
+
+    /// Of each active cell
+    ///     1/2 int |C^{1/2} epsilon(u) - C^{-1/2} (sigma + p 1)|^2
+    /// of u as above and of the stress for @p unknowns, which are those of a
+    /// condensation without weights.
+    std::vector<double>
+    constitutive_gaps(const std::vector<dealii::Tensor<1, 2>> &vertex_values,
+                      const dealii::Vector<double>            &unknowns) const;
+
+  private:
+    struct Side
+    {
+      std::array<unsigned int, 2> vertices;
+
+      /// Unit directions of its unknowns in the rows: x and y, or normal and
+      /// tangential.
+      dealii::Tensor<2, 2> directions;
+    };
+
+    /// An element in the mesh: its corners counterclockwise, the active cell
+    /// above each of its sides (always the same one in a triangle), its sides
+    /// and whether it runs against them.
+    struct Place
+    {
+      std::vector<unsigned int>                            vertices;
+      std::vector<dealii::Triangulation<2>::cell_iterator> cells;
+      std::vector<unsigned int>                            sides;
+      std::vector<char>                                    is_reversed;
+      dealii::Tensor<1, 2>                                 body_force;
+    };
+
+    void
+    find_elements();
+
+    void
+    make_elements(const Loads<2> &loads);
+
+    void
+    make_sides();
+
+    void
+    fix_sides(const BoundaryConditions &conditions,
+              const Supports<2>        &supports,
+              const Loads<2>           &loads);
+
+    void
+    add_tractions(const unsigned int side, const dealii::Function<2> &traction);
+
+    double
+    thermal_stress(const dealii::Triangulation<2>::cell_iterator &cell) const;
+
+    std::vector<unsigned int>
+    unknowns_of(const unsigned int element) const;
+
+    /// l of EquilibriumElement as this matrix times the element's unknowns.
+    Eigen::MatrixXd
+    to_element(const unsigned int element) const;
+
+    const dealii::Triangulation<2> &mesh;
+    const ByRegion<Material>        materials;
+    const std::vector<double>       thermal_stresses;
+
+    std::vector<Place>              places;
+    std::vector<EquilibriumElement> all_elements;
+    std::vector<Side>               sides;
+    std::vector<ContactSide>        sides_in_contact;
+
+    // By unknown, four for each side.
+    std::vector<char> is_fixed;
+    Eigen::VectorXd   loads_on_sides;
+
+    bool exact_loads = true;
+  };
+} // namespace Debond
+
+#endif

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_certificate_h
+#define debond_solve_certificate_h
+
+#include <debond/elasticity/equilibrium_problem.h>
+#include <debond/input/certificate_parameters.h>
+#include <debond/optimization/global/branch_and_bound.h>
+#include <debond/solve/scene.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// What an interval is for.
+  enum class CertifiedMinimum
+  {
+    global,     ///< the least J
+    fixed_state ///< the least J with the bonds of each side as they are
+  };
+
+
+
+  /**
+   * An interval for the minimum of the continuous problem, in the body of the
+   * mesh: `upper` is J of the P1 displacement, with j_1 integrated exactly,
+   * `lower` comes from equilibrated stresses (doc/reference/certificate.md).
+   */
+  struct Certificate
+  {
+    CertifiedMinimum minimum = CertifiedMinimum::global;
+    double           lower   = 0.;
+    double           upper   = 0.;
+
+    /// Or for loads that are linear on each side and constant in each element.
+    bool loads_are_exact = true;
+
+    unsigned int n_unknowns = 0; ///< of the equilibrated stresses
+    unsigned int n_sides    = 0; ///< of the contact boundary
+
+    /// Of CertifiedMinimum::global, unless J is convex.
+    ProofStatus  proof_status = ProofStatus::proved;
+    unsigned int proof_nodes  = 0;
+
+    /// upper - lower of each active cell, with the contact sides above it,
+    /// where the bonds' branches are fixed; empty otherwise.
+    std::vector<double> gaps;
+
+    double seconds = 0.;
+
+    /// (upper - lower) / |upper|
+    double
+    width() const;
+  };
+
+
+
+  /// Certificates of displacements of a scene, for its whole load.
+  class Certifier
+  {
+  public:
+    /// Keeps a reference to the scene. Throws EquilibriumError if there is no
+    /// certificate for it: with gaps, prescribed displacements, bonds that
+    /// vary, contact boundaries whose corners are rounded by a mean normal or,
+    /// for the least J with bonds that break, cells at the contact boundary
+    /// that are not crossed rectangles.
+    Certifier(const CertificateKind kind, const Scene<2> &scene);
+
+    /// @p proof: limits of branch and bound. Throws EquilibriumError if no
+    /// bound was found.
+    Certificate
+    certify(const dealii::Vector<double>   &u,
+            const BranchAndBoundParameters &proof,
+            const std::function<bool()>    &may_go_on) const;
+
+  private:
+    const Scene<2>          &scene;
+    const CertifiedMinimum   minimum;
+    const EquilibriumProblem equilibrium;
+
+    /// Of the contact sides, if branches are not fixed.
+    std::vector<double> trace_constants;
+  };
+} // namespace Debond
+
+#endif

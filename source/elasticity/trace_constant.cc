@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/numbers.h>
+
+#include <debond/elasticity/equilibrium_problem.h>
+#include <debond/elasticity/trace_constant.h>
+#include <debond/linear_algebra/eigen_view.h>
+#include <debond/mesh/box.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace Debond
+{
+  namespace
+  {
+    /// The least value of S relative to the mass matrix of the traces that are
+    /// linear on each of n sides, without those that are linear on all of them;
+    /// S comes from a part 1 - theta of the stiffness at the sides.
+    double
+    least_eigenvalue(const RectangleAboveSide &Q,
+                     const Material           &material,
+                     const bool                tangential_fixed,
+                     const unsigned int        n,
+                     const double              theta)
+    {
+      dealii::Triangulation<2> mesh;
+      const BoundaryNames      names =
+        Box<2>({{{Q.width, Q.height, 0.}}, {{n, n, 1}}})
+          .make_mesh(mesh)
+          .boundaries;
+      BoundaryConditions conditions;
+      conditions.contact                       = names.at("bottom");
+      conditions.tangential_displacement_fixed = tangential_fixed;
+      EquilibriumProblem problem(mesh, conditions, {}, material, Loads<2>());
+      // A motion along I does not change the energy.
+      if (!tangential_fixed)
+        problem.fix(problem.contact_sides()[0].mean + 1);
+
+      const auto         &sides = problem.contact_sides();
+      std::vector<double> weights(problem.elements().size(), 1.);
+      for (const EquilibriumProblem::ContactSide &side : sides)
+        weights[side.element] = 1. - theta;
+
+      const double    h = Q.width / n;
+      Eigen::VectorXd mass(2 * n);
+      Eigen::MatrixXd linear = Eigen::MatrixXd::Zero(2 * n, 2);
+      // Rigid motions have no energy: they get that of springs at I.
+      const double spring = material.young_modulus / Q.width;
+      std::vector<std::pair<unsigned int, double>> springs;
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          mass(i)          = h;
+          mass(n + i)      = h / 3.;
+          linear(i, 0)     = 1.;
+          linear(i, 1)     = 0.5 * (sides[i].ends[0][0] + sides[i].ends[1][0]);
+          linear(n + i, 1) = 0.5 * (sides[i].ends[1][0] - sides[i].ends[0][0]);
+          springs.emplace_back(sides[i].mean, spring * mass(i));
+          springs.emplace_back(sides[i].slope, spring * mass(n + i));
+        }
+      const auto condensed       = problem.condense(true, weights, springs);
+      const Eigen::MatrixXd S    = eigen_view(condensed->schur_complement());
+      const Eigen::VectorXd root = mass.cwiseSqrt();
+      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(root.asDiagonal() *
+                                                     linear);
+      const Eigen::MatrixXd                       complement =
+        Eigen::MatrixXd(qr.householderQ()).rightCols(2 * n - 2);
+      const Eigen::VectorXd inverse_root = root.cwiseInverse();
+      const Eigen::MatrixXd scaled       = complement.transpose() *
+                                     inverse_root.asDiagonal() * S *
+                                     inverse_root.asDiagonal() * complement;
+      return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
+               scaled, Eigen::EigenvaluesOnly)
+               .eigenvalues()(0) -
+             spring;
+    }
+  } // namespace
+
+
+
+  double
+  elementary_trace_constant(const RectangleAboveSide &Q,
+                            const Material           &material,
+                            const bool                tangential_fixed)
+  {
+    const double w = Q.width / dealii::numbers::PI, h = Q.height;
+    const double bound =
+      tangential_fixed ?
+        4. / std::pow(h, 4) *
+          (2. / 3. * w * w * std::pow(h, 3) + std::pow(w, 4) * h +
+           std::pow(h, 5) / 20.) :
+        64. / std::pow(h, 6) *
+          (w * w * std::pow(h, 5) / 24. + std::pow(w, 4) * std::pow(h, 3) / 4. +
+           std::pow(h, 7) / 64.);
+    // The least of 2 mu |epsilon|^2 + lambda (tr epsilon)^2.
+    const double stiffness =
+      2. * (material.shear_modulus() + std::min(0., material.lame_lambda<2>()));
+    return stiffness / bound;
+  }
+
+
+
+  double
+  trace_constant(const RectangleAboveSide &Q,
+                 const Material           &material,
+                 const bool                tangential_fixed,
+                 const unsigned int        n)
+  {
+    // Scaled, so that systems of units do not matter.
+    Material unit                  = material;
+    unit.young_modulus             = 1.;
+    const RectangleAboveSide shape = {1., Q.height / Q.width};
+
+    // theta n has to be more than 1.
+    constexpr std::array<double, 4> multiples = {{1.1, 1.5, 2.5, 5.}};
+    std::array<double, 4>           theta, least;
+    for (unsigned int k = 0; k < theta.size(); ++k)
+      {
+        theta[k] = std::min(multiples[k] / n, 0.9);
+        least[k] = least_eigenvalue(shape, unit, tangential_fixed, n, theta[k]);
+      }
+
+    double constant = elementary_trace_constant(shape, unit, tangential_fixed);
+    for (double previous = 0.; constant > (1. + 1e-6) * previous;)
+      {
+        previous = constant;
+        for (unsigned int k = 0; k < theta.size(); ++k)
+          constant =
+            std::max(constant, std::min(least[k], theta[k] * n * previous));
+      }
+    constexpr double rounding = 1e-9;
+    return (1. - rounding) * constant * material.young_modulus / Q.width;
+  }
+} // namespace Debond

@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""check_certificate.py DEBOND [N [FIRST]]: intervals for the least J of the
+continuous problem on N random scenes (bars, strips and pads with clamps of all
+kinds, three laws, both tangential conditions, three systems of units), each on a
+mesh and on one four times as fine. All of them hold for one number, so the lower
+ends have to be below the upper ends of the other mesh, which knows nothing of
+them; and finer meshes have narrower intervals. Then the branches of a state that
+is kept, and what has no certificate."""
+import json
+import os
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+
+UNITS = ((1., 1.), (1e3, 1e3), (1., 1e9))  # of length and of stress
+
+
+def run(debond, entries):
+    result = subprocess.run(
+        [debond, "scene.prm", "--set", "Output/Directory=output"] +
+        [word for entry in entries for word in ("--set", entry)],
+        capture_output=True, text=True, timeout=600)
+    if result.returncode != 0:
+        return result, None
+    return result, json.loads(
+        pathlib.Path("output/summary.json").read_text())
+
+
+def draw(generator):
+    length, stress = generator.choice(UNITS)
+    height = generator.choice((0.03, 0.1, 0.4)) * length
+    width = generator.choice((1., 3.)) * 0.4 * length
+    nu = generator.uniform(0., 0.48)
+    clamps = generator.choice(("left", "right", "left, right", "top"))
+    side = "top" if clamps != "top" else "right"
+    jump = generator.choice((0.25, 0.5)) * width
+    load = [generator.uniform(-1., 1.) * stress * height / length
+            for _ in range(2)]
+    a = 10.**generator.uniform(0., 3.) * stress / length
+    entries = [
+        f"Mesh/Lengths={width!r}, {height!r}",
+        f"Material/Young modulus={69. * stress!r}",
+        f"Material/Poisson ratio={nu!r}",
+        "Material/Hypothesis=" +
+        generator.choice(("plane stress", "plane strain")),
+        f"Boundary conditions/Clamped boundaries={clamps}",
+        "Contact law/Tangential displacement=" +
+        generator.choice(("fixed", "free")),
+        "Loads/Traction top=",
+        f"Loads/Traction {side}=0; " +
+        (f"if(x<{jump!r},{load[0]!r},{load[1]!r})" if side == "top" else
+         f"{load[0]!r}*y/{height!r}"),
+        f"Loads/Body force=0; {generator.uniform(-1., 1.) * stress / length!r}"]
+    law = generator.choice(("winkler", "winkler", "stepped", "none"))
+    entries.append("Contact law/Law=" + law)
+    threshold = 10.**generator.uniform(-4., -2.) * length
+    if law == "stepped":
+        entries += [f"Contact law/Stepped/Stiffnesses={a!r}, {a / 3.!r}",
+                    f"Contact law/Stepped/Thresholds={threshold!r}, "
+                    f"{2. * threshold!r}"]
+    elif law == "winkler":
+        entries += [f"Contact law/Bond stiffness={a!r}",
+                    f"Contact law/Bond threshold={threshold!r}"]
+    return entries, [4 * generator.randint(2, 5), generator.randint(1, 3)]
+
+
+def main(debond, n, first):
+    failures, widths = [], []
+    solved = unsolved = proofs_ended = 0
+    for number in range(first, first + n):
+        entries, cells = draw(random.Random(number))
+        intervals = []
+        for factor in (1, 4):
+            result, summary = run(
+                debond, entries +
+                [f"Mesh/Cells={factor * cells[0]}, {factor * cells[1]}",
+                 "Solver/Proof/Maximum nodes=200", "Certificate/Kind=global"])
+            if summary is None or "certificate" not in summary:
+                break
+            intervals.append(summary["certificate"])
+        if len(intervals) < 2:
+            unsolved += 1
+            if summary is None and result.returncode not in (2, 3):
+                failures.append(f"{number}: exit code {result.returncode}, "
+                                f"{result.stderr}")
+            continue
+        solved += 1
+        coarse, fine = intervals
+        proofs_ended += all(interval["proof_status"] == "proved"
+                            for interval in intervals)
+        widths.append(fine["relative_width"])
+        if not (coarse["lower"] <= fine["upper"] and
+                fine["lower"] <= coarse["upper"] and
+                fine["lower"] <= fine["upper"]):
+            failures.append(f"{number}: {coarse}, {fine}, {entries}")
+    if n > 20:
+        widths.sort()
+        print(f"{solved} scenes with intervals, {unsolved} without, in "
+              f"{proofs_ended} all proofs ended; relative width on the finer "
+              f"mesh {widths[len(widths) // 2]:.1e} in the median, "
+              f"{widths[-1]:.1e} at most")
+    elif solved < n // 2:
+        failures.append(f"{unsolved} of {n} scenes have no certificate")
+
+    # The least J is not above that with some branches kept, and both have the
+    # result above them.
+    summaries = [run(debond, [f"Certificate/Kind={kind}"])[1]["certificate"]
+                 for kind in ("global", "fixed state")]
+    if not (summaries[0]["minimum"] == "global" and
+            summaries[1]["minimum"] == "fixed state" and
+            summaries[0]["lower"] <= summaries[1]["upper"]):
+        failures.append(f"kinds: {summaries}")
+    without_bonds = run(debond, ["Certificate/Kind=fixed state",
+                                 "Contact law/Law=none"])[1]["certificate"]
+    if without_bonds["minimum"] != "global":
+        failures.append("without bonds a state is all there is")
+
+    def refused(words, added):
+        result, _ = run(debond, ["Certificate/Kind=global"] + added)
+        if result.returncode != 2 or words not in result.stderr:
+            failures.append(f"{added}: expected '{words}', exit code 2: exit "
+                            f"code {result.returncode}, {result.stderr!r}")
+
+    refused("is for plane bodies", ["Dimension=3", "Loads/Traction top=0;1;0"])
+    refused("is for a single load", ["Load path/Factors=0.5, 1"])
+    refused("an initial gap is not done", ["Contact law/Initial gap=1e-3"])
+    refused("bonds that vary are not done",
+            ["Contact law/Bond stiffness=69*(1+x)"])
+    refused("a prescribed displacement that is not zero is not done",
+            ["Boundary conditions/Clamped boundaries=left",
+             "Boundary conditions/Displacement right=0; 1e-4"])
+    for failure in failures:
+        print(failure)
+    return 1 if failures else 0
+
+
+with tempfile.TemporaryDirectory() as directory:
+    program = str(pathlib.Path(sys.argv[1]).resolve())
+    os.chdir(directory)
+    pathlib.Path("scene.prm").write_text("""\
+subsection Mesh
+  set Cells = 20, 2
+end
+subsection Solver
+  set Method = automatic
+end
+""")
+    sys.exit(main(program,
+                  int(sys.argv[2]) if len(sys.argv) > 2 else 12,
+                  int(sys.argv[3]) if len(sys.argv) > 3 else 0))
