@@ -371,8 +371,8 @@ namespace Debond
       record.add("/certificate/lower", certificate.lower);
       record.add("/certificate/upper", certificate.upper);
       record.line("interval",
-                  "[" + scientific(certificate.lower, 10) + ", " +
-                    scientific(certificate.upper, 10) + "]");
+                  scientific(certificate.lower, 10) + " to " +
+                    scientific(certificate.upper, 10));
       record.add("/certificate/relative_width", certificate.width());
       record.line("certified to",
                   scientific(certificate.width(), 1) + " of |J|");
