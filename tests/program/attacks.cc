@@ -24,6 +24,7 @@
 #include <sstream>
 
 #include "../check.h"
+#include "assignments.h"
 #include "own_check.h"
 
 using namespace Debond;
@@ -81,17 +82,6 @@ namespace
   private:
     std::mt19937_64 engine;
   };
-
-
-
-  std::string
-  text(const double value)
-  {
-    std::ostringstream out;
-    out.precision(17);
-    out << value;
-    return out.str();
-  }
 
 
 

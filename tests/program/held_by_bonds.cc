@@ -18,33 +18,13 @@
 #include <vector>
 
 #include "../check.h"
+#include "assignments.h"
 
 using namespace Debond;
 
 namespace
 {
-  using Json   = nlohmann::json;
-  using Values = std::vector<std::string>;
-
-
-
-  std::string
-  text(const double value)
-  {
-    std::ostringstream out;
-    out.precision(17);
-    out << value;
-    return out.str();
-  }
-
-
-
-  Values
-  operator+(Values values, const Values &others)
-  {
-    values.insert(values.end(), others.begin(), others.end());
-    return values;
-  }
+  using Json = nlohmann::json;
 
 
 
