@@ -429,13 +429,20 @@ namespace Debond
     PathFollower<dim> path(
       parameters, solver, verification_tolerance, scene, out, steps);
     path.follow(observer);
+    const bool is_wanted = parameters.global_branch != GlobalBranch::none;
     // Where only bonds hold the body J may fall without end.
-    if (parameters.global_branch != GlobalBranch::none &&
-        parameters.has_global_branch() && !steps.empty() &&
-        scene.problem().unknowns().held_by_contact().motions.empty() &&
+    const bool has_branch =
+      parameters.has_global_branch() &&
+      scene.problem().unknowns().held_by_contact().motions.empty();
+    if (is_wanted && has_branch && !steps.empty() &&
         steps.back().message.empty())
       path.find_global_branch();
-    return path.take_result();
+    SolveResult result = path.take_result();
+    if (is_wanted && !has_branch)
+      result.notes.push_back(
+        "There is no global branch: it is for one factor, bonds that heal and "
+        "bodies that not only bonds and the foundation hold.");
+    return result;
   }
 
 
