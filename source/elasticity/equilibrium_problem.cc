@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace Debond
@@ -75,6 +76,17 @@ namespace Debond
 
 
 
+    /// Of a point of the reference triangle.
+    dealii::Point<2>
+    point_of(const Triangle &cell, const dealii::Point<2> &reference)
+    {
+      return dealii::Point<2>(
+        cell->vertex(0) + reference[0] * (cell->vertex(1) - cell->vertex(0)) +
+        reference[1] * (cell->vertex(2) - cell->vertex(0)));
+    }
+
+
+
     /// The face of the cell with these vertices.
     unsigned int
     face_between(const Triangle                    &cell,
@@ -130,6 +142,7 @@ namespace Debond
       throw EquilibriumError("an initial gap is not done");
     find_elements();
     make_elements(loads);
+    exact_loads = exact_loads && is_temperature_exact(loads);
     make_sides();
     fix_sides(conditions, supports, loads);
   }
@@ -198,11 +211,8 @@ namespace Debond
             for (unsigned int i = 0; i < (corners.size() == 3 ? 1 : 4); ++i)
               for (unsigned int q = 0; q < rule.size(); ++q)
                 {
-                  const Triangle  &cell  = place.cells[i];
-                  dealii::Point<2> point = cell->vertex(0);
-                  for (unsigned int d = 0; d < 2; ++d)
-                    point += rule.point(q)[d] *
-                             (cell->vertex(d + 1) - cell->vertex(0));
+                  const dealii::Point<2> point =
+                    point_of(place.cells[i], rule.point(q));
                   const auto value = values(*loads.body_force, point);
                   forces.emplace_back(
                     dealii::Tensor<1, 2>({value[0], value[1]}));
@@ -220,6 +230,32 @@ namespace Debond
                                   place.body_force,
                                   thermal_stress(place.cells[0]));
       }
+  }
+
+
+
+  bool
+  EquilibriumProblem::is_temperature_exact(const Loads<2> &loads) const
+  {
+    if (!loads.temperature_change)
+      return true;
+    const dealii::QGaussSimplex<2> rule(2);
+    for (const auto &cell : mesh.active_cell_iterators())
+      {
+        double least   = std::numeric_limits<double>::infinity();
+        double largest = -least;
+        for (unsigned int q = 0; q < rule.size(); ++q)
+          {
+            const double value = field_value(*loads.temperature_change,
+                                             point_of(cell, rule.point(q)));
+            least              = std::min(least, value);
+            largest            = std::max(largest, value);
+          }
+        if (largest - least >
+            equilibrium_rounding * std::max(std::abs(largest), std::abs(least)))
+          return false;
+      }
+    return true;
   }
 
 

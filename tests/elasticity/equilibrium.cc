@@ -232,26 +232,72 @@ namespace
 
 
 
+  /// The least quotient of the constant's inequality among P1 displacements on
+  /// n x n crossed rectangles: not below the constant.
+  double
+  quotient_from_above(const RectangleAboveSide &Q,
+                      const Material           &material,
+                      const bool                tangential_fixed,
+                      const unsigned int        n)
+  {
+    dealii::Triangulation<2> mesh;
+    const BoundaryNames names = Box<2>({{{Q.width, Q.height, 0.}}, {{n, n, 1}}})
+                                  .make_mesh(mesh)
+                                  .boundaries;
+    BoundaryConditions conditions;
+    conditions.contact                       = names.at("bottom");
+    conditions.tangential_displacement_fixed = tangential_fixed;
+    // A problem is not made with the motion along the side free.
+    Supports<2> supports;
+    if (!tangential_fixed)
+      supports.displacements.push_back({"left", names.at("left"), true});
+    ElasticProblem<2> problem(mesh, conditions, supports);
+    problem.assemble(material, Loads<2>());
+    const auto        &contact = problem.unknowns().contact();
+    const auto        &normals = contact.normals();
+    const auto        &nodes   = contact.boundary().nodes;
+    const Condensation condensed(
+      problem.matrix(),
+      problem.load(),
+      {normals.begin(), normals.end()},
+      [&](const unsigned int i) {
+        return problem.unknowns().is_constrained(i);
+      },
+      {},
+      true);
+    const Eigen::MatrixXd S    = eigen_view(condensed.schur_complement());
+    const double          h    = Q.width / n;
+    const Eigen::Index    size = S.rows();
+    Eigen::MatrixXd       mass = Eigen::MatrixXd::Zero(size, size);
+    Eigen::MatrixXd       linear(size, 2);
+    for (Eigen::Index i = 0; i < size; ++i)
+      {
+        linear.row(i) << 1., nodes[i].position[0];
+        if (i > 0)
+          {
+            mass.block<2, 2>(i - 1, i - 1).diagonal().array() += h / 3.;
+            mass(i - 1, i) = mass(i, i - 1) = h / 6.;
+          }
+      }
+    // On what is orthogonal to linear functions in L2(I).
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(mass * linear);
+    const Eigen::MatrixXd                       complement =
+      Eigen::MatrixXd(qr.householderQ()).rightCols(size - 2);
+    return Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(
+             complement.transpose() * S * complement,
+             complement.transpose() * mass * complement)
+      .eigenvalues()(0);
+  }
+
+
+
   void
   test_trace_constants()
   {
     Material material;
-    for (const double nu : {0.33, 0.})
-      {
-        material.poisson_ratio = nu;
-        const double mu        = material.shear_modulus();
-        const double constant  = trace_constant({1., 1.}, material, true) / mu;
-        // By P1 from above: 9.10 and 7.90.
-        std::cout << "square, nu = " << nu << ": between "
-                  << (nu > 0. ? 8.83 : 7.62) << " and " << (nu > 0. ? 9.1 : 7.9)
-                  << ": "
-                  << verdict(constant > (nu > 0. ? 8.83 : 7.62) &&
-                             constant < (nu > 0. ? 9.1 : 7.9))
-                  << std::endl;
-      }
     material.poisson_ratio = 0.33;
     for (const bool fixed : {true, false})
-      for (const double aspect : {0.3, 1., 3.})
+      for (const double aspect : {0.01, 0.3, 1., 3., 100.})
         {
           const double elementary =
             elementary_trace_constant({1., aspect}, material, fixed);
@@ -260,6 +306,14 @@ namespace
           std::cout << (fixed ? "fixed" : "free") << ", aspect " << aspect
                     << ": the elementary one is not larger: "
                     << verdict(elementary <= better) << std::endl;
+          const double above =
+            quotient_from_above({1., aspect}, material, fixed, 32);
+          std::cout << "  it is below what P1 displacements have: "
+                    << verdict(better < above) << std::endl;
+          if (fixed && aspect == 1.)
+            check("  but not by much",
+                  1. - trace_constant({1., 1.}, material, fixed) / above,
+                  0.05);
           check("units do not matter",
                 std::abs(
                   trace_constant({1e3, 1e3 * aspect}, {69e3, 0.33}, fixed, 8) /
@@ -267,6 +321,27 @@ namespace
                   1.),
                 1e-9);
         }
+  }
+
+
+
+  void
+  test_temperature()
+  {
+    Bar bar(10, 2);
+    for (const std::string expression : {"7", "x"})
+      {
+        auto change = std::make_shared<dealii::FunctionParser<2>>(1);
+        change->initialize("x,y", expression, std::map<std::string, double>());
+        bar.loads.temperature_change = change;
+        std::cout << "a change of temperature " << expression << " is exact: "
+                  << (EquilibriumProblem(
+                        bar.mesh, bar.conditions, {}, bar.material, bar.loads)
+                          .loads_are_exact() ?
+                        "yes" :
+                        "no")
+                  << std::endl;
+      }
   }
 
 
@@ -310,5 +385,6 @@ main(int argc, char *[])
   test_element({{0., 0.}, {1., 0.2}, {0.3, 0.9}}, {}, "triangle");
   test_bounds();
   test_trace_constants();
+  test_temperature();
   test_refusals();
 }

@@ -149,6 +149,10 @@ namespace Debond
     void
     make_elements(const Loads<2> &loads);
 
+    /// Whether the change of temperature is the same everywhere on each cell.
+    bool
+    is_temperature_exact(const Loads<2> &loads) const;
+
     void
     make_sides();
 
