@@ -13,7 +13,7 @@ namespace Debond
   namespace
   {
     /// What the estimate of the faces is multiplied by, see
-    /// doc/notes/accuracy.md.
+    /// doc/notes/error-estimate.md.
     template <int dim>
     constexpr double calibration = dim == 2 ? 0.97 : 2.65;
 

@@ -296,6 +296,8 @@ namespace Debond
           current.certify(result.solve.u, parameters.solver.proof, [&guard]() {
             return !guard.requested();
           });
+        if (guard.requested())
+          result.solve.minimum.interrupted = true;
       };
       try
         {

@@ -19,8 +19,12 @@ namespace Debond
 
 
 
-    /// What one's own computations may have lost, relative to J.
+    /// What one's own computations may have lost, relative to J and the strain
+    /// energy.
     constexpr double certificate_rounding = 1e-9;
+
+    /// Of tractions, relative to the largest one.
+    constexpr double traction_rounding = 1e-9;
 
     /// How far a proof goes, which is much less than what meshes leave.
     constexpr double proof_tolerance = 1e-6;
@@ -76,17 +80,20 @@ namespace Debond
     /// ends,
     ///     h(q) = inf_{s <= 0} piece(s) + q s
     ///          = constant - (q + slope)_+^2 / (2 curvature).
+    /// Without a curvature q has to be below -slope but for @p rounding; throws
+    /// EquilibriumError if it is not, as h is minus infinity then.
     double
     conjugate_integral(const BranchMinimum::Piece &piece,
                        const double                length,
                        const double                first,
-                       const double                last)
+                       const double                last,
+                       const double                rounding)
     {
       const double a = first + piece.slope, b = last + piece.slope;
       const double largest = std::max(a, b), least = std::min(a, b);
       const double constant = length * static_cast<double>(piece.constant);
-      // Without a curvature the bound QP has kept q below -slope, but for
-      // rounding.
+      if (piece.curvature == 0. && largest > rounding)
+        throw EquilibriumError("the tractions pull where no bond holds");
       if (largest <= 0. || piece.curvature == 0.)
         return constant;
       const double square =
@@ -163,7 +170,13 @@ namespace Debond
       const Eigen::VectorXd x = T * minimum.x;
 
       // Of the stresses that x leads to; their tractions are moments / length.
-      const Eigen::VectorXd moments = S * x - g;
+      const Eigen::VectorXd moments          = S * x - g;
+      double                largest_traction = 0.;
+      for (Eigen::Index i = 0; i < n; ++i)
+        largest_traction =
+          std::max(largest_traction,
+                   (std::abs(moments(i)) + 3. * std::abs(moments(n + i))) /
+                     sides[i].length);
       certificate.lower = condensed->energy_at_zero() - 0.5 * x.dot(S * x);
       certificate.upper = equilibrium.elastic_functional(displacements);
       const dealii::Vector<double> kept(x.begin(), x.end());
@@ -175,7 +188,11 @@ namespace Debond
           const double mean   = moments(i) / length;
           const double slope  = 3. * moments(n + i) / length;
           const double bonds =
-            conjugate_integral(pieces[i], length, mean - slope, mean + slope);
+            conjugate_integral(pieces[i],
+                               length,
+                               mean - slope,
+                               mean + slope,
+                               traction_rounding * largest_traction);
           const Trace trace(sides[i], displacements);
           const auto  energy = [&](const double s) {
             return pieces[i].value(s);
@@ -336,7 +353,8 @@ namespace Debond
       for (unsigned int i = 0; i < sides.size(); ++i)
         m(i) = std::min(0., Trace(sides[i], displacements).mean());
 
-      certificate.lower = -std::numeric_limits<double>::infinity();
+      certificate.lower        = -std::numeric_limits<double>::infinity();
+      certificate.proof_status = ProofStatus::no_bound;
       // Large shifts at the kinks cost stiffness, small ones round the law: the
       // finer the mesh, the larger the best one is.
       for (const double multiple : {2., 6.})
@@ -360,13 +378,14 @@ namespace Debond
                         SeparableBranches(laws),
                         start,
                         [&](const ProofProgress &) { return may_go_on(); });
-          certificate.proof_status = proof.status;
           certificate.proof_nodes += proof.nodes;
-          if (proof.status == ProofStatus::no_bound)
-            continue;
-          certificate.lower =
-            std::max(certificate.lower,
-                     condensed->energy_at_zero() + proof.lower);
+          const double lower = condensed->energy_at_zero() + proof.lower;
+          if (proof.status != ProofStatus::no_bound &&
+              lower > certificate.lower)
+            {
+              certificate.lower        = lower;
+              certificate.proof_status = proof.status;
+            }
         }
     }
   } // namespace
@@ -454,7 +473,9 @@ namespace Debond
     if (!std::isfinite(certificate.lower))
       throw EquilibriumError("no bound was found (" +
                              to_string(certificate.proof_status) + ")");
-    const double rounding = certificate_rounding * std::abs(certificate.upper);
+    const double rounding = certificate_rounding *
+                            std::max(std::abs(certificate.upper),
+                                     scene.problem().fields().strain_energy(u));
     certificate.lower -= rounding;
     certificate.upper += rounding;
     certificate.seconds = timer.wall_time();
