@@ -2,10 +2,9 @@
 #include <deal.II/base/multithread_info.h>
 
 #include <debond/benchmark/benchmarks.h>
-#include <debond/input/parameters.h>
 #include <debond/linear_algebra/blas_threads.h>
+#include <debond/program/report_errors.h>
 
-#include <exception>
 #include <iostream>
 #include <string>
 
@@ -13,7 +12,7 @@ int
 main(int argc, char *argv[])
 {
   using Debond::ExitCode;
-  const std::string name = "debond-benchmark: ";
+  const std::string name = "debond-benchmark";
   if (argc != 2 || argv[1][0] == '-')
     {
       std::cerr << "Usage: debond-benchmark SUITE.json\n\n"
@@ -23,20 +22,8 @@ main(int argc, char *argv[])
 
   // Scenes are solved on one core, as by debond.
   dealii::MultithreadInfo::set_thread_limit(1);
-  Debond::use_one_blas_thread();
-  try
-    {
-      return static_cast<int>(Debond::run_benchmarks(argv[1]));
-    }
-  catch (const Debond::BadInput &error)
-    {
-      for (const std::string &line : error.lines)
-        std::cerr << name << line << '\n';
-      return static_cast<int>(ExitCode::bad_input);
-    }
-  catch (const std::exception &error)
-    {
-      std::cerr << name << "internal error: " << error.what() << std::endl;
-      return static_cast<int>(ExitCode::internal_error);
-    }
+  Debond::use_one_blas_thread_by_default();
+  return static_cast<int>(Debond::report_errors(name, [&]() {
+    return Debond::run_benchmarks(argv[1]);
+  }));
 }

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <iostream>
 #include <stdexcept>
 
 namespace Debond
@@ -21,17 +22,64 @@ namespace Debond
 
 
 
-    /// In the child; only calls that are safe between fork() and exec().
-    [[noreturn]] void
-    become(char *const argv[], const int log, const char *const directory)
+    /// In the child: it reads nothing, writes to the log and ends with its
+    /// parent. Only calls that are safe between fork() and exec().
+    bool
+    set_up_child(const int log)
     {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
       const int nothing = open("/dev/null", O_RDONLY);
-      if (dup2(nothing, STDIN_FILENO) >= 0 && dup2(log, STDOUT_FILENO) >= 0 &&
-          dup2(log, STDERR_FILENO) >= 0 && chdir(directory) == 0)
+      return dup2(nothing, STDIN_FILENO) >= 0 &&
+             dup2(log, STDOUT_FILENO) >= 0 && dup2(log, STDERR_FILENO) >= 0;
+    }
+
+
+
+    /// In the child, as above.
+    [[noreturn]] void
+    become(char *const argv[], const int log, const char *const directory)
+    {
+      if (set_up_child(log) && chdir(directory) == 0)
         execvp(argv[0], argv);
       _exit(no_program);
     }
+
+
+
+    int
+    open_log(const std::string &file)
+    {
+      const int log =
+        open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+      if (log < 0)
+        throw std::runtime_error("Cannot write " + file + ": " +
+                                 std::strerror(errno));
+      return log;
+    }
+
+
+
+    /// Signals that come while an object of this class exists wait for its end.
+    class SignalBlock
+    {
+    public:
+      SignalBlock()
+      {
+        sigset_t signals;
+        sigemptyset(&signals);
+        sigaddset(&signals, SIGINT);
+        sigaddset(&signals, SIGTERM);
+        pthread_sigmask(SIG_BLOCK, &signals, &previous);
+      }
+
+      ~SignalBlock()
+      {
+        pthread_sigmask(SIG_SETMASK, &previous, nullptr);
+      }
+
+    private:
+      sigset_t previous;
+    };
   } // namespace
 
 
@@ -50,18 +98,44 @@ namespace Debond
     const std::string directory =
       working_directory.empty() ? "." : working_directory;
 
-    const int log =
-      open(log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (log < 0)
-      throw std::runtime_error("Cannot write " + log_file + ": " +
-                               std::strerror(errno));
-    process = fork();
+    const int log = open_log(log_file);
+    process       = fork();
     if (process == 0)
       become(argv.data(), log, directory.c_str());
     const int error = errno;
     close(log);
     if (process < 0)
       throw std::runtime_error("Cannot start " + command.front() + ": " +
+                               std::strerror(error));
+  }
+
+
+
+  ChildProcess::ChildProcess(const std::function<int()> &work,
+                             const std::string          &log_file)
+  {
+    const int log = open_log(log_file);
+    // What is not written yet would be written twice.
+    std::cout.flush();
+    std::cerr.flush();
+    std::optional<SignalBlock> block(std::in_place);
+    process = fork();
+    if (process == 0)
+      {
+        // A signal to the child is not for what this process does with them.
+        std::signal(SIGINT, SIG_DFL);
+        std::signal(SIGTERM, SIG_DFL);
+        block.reset();
+        const int code = set_up_child(log) ? work() : no_program;
+        std::cout.flush();
+        std::cerr.flush();
+        // This process's objects are not the child's to destroy.
+        _exit(code);
+      }
+    const int error = errno;
+    close(log);
+    if (process < 0)
+      throw std::runtime_error(std::string("Cannot start a process: ") +
                                std::strerror(error));
   }
 

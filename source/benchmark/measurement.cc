@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/child_process.h>
 #include <debond/benchmark/measurement.h>
 
 #include <malloc.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,7 +10,6 @@
 #include <cstring>
 #include <ctime>
 #include <fstream>
-#include <iostream>
 #include <stdexcept>
 
 namespace Debond
@@ -104,8 +103,9 @@ namespace Debond
 
 
 
-    [[noreturn]] void
-    run_child(const Job &job, const int pipe_end)
+    /// Returns an exit code.
+    int
+    send_measurement(const Job &job, const int pipe_end)
     {
       nlohmann::json result;
       try
@@ -122,12 +122,11 @@ namespace Debond
         {
           const ssize_t written = write(pipe_end, next, left);
           if (written < 0 && errno != EINTR)
-            _exit(1);
+            return 1;
           next += std::max<ssize_t>(written, 0);
           left -= std::max<ssize_t>(written, 0);
         }
-      // Nothing of the parent may be closed or written a second time.
-      _exit(0);
+      return 0;
     }
 
 
@@ -155,26 +154,17 @@ namespace Debond
     int ends[2];
     if (pipe(ends) != 0)
       throw std::runtime_error(job.name + ": " + std::strerror(errno));
-    std::cout << std::flush;
-    const pid_t child = fork();
-    if (child < 0)
-      throw std::runtime_error(job.name + ": " + std::strerror(errno));
-    if (child == 0)
-      {
+    ChildProcess child(
+      [&]() {
         close(ends[0]);
-        run_child(job, ends[1]);
-      }
+        return send_measurement(job, ends[1]);
+      },
+      "/dev/null");
     close(ends[1]);
     const std::string text = read_all(ends[0]);
     close(ends[0]);
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR)
-      ;
-    if (WIFSIGNALED(status))
-      throw std::runtime_error(job.name + ": ended by the signal " +
-                               strsignal(WTERMSIG(status)));
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-      throw std::runtime_error(job.name + ": ended without a result");
+    if (const std::string &ending = child.wait(); !ending.empty())
+      throw std::runtime_error(job.name + ": " + ending);
 
     const nlohmann::json result = nlohmann::json::parse(text);
     if (result.contains("error"))

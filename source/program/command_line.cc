@@ -5,6 +5,7 @@
 #include <debond/input/parameters.h>
 #include <debond/linear_algebra/blas_threads.h>
 #include <debond/program/command_line.h>
+#include <debond/program/report_errors.h>
 #include <debond/program/run.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/scene.h>
@@ -15,7 +16,6 @@
 #include <unistd.h>
 
 #include <iostream>
-#include <new>
 
 namespace Debond
 {
@@ -178,25 +178,10 @@ namespace Debond
     // The problem is solved on one core; more threads of deal.II's vector
     // operations would only change rounding.
     dealii::MultithreadInfo::set_thread_limit(1);
-    use_one_blas_thread();
-
-    try
-      {
-        const po::options_description visible = visible_options();
-        return execute(parse(argc, argv, visible), visible);
-      }
-    catch (const BadInput &error)
-      {
-        for (const std::string &line : error.lines)
-          std::cerr << "debond: " << line << '\n';
-        return ExitCode::bad_input;
-      }
-    catch (const std::bad_alloc &)
-      {
-        std::cerr << "debond: there is not enough memory for this scene; try "
-                     "fewer cells or a smaller bundle"
-                  << std::endl;
-        return ExitCode::bad_input;
-      }
+    use_one_blas_thread_by_default();
+    return report_errors("debond", [&]() {
+      const po::options_description visible = visible_options();
+      return execute(parse(argc, argv, visible), visible);
+    });
   }
 } // namespace Debond

@@ -3,6 +3,8 @@
 
 #include <debond/base/child_process.h>
 #include <debond/base/interrupt.h>
+#include <debond/linear_algebra/blas_threads.h>
+#include <debond/program/command_line.h>
 #include <debond/study/case_runner.h>
 
 #include <algorithm>
@@ -29,9 +31,9 @@ namespace Debond
 
     struct RunningCase
     {
-      RunningCase(const Case &one, const std::vector<std::string> &command)
+      RunningCase(const Case &one, const std::function<int()> &work)
         : one(&one)
-        , process(command, one.directory + "/log")
+        , process(work, one.directory + "/log")
       {}
 
       const Case   *one;
@@ -47,7 +49,7 @@ namespace Debond
       std::filesystem::create_directories(one.directory);
       // A case that ends before it writes anything must not inherit this.
       std::filesystem::remove(one.directory + "/summary.json");
-      std::vector<std::string> command = {own_program, scene};
+      std::vector<std::string> command = {"debond", scene};
       for (const std::string &setting : one.settings)
         {
           command.emplace_back("--set");
@@ -55,7 +57,15 @@ namespace Debond
         }
       if (!afresh && can_restart(one))
         command.emplace_back("--restart");
-      return std::make_unique<RunningCase>(one, command);
+      // To load the program takes longer than to solve a small scene.
+      return std::make_unique<RunningCase>(one, [&command]() {
+        use_one_blas_thread();
+        std::vector<const char *> words;
+        for (const std::string &word : command)
+          words.push_back(word.c_str());
+        return static_cast<int>(
+          execute_command_line(static_cast<int>(words.size()), words.data()));
+      });
     }
 
 

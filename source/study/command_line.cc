@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/input/parameters.h>
+#include <debond/program/report_errors.h>
 #include <debond/study/cases.h>
 #include <debond/study/command_line.h>
 #include <debond/study/reference.h>
@@ -155,15 +156,8 @@ namespace Debond
   ExitCode
   execute_study_command_line(const int argc, const char *const argv[])
   {
-    try
-      {
-        return execute_study(parse_study_options(argc, argv));
-      }
-    catch (const BadInput &error)
-      {
-        for (const std::string &line : error.lines)
-          std::cerr << "debond: " << line << '\n';
-        return ExitCode::bad_input;
-      }
+    return report_errors("debond", [&]() {
+      return execute_study(parse_study_options(argc, argv));
+    });
   }
 } // namespace Debond

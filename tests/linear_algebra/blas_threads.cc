@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The number of threads of OpenBLAS after use_one_blas_thread().
+// The number of threads of OpenBLAS after use_one_blas_thread_by_default().
 #include <debond/linear_algebra/blas_threads.h>
 
 #include <dlfcn.h>
@@ -28,7 +28,7 @@ namespace
     if (set == nullptr || get == nullptr)
       return expected;
     set(2);
-    Debond::use_one_blas_thread();
+    Debond::use_one_blas_thread_by_default();
     return get();
   }
 } // namespace

@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,9 +12,10 @@
 namespace Debond
 {
   /**
-   * A program that runs beside this one, with one thread and with its output
-   * in a file. It is killed when the object ends, and by the system
-   * if this program is killed.
+   * A program that runs beside this one, with one thread, or a copy of this
+   * one, which saves the time that loading it takes; with its output in a file.
+   * It is killed when the object ends, and by the system if this program is
+   * killed.
    */
   class ChildProcess
   {
@@ -23,6 +25,13 @@ namespace Debond
     ChildProcess(const std::vector<std::string> &command,
                  const std::string              &log_file,
                  const std::string              &working_directory = "");
+
+    /// A copy of this process as it is now, which ends with what @p work
+    /// returns as exit code; signals end it unless @p work asks for them. Work
+    /// must not throw. Of this process's threads only the one that calls is
+    /// copied: others must not hold what @p work needs. Throws
+    /// std::runtime_error if the process cannot be made.
+    ChildProcess(const std::function<int()> &work, const std::string &log_file);
 
     ~ChildProcess();
 
@@ -46,9 +55,6 @@ namespace Debond
     pid_t                      process;
     std::optional<std::string> ending;
   };
-
-  /// The program that is running, also if its file was replaced meanwhile.
-  inline const std::string own_program = "/proc/self/exe";
 } // namespace Debond
 
 #endif

@@ -6,8 +6,7 @@
 
 namespace Debond
 {
-  /// Does what the command line asks for. Bad input is reported on std::cerr,
-  /// a line for each error; faults of the program are thrown.
+  /// Does what the command line asks for. Errors are reported on std::cerr.
   ExitCode
   execute_command_line(const int argc, const char *const argv[]);
 } // namespace Debond

@@ -10,8 +10,8 @@ namespace Debond
   bool
   is_study_command_line(const int argc, const char *const argv[]);
 
-  /// Does what "debond --study ..." asks for. Bad input is reported on
-  /// std::cerr, a line for each error; faults of the program are thrown.
+  /// Does what "debond --study ..." asks for. Errors are reported on
+  /// std::cerr.
   ExitCode
   execute_study_command_line(const int argc, const char *const argv[]);
 } // namespace Debond

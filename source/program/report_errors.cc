@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/input/parameters.h>
+#include <debond/program/report_errors.h>
+
+#include <exception>
+#include <iostream>
+#include <new>
+
+namespace Debond
+{
+  ExitCode
+  report_errors(const std::string               &name,
+                const std::function<ExitCode()> &action)
+  {
+    try
+      {
+        return action();
+      }
+    catch (const BadInput &error)
+      {
+        for (const std::string &line : error.lines)
+          std::cerr << name << ": " << line << '\n';
+        return ExitCode::bad_input;
+      }
+    catch (const std::bad_alloc &)
+      {
+        std::cerr << name
+                  << ": there is not enough memory for this scene; try fewer "
+                     "cells or a smaller bundle"
+                  << std::endl;
+        return ExitCode::bad_input;
+      }
+    catch (const std::exception &error)
+      {
+        std::cerr << name << ": internal error: " << error.what() << std::endl;
+        return ExitCode::internal_error;
+      }
+  }
+} // namespace Debond
