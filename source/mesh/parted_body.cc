@@ -2,6 +2,10 @@
 #include <debond/mesh/parted_body.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <set>
 #include <stdexcept>
 
 namespace Debond
@@ -51,20 +55,101 @@ namespace Debond
 
 
 
+    /// Whether a part contains a vertex of a face or cell, asked from a little
+    /// within, since an edge of the part may follow the mesh.
+    template <int dim, typename Iterator>
+    bool
+    contains_vertex(const Part<dim>   &part,
+                    const Iterator    &object,
+                    const unsigned int v)
+    {
+      return part.contains(object->vertex(v) +
+                           1e-6 * (object->center() - object->vertex(v)));
+    }
+
+
+
     /// Whether a part's edge goes through a face or cell: some of its vertices
-    /// are in the part and others are not. They are asked from a little within,
-    /// since an edge may follow the mesh.
+    /// are in the part and others are not.
     template <int dim, typename Iterator>
     bool
     is_cut(const Part<dim> &part, const Iterator &object)
     {
-      const dealii::Point<dim> centre = object->center();
-      const bool               inside = part.contains(centre);
+      const bool inside = part.contains(object->center());
       for (const unsigned int v : object->vertex_indices())
-        if (part.contains(object->vertex(v) +
-                          1e-6 * (centre - object->vertex(v))) != inside)
+        if (contains_vertex(part, object, v) != inside)
           return true;
       return false;
+    }
+
+
+
+    /// Coordinates at which a part's edge cuts lines of the mesh, by the axis
+    /// along which these run.
+    using CutPositions = std::array<std::set<double>, 3>;
+
+    /// Adds those on the edges of a face or cell.
+    template <int dim, typename Iterator>
+    void
+    add_cuts(const Part<dim> &part,
+             const Iterator  &object,
+             CutPositions    &positions)
+    {
+      for (const unsigned int v : object->vertex_indices())
+        for (const unsigned int w : object->vertex_indices())
+          for (unsigned int axis = 0; axis < dim; ++axis)
+            {
+              dealii::Point<dim> in  = object->vertex(v),
+                                 out = object->vertex(w);
+              if (std::abs(std::abs(in[axis] - out[axis]) - in.distance(out)) >
+                    1e-9 * in.distance(out) ||
+                  !contains_vertex(part, object, v) ||
+                  contains_vertex(part, object, w) || v == w)
+                continue;
+              for (unsigned int halving = 0; halving < 50; ++halving)
+                {
+                  const dealii::Point<dim> middle    = 0.5 * (in + out);
+                  (part.contains(middle) ? in : out) = middle;
+                }
+              positions[axis].insert(out[axis]);
+            }
+    }
+
+
+
+    /// The least numbers of cells of a box, not below its own, with which there
+    /// are vertices at the cuts; nothing if it takes more than ten times as
+    /// many, or an edge is not along the mesh: that cuts at many places.
+    std::optional<std::array<unsigned int, 3>>
+    fitting_cells(const CutPositions &positions, const BodyShape &box)
+    {
+      constexpr double            tolerance  = 1e-6;
+      constexpr std::size_t       most_edges = 2;
+      bool                        is_other   = false;
+      std::array<unsigned int, 3> cells;
+      for (unsigned int axis = 0; axis < 3; ++axis)
+        {
+          const auto own = static_cast<unsigned int>(box.cells[axis]);
+          cells[axis]    = own;
+          std::set<double> places;
+          for (const double position : positions[axis])
+            places.insert(std::round(position / box.lengths[axis] / tolerance));
+          if (places.size() > most_edges)
+            return {};
+          const auto is_between = [&](const double position) {
+            const double lines = position / box.lengths[axis] * cells[axis];
+            return std::abs(lines - std::round(lines)) > tolerance;
+          };
+          while (std::any_of(positions[axis].begin(),
+                             positions[axis].end(),
+                             is_between))
+            if (++cells[axis] > 10 * own)
+              return {};
+          is_other = is_other || cells[axis] != own;
+        }
+      if (!is_other)
+        return {};
+      return cells;
     }
   } // namespace
 
@@ -160,12 +245,17 @@ namespace Debond
     Division<dealii::types::material_id, RegionNames>   cells(material_ids);
 
     std::vector<unsigned int> n_inside(parts.size(), 0), n_cut(parts.size(), 0);
+    std::vector<CutPositions> positions(parts.size());
     const auto parts_of = [&](const auto &object, const auto &may_be_in) {
       std::set<std::string> in;
       for (std::size_t p = 0; p < parts.size(); ++p)
         if (may_be_in(parts[p]))
           {
-            n_cut[p] += is_cut(parts[p], object);
+            if (is_cut(parts[p], object))
+              {
+                ++n_cut[p];
+                add_cuts(parts[p], object, positions[p]);
+              }
             if (parts[p].contains(object->center()))
               {
                 in.insert(parts[p].name);
@@ -201,11 +291,23 @@ namespace Debond
         if (n_inside[p] == 0)
           throw PartError(parts[p].name,
                           "no " + kind + " has its centre in this part");
-        if (n_cut[p] > 0)
-          names.notes.push_back("the edge of the part " + parts[p].name +
-                                " cuts " + std::to_string(n_cut[p]) + ' ' +
-                                kind + (n_cut[p] == 1 ? "" : "s") +
-                                "; where the centre is decides");
+        if (n_cut[p] == 0)
+          continue;
+        std::string note = "the edge of the part " + parts[p].name + " cuts " +
+                           std::to_string(n_cut[p]) + ' ' + kind +
+                           (n_cut[p] == 1 ? "" : "s") +
+                           "; where the centre is decides";
+        const BodyShape box = shape();
+        if (box.is_box)
+          if (const auto fitting = fitting_cells(positions[p], box))
+            {
+              note += "; with ";
+              for (unsigned int axis = 0; axis < dim; ++axis)
+                note +=
+                  (axis == 0 ? "" : ", ") + std::to_string((*fitting)[axis]);
+              note += " cells it would cut none";
+            }
+        names.notes.push_back(note);
       }
     return names;
   }
