@@ -431,6 +431,14 @@ namespace Debond
 
 
 
+  const std::vector<dealii::Point<2>> &
+  EquilibriumProblem::vertices() const
+  {
+    return mesh.get_vertices();
+  }
+
+
+
   void
   EquilibriumProblem::fix(const unsigned int unknown)
   {

@@ -74,6 +74,14 @@ namespace Debond
                                result.verification,
                                path);
        }},
+      {{"certified_sides.csv"},
+       [&]() {
+         return output.contact_profile && result.certificate &&
+                !result.certificate->sides.empty();
+       },
+       [&](const std::string &path) {
+         write_certified_sides(*result.certificate, scene.law(), path);
+       }},
       {{"history.csv"},
        [&]() { return output.history; },
        [&](const std::string &path) { write_iterations(result.solve, path); }},

@@ -376,6 +376,14 @@ namespace Debond
       record.add("/certificate/relative_width", certificate.width());
       record.line("certified to",
                   scientific(certificate.width(), 1) + " of |J|");
+      for (const CertifiedLength &length : certificate.lengths)
+        {
+          record.add("/certificate/lengths/" + length.state,
+                     {{"least", length.least}, {"largest", length.largest}});
+          record.line(length.state + " in all minima",
+                      scientific(length.least, 3) + " to " +
+                        scientific(length.largest, 3));
+        }
       record.add("/certificate/unknowns", certificate.n_unknowns);
       record.add("/certificate/contact_sides", certificate.n_sides);
       record.add("/certificate/proof_nodes", certificate.proof_nodes);

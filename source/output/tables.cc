@@ -60,6 +60,28 @@ namespace Debond
 
 
   void
+  write_certified_sides(const Certificate &certificate,
+                        const AdhesiveLaw &law,
+                        const std::string &file_name)
+  {
+    write_atomically(file_name, [&](std::ostream &out) {
+      set_full_precision(out);
+      out << "x0,y0,x1,y1,least_mean,largest_mean,least_linear,largest_linear,"
+             "state\n";
+      for (const CertifiedSide &side : certificate.sides)
+        {
+          for (const dealii::Point<2> &end : side.ends)
+            out << end[0] << ',' << end[1] << ',';
+          out << side.mean.lower << ',' << side.mean.upper << ','
+              << side.linear.lower << ',' << side.linear.upper << ','
+              << (side.piece ? law.name(*side.piece) : "uncertain") << '\n';
+        }
+    });
+  }
+
+
+
+  void
   write_history(const std::vector<BundleIteration> &history,
                 const std::optional<double>        &found,
                 const std::string                  &file_name)

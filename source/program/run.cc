@@ -260,8 +260,9 @@ namespace Debond
     /// Throws BadInput if it cannot be done.
     template <int dim>
     std::unique_ptr<const Certifier>
-    make_certifier([[maybe_unused]] const Parameters &parameters,
-                   [[maybe_unused]] const Scene<dim> &scene)
+    make_certifier(
+      [[maybe_unused]] const Parameters                        &parameters,
+      [[maybe_unused]] const std::shared_ptr<const Scene<dim>> &scene)
     {
       if constexpr (dim == 2)
         if (parameters.certificate.kind != CertificateKind::none)
@@ -284,18 +285,21 @@ namespace Debond
     /// @p certifier: of the scene as it was before its mesh was refined.
     template <int dim>
     void
-    certify_result(const Certifier                   &certifier,
-                   const Parameters                  &parameters,
-                   [[maybe_unused]] const Scene<dim> &scene,
-                   RunResult<dim>                    &result)
+    certify_result(
+      const Certifier                                          &certifier,
+      const Parameters                                         &parameters,
+      [[maybe_unused]] const std::shared_ptr<const Scene<dim>> &scene,
+      RunResult<dim>                                           &result)
     {
       dealii::Timer        timer;
       const InterruptGuard guard;
       const auto           certify = [&](const Certifier &current) {
-        result.certificate =
-          current.certify(result.solve.u, parameters.solver.proof, [&guard]() {
-            return !guard.requested();
-          });
+        if constexpr (dim == 2)
+          result.certificate =
+            current.certify(*scene,
+                            result.solve.u,
+                            parameters.solver.proof,
+                            [&guard]() { return !guard.requested(); });
         if (guard.requested())
           result.solve.minimum.interrupted = true;
       };
@@ -303,7 +307,8 @@ namespace Debond
         {
           if constexpr (dim == 2)
             {
-              if (parameters.accuracy.is_adaptive())
+              if (parameters.accuracy.is_adaptive() &&
+                  !certifier.is_for_finer_meshes())
                 certify(Certifier(parameters.certificate.kind, scene));
               else
                 certify(certifier);
@@ -376,7 +381,7 @@ namespace Debond
     dealii::Timer                     total;
     MethodChoice                      choice = choose_method(parameters);
     const std::unique_ptr<MPI>        mpi    = initialize_mpi(choice);
-    std::unique_ptr<const Scene<dim>> scene =
+    std::shared_ptr<const Scene<dim>> scene =
       make_first_scene<dim>(parameters, matrix_storage(choice));
     check_supports_of_method(choice, parameters, *scene);
     // Before the solve, so that nothing is lost if it is not finite somewhere.
@@ -384,7 +389,7 @@ namespace Debond
              scene->problem(),
              dealii::Vector<double>(scene->problem().unknowns().n_dofs()));
     const std::unique_ptr<const Certifier> certifier =
-      make_certifier(parameters, *scene);
+      make_certifier(parameters, scene);
     RunCheckpoints checkpoints(parameters.checkpoints,
                                parameters.output.directory,
                                choice);
@@ -460,7 +465,7 @@ namespace Debond
     result.times.emplace_back("solve", timer.wall_time());
     check_result(parameters, *scene, shortfall, result);
     if (certifier && result.is_success())
-      certify_result(*certifier, parameters, *scene, result);
+      certify_result(*certifier, parameters, scene, result);
     std::string output_error = finish_checkpoints(checkpoints, result, written);
     report_result(parameters, *scene, choice, result, record);
 

@@ -107,11 +107,11 @@ namespace Debond
 
 
   template <int dim>
-  std::unique_ptr<const Scene<dim>>
+  std::shared_ptr<const Scene<dim>>
   make_first_scene(const Parameters &parameters, const MatrixStorage storage)
   {
     if (!parameters.accuracy.is_adaptive())
-      return std::make_unique<const Scene<dim>>(parameters, storage);
+      return std::make_shared<const Scene<dim>>(parameters, storage);
     std::shared_ptr<const Body<dim>> body;
     try
       {
@@ -121,13 +121,13 @@ namespace Debond
     catch (const PartError &)
       {
         // The scene without refinement says which entry that is.
-        return std::make_unique<const Scene<dim>>(parameters, storage);
+        return std::make_shared<const Scene<dim>>(parameters, storage);
       }
     catch (const std::invalid_argument &error)
       {
         throw BadInput({parameters.scene + ": Accuracy: " + error.what()});
       }
-    return std::make_unique<const Scene<dim>>(parameters, body, storage);
+    return std::make_shared<const Scene<dim>>(parameters, body, storage);
   }
 
 
@@ -137,7 +137,7 @@ namespace Debond
   solve_adaptively(const MethodChoice                               &choice,
                    const Parameters                                 &parameters,
                    const std::function<void(const AdaptiveLevel &)> &report,
-                   std::unique_ptr<const Scene<dim>>                &scene)
+                   std::shared_ptr<const Scene<dim>>                &scene)
   {
     Parameters quiet             = parameters;
     quiet.output.machine_details = false;
@@ -146,7 +146,7 @@ namespace Debond
     AdaptiveResult                                result;
     const InterruptGuard                          guard;
     dealii::Timer                                 timer;
-    std::unique_ptr<const Scene<dim>>             next;
+    std::shared_ptr<const Scene<dim>>             next;
     std::unique_ptr<const dealii::Vector<double>> start;
     while (true)
       {
@@ -218,7 +218,7 @@ namespace Debond
         std::vector<dealii::Tensor<1, dim>> displacements =
           vertex_displacements(scene->problem(), result.solve.u);
         body->extend(displacements);
-        next = std::make_unique<const Scene<dim>>(parameters,
+        next = std::make_shared<const Scene<dim>>(parameters,
                                                   body,
                                                   matrix_storage(choice));
         if (guard.requested())
@@ -233,18 +233,18 @@ namespace Debond
 
 
 
-  template std::unique_ptr<const Scene<2>>
+  template std::shared_ptr<const Scene<2>>
   make_first_scene(const Parameters &, const MatrixStorage);
-  template std::unique_ptr<const Scene<3>>
+  template std::shared_ptr<const Scene<3>>
   make_first_scene(const Parameters &, const MatrixStorage);
   template AdaptiveResult
   solve_adaptively(const MethodChoice &,
                    const Parameters &,
                    const std::function<void(const AdaptiveLevel &)> &,
-                   std::unique_ptr<const Scene<2>> &);
+                   std::shared_ptr<const Scene<2>> &);
   template AdaptiveResult
   solve_adaptively(const MethodChoice &,
                    const Parameters &,
                    const std::function<void(const AdaptiveLevel &)> &,
-                   std::unique_ptr<const Scene<3>> &);
+                   std::shared_ptr<const Scene<3>> &);
 } // namespace Debond

@@ -2,9 +2,7 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/elasticity/temperature_load.h>
-#include <debond/elasticity/trace_constant.h>
 #include <debond/linear_algebra/eigen_view.h>
-#include <debond/optimization/global/rounded_branches.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/solve/certificate.h>
 
@@ -25,9 +23,6 @@ namespace Debond
 
     /// Of tractions, relative to the largest one.
     constexpr double traction_rounding = 1e-9;
-
-    /// How far a proof goes, which is much less than what meshes leave.
-    constexpr double proof_tolerance = 1e-6;
 
 
 
@@ -61,6 +56,67 @@ namespace Debond
               (boundary.nodes[node].normal - face.normal).norm() > 1e-8)
             throw EquilibriumError("a contact boundary with corners that are "
                                    "rounded by a mean normal is not done");
+    }
+
+
+
+    /// Means of u_nu on sides, from a mesh at least as fine.
+    Eigen::VectorXd
+    side_means(const EquilibriumProblem     &equilibrium,
+               const ContactBoundary<2>     &boundary,
+               const dealii::Vector<double> &trace)
+    {
+      const auto     &sides = equilibrium.contact_sides();
+      Eigen::VectorXd means = Eigen::VectorXd::Zero(sides.size());
+      for (const ContactBoundary<2>::Face &face : boundary.faces)
+        {
+          double value = 0.;
+          for (const unsigned int node : face.nodes)
+            if (node < boundary.nodes.size())
+              value += 0.5 * trace(node);
+          const dealii::Point<2> middle =
+            0.5 * (face.vertices[0] + face.vertices[1]);
+          for (unsigned int i = 0; i < sides.size(); ++i)
+            {
+              const dealii::Point<2> first =
+                equilibrium.vertices()[sides[i].vertices[0]];
+              const dealii::Tensor<1, 2> along =
+                equilibrium.vertices()[sides[i].vertices[1]] - first;
+              const dealii::Tensor<1, 2> here = middle - first;
+              const double part = here * along / along.norm_square();
+              if (part > 0. && part < 1. &&
+                  (here - part * along).norm() < 1e-8 * along.norm())
+                means(i) += face.measure / sides[i].length * value;
+            }
+        }
+      return means.cwiseMin(0.);
+    }
+
+
+
+    std::vector<CertifiedLength>
+    certified_lengths(const std::vector<CertifiedSide> &sides,
+                      const AdhesiveLaw                &law)
+    {
+      std::vector<CertifiedLength> lengths;
+      for (unsigned int k = 0; k < law.branches().size(); ++k)
+        {
+          CertifiedLength length = {law.name(k), 0., 0.};
+          for (const CertifiedSide &side : sides)
+            {
+              const double measure = side.ends[0].distance(side.ends[1]);
+              const auto  &piece   = law.branches()[k];
+              const bool   is_likely =
+                side.linear.upper > piece.lower &&
+                (k == 0 || side.linear.lower < piece.upper);
+              if (side.piece ? *side.piece == k : is_likely)
+                length.largest += measure;
+              if (side.piece == k)
+                length.least += measure;
+            }
+          lengths.push_back(length);
+        }
+      return lengths;
     }
 
 
@@ -211,183 +267,6 @@ namespace Debond
                                  (mean + slope) * trace.last);
         }
     }
-
-
-
-    /// Throws EquilibriumError if the element is none.
-    RectangleAboveSide
-    rectangle(const ContactSide &side, const EquilibriumElement &element)
-    {
-      const dealii::Tensor<1, 2> a = element.corners[1] - element.corners[0];
-      const dealii::Tensor<1, 2> b = element.corners[2] - element.corners[1];
-      if (element.corners.size() != 4 ||
-          std::abs(a * b) > 1e-10 * a.norm() * b.norm())
-        throw EquilibriumError("cells at the contact boundary that are not "
-                               "crossed rectangles are not done");
-      return {side.length, element.area / side.length};
-    }
-
-
-
-    /// trace_constant() of the contact sides, once for those that are the same.
-    std::vector<double>
-    side_constants(const EquilibriumProblem &equilibrium,
-                   const ByRegion<Material> &materials,
-                   const bool                tangential_fixed)
-    {
-      struct Known
-      {
-        RectangleAboveSide Q;
-        Material           material;
-        double             constant;
-      };
-      std::vector<Known>  known;
-      std::vector<double> constants;
-      for (const ContactSide &side : equilibrium.contact_sides())
-        {
-          const RectangleAboveSide Q =
-            rectangle(side, equilibrium.elements()[side.element]);
-          const Material &material = materials(side.material);
-          const auto      is_same  = [](const double one, const double other) {
-            return std::abs(one - other) <= 1e-12 * std::abs(other);
-          };
-          auto same =
-            std::find_if(known.begin(), known.end(), [&](const Known &other) {
-              return is_same(other.Q.width, Q.width) &&
-                     is_same(other.Q.height, Q.height) &&
-                     other.material.young_modulus == material.young_modulus &&
-                     other.material.poisson_ratio == material.poisson_ratio;
-            });
-          if (same == known.end())
-            same = known.insert(
-              known.end(),
-              {Q, material, trace_constant(Q, material, tangential_fixed)});
-          constants.push_back(same->constant);
-        }
-      return constants;
-    }
-
-
-
-    /// The shift D of each side of the contact boundary: large enough for the
-    /// law not to be rounded at its mean, if that can be with the given
-    /// multiple of the bonds' stiffness.
-    std::vector<double>
-    side_shifts(const EquilibriumProblem  &equilibrium,
-                const std::vector<double> &trace_constants,
-                const BranchMinimum       &law,
-                const Eigen::VectorXd     &means,
-                const double               multiple)
-    {
-      const std::vector<ContactSide> &sides = equilibrium.contact_sides();
-      std::vector<unsigned int>       sharers(equilibrium.elements().size(), 0);
-      for (const ContactSide &side : sides)
-        ++sharers[side.element];
-
-      const double        largest = multiple * law[0].curvature;
-      std::vector<double> shifts;
-      for (unsigned int i = 0; i < sides.size(); ++i)
-        {
-          double D = 0.02 * law[0].curvature;
-          while (D < largest &&
-                 RoundedBranches(law, D).is_rounded_near(means(i)))
-            D *= 1.25;
-          // At least a tenth of an element's stiffness stays.
-          const double available =
-            0.9 * trace_constants[i] / sharers[sides[i].element];
-          shifts.push_back(std::min({D, largest, available}));
-        }
-      return shifts;
-    }
-
-
-
-    /// The condensation onto the means for shifts D, which are made smaller
-    /// until it is convex in the slopes. Throws EquilibriumError if that does
-    /// not help.
-    std::unique_ptr<const Condensation>
-    condense(const EquilibriumProblem  &equilibrium,
-             const std::vector<double> &trace_constants,
-             std::vector<double>       &D)
-    {
-      const std::vector<ContactSide> &sides  = equilibrium.contact_sides();
-      constexpr unsigned int          trials = 12;
-      for (unsigned int trial = 0; trial < trials; ++trial)
-        {
-          std::vector<double> weights(equilibrium.elements().size(), 1.);
-          std::vector<std::pair<unsigned int, double>> slope_terms;
-          for (unsigned int i = 0; i < sides.size(); ++i)
-            {
-              weights[sides[i].element] -= D[i] / trace_constants[i];
-              slope_terms.emplace_back(sides[i].slope,
-                                       -D[i] * sides[i].length / 3.);
-            }
-          try
-            {
-              return equilibrium.condense(false, weights, slope_terms);
-            }
-          catch (const std::runtime_error &)
-            {
-              for (double &shift : D)
-                shift *= 0.5;
-            }
-        }
-      throw EquilibriumError("the equilibrated stresses are not determined by "
-                             "the mean displacements of the contact sides");
-    }
-
-
-
-    /// The least J, by branch and bound on the means.
-    void
-    bound_global(const EquilibriumProblem                &equilibrium,
-                 const std::vector<double>               &trace_constants,
-                 const BranchMinimum                     &law,
-                 const BranchAndBoundParameters          &proof_parameters,
-                 const std::vector<dealii::Tensor<1, 2>> &displacements,
-                 const std::function<bool()>             &may_go_on,
-                 Certificate                             &certificate)
-    {
-      const std::vector<ContactSide> &sides = equilibrium.contact_sides();
-      Eigen::VectorXd                 m(sides.size());
-      for (unsigned int i = 0; i < sides.size(); ++i)
-        m(i) = std::min(0., Trace(sides[i], displacements).mean());
-
-      certificate.lower        = -std::numeric_limits<double>::infinity();
-      certificate.proof_status = ProofStatus::no_bound;
-      // Large shifts at the kinks cost stiffness, small ones round the law: the
-      // finer the mesh, the larger the best one is.
-      for (const double multiple : {2., 6.})
-        {
-          std::vector<double> D =
-            side_shifts(equilibrium, trace_constants, law, m, multiple);
-          const auto condensed = condense(equilibrium, trace_constants, D);
-          std::vector<BranchMinimum> laws;
-          for (unsigned int i = 0; i < sides.size(); ++i)
-            laws.push_back(
-              RoundedBranches(law, D[i]).minimum().with_first_curvature(
-                sides[i].length * law[0].curvature));
-
-          BranchAndBoundParameters parameters = proof_parameters;
-          parameters.tolerance = proof_tolerance * std::abs(certificate.upper);
-          const dealii::Vector<double> start(m.begin(), m.end());
-          const BranchAndBoundResult   proof =
-            BranchAndBound(parameters)
-              .minimize(condensed->schur_complement(),
-                        condensed->load(),
-                        SeparableBranches(laws),
-                        start,
-                        [&](const ProofProgress &) { return may_go_on(); });
-          certificate.proof_nodes += proof.nodes;
-          const double lower = condensed->energy_at_zero() + proof.lower;
-          if (proof.status != ProofStatus::no_bound &&
-              lower > certificate.lower)
-            {
-              certificate.lower        = lower;
-              certificate.proof_status = proof.status;
-            }
-        }
-    }
   } // namespace
 
 
@@ -400,52 +279,70 @@ namespace Debond
 
 
 
-  Certifier::Certifier(const CertificateKind kind, const Scene<2> &scene)
+  Certifier::Certifier(const CertificateKind                  kind,
+                       const std::shared_ptr<const Scene<2>> &scene)
     : scene(scene)
     , minimum(kind == CertificateKind::global ||
-                  scene.law().branches().size() == 1 ?
+                  scene->law().branches().size() == 1 ?
                 CertifiedMinimum::global :
                 CertifiedMinimum::fixed_state)
-    , equilibrium(scene.problem().unknowns().dof_handler().get_triangulation(),
-                  scene.conditions(),
-                  scene.supports(),
-                  scene.materials(),
-                  scene.loads(),
-                  thermal_stresses(scene.problem().unknowns().dof_handler(),
-                                   scene.materials(),
-                                   scene.loads()))
+    , equilibrium(scene->problem().unknowns().dof_handler().get_triangulation(),
+                  scene->conditions(),
+                  scene->supports(),
+                  scene->materials(),
+                  scene->loads(),
+                  thermal_stresses(scene->problem().unknowns().dof_handler(),
+                                   scene->materials(),
+                                   scene->loads()))
   {
-    check_normals(scene.problem().unknowns().contact().boundary());
-    if (scene.adhesion().has_field())
+    check_normals(scene->problem().unknowns().contact().boundary());
+    if (scene->adhesion().has_field())
       throw EquilibriumError("bonds that vary are not done");
     if (minimum == CertifiedMinimum::global &&
-        scene.law().branches().size() > 1)
+        scene->law().branches().size() > 1)
       trace_constants =
         side_constants(equilibrium,
-                       scene.materials(),
-                       scene.conditions().tangential_displacement_fixed);
+                       scene->materials(),
+                       scene->conditions().tangential_displacement_fixed);
+  }
+
+
+
+  bool
+  Certifier::is_for_finer_meshes() const
+  {
+    return !trace_constants.empty() && equilibrium.loads_are_exact();
   }
 
 
 
   Certificate
-  Certifier::certify(const dealii::Vector<double>   &u,
+  Certifier::certify(const Scene<2>                 &solved,
+                     const dealii::Vector<double>   &u,
                      const BranchAndBoundParameters &proof,
                      const std::function<bool()>    &may_go_on) const
   {
+    Assert(&solved == scene.get() || is_for_finer_meshes(),
+           dealii::ExcInternalError());
     dealii::Timer        timer;
-    const BranchMinimum &law  = scene.law().branches();
-    const auto  displacements = vertex_displacements(scene.problem(), u);
+    const BranchMinimum &law  = scene->law().branches();
+    const auto  displacements = vertex_displacements(solved.problem(), u);
     Certificate certificate;
     certificate.minimum         = minimum;
     certificate.loads_are_exact = equilibrium.loads_are_exact();
     certificate.n_unknowns      = equilibrium.n_unknowns();
     certificate.n_sides =
       static_cast<unsigned int>(equilibrium.contact_sides().size());
+    const double strain_energy = solved.problem().fields().strain_energy(u);
+    const auto   reserve       = [&]() {
+      return certificate_rounding *
+             std::max(std::abs(certificate.upper), strain_energy);
+    };
     if (trace_constants.empty())
       try
         {
           bound_fixed_state(equilibrium, law, displacements, certificate);
+          certificate.upper += reserve();
         }
       catch (const std::runtime_error &error)
         {
@@ -456,29 +353,55 @@ namespace Debond
       {
         ContactQuadratureParameters exact;
         exact.rule = ContactQuadratureParameters::Rule::exact;
-        const ContactQuadrature<2> quadrature(exact, scene.law().kinks());
-        const ContactSpace<2> &contact = scene.problem().unknowns().contact();
+        const ContactQuadrature<2> quadrature(exact, scene->law().kinks());
+        const ContactSpace<2> &contact = solved.problem().unknowns().contact();
         certificate.upper =
-          equilibrium.elastic_functional(displacements) +
-          AdhesionIntegral<2>(contact.boundary(), scene.law(), quadrature)
+          elastic_functional(solved, displacements) +
+          AdhesionIntegral<2>(contact.boundary(), scene->law(), quadrature)
             .energy(contact.trace(u));
-        bound_global(equilibrium,
-                     trace_constants,
-                     law,
-                     proof,
-                     displacements,
-                     may_go_on,
-                     certificate);
+        certificate.upper += reserve();
+        GlobalBound bound        = bound_global(equilibrium,
+                                         trace_constants,
+                                         law,
+                                         side_means(equilibrium,
+                                                    contact.boundary(),
+                                                    contact.trace(u)),
+                                         certificate.upper,
+                                         proof,
+                                         may_go_on);
+        certificate.lower        = bound.lower;
+        certificate.proof_status = bound.status;
+        certificate.proof_nodes  = bound.nodes;
+        certificate.sides        = std::move(bound.sides);
+        certificate.lengths =
+          certified_lengths(certificate.sides, scene->law());
       }
     if (!std::isfinite(certificate.lower))
       throw EquilibriumError("no bound was found (" +
                              to_string(certificate.proof_status) + ")");
-    const double rounding = certificate_rounding *
-                            std::max(std::abs(certificate.upper),
-                                     scene.problem().fields().strain_energy(u));
-    certificate.lower -= rounding;
-    certificate.upper += rounding;
+    certificate.lower -= reserve();
     certificate.seconds = timer.wall_time();
     return certificate;
+  }
+
+
+
+  double
+  Certifier::elastic_functional(
+    const Scene<2>                          &solved,
+    const std::vector<dealii::Tensor<1, 2>> &displacements) const
+  {
+    if (&solved == scene.get())
+      return equilibrium.elastic_functional(displacements);
+    return EquilibriumProblem(
+             solved.problem().unknowns().dof_handler().get_triangulation(),
+             solved.conditions(),
+             solved.supports(),
+             solved.materials(),
+             solved.loads(),
+             thermal_stresses(solved.problem().unknowns().dof_handler(),
+                              solved.materials(),
+                              solved.loads()))
+      .elastic_functional(displacements);
   }
 } // namespace Debond

@@ -7,6 +7,7 @@ mesh and on one four times as fine. All of them hold for one number, so the lowe
 ends have to be below the upper ends of the other mesh, which knows nothing of
 them; and finer meshes have narrower intervals. Then the branches of a state that
 is kept, and what has no certificate."""
+import csv
 import json
 import os
 import pathlib
@@ -67,12 +68,52 @@ def draw(generator):
     return entries, [4 * generator.randint(2, 5), generator.randint(1, 3)]
 
 
+def rows(name):
+    with open(name, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def wrong_sides(sides, profile, threshold):
+    """Those of a coarse mesh that the displacement of a finer one, with a J that is
+    not above the upper number, is not on; the sides are at the bottom."""
+    width = max(float(side[x]) for side in sides for x in ("x0", "x1"))
+    displacement = {round(float(row["x"]) / width, 9): float(row["u_nu"])
+                    for row in profile}
+    wrong = certain = 0
+    for side in sides:
+        ends = sorted((float(side["x0"]), float(side["x1"])))
+        middle, half = sum(ends) / 2., (ends[1] - ends[0]) / 2.
+        points = [ends[0] + i * half / 2. for i in range(5)]
+        # What is clamped is no contact node.
+        values = [displacement.get(round(x / width, 9), 0.) for x in points]
+        mean = slope = 0.
+        for i in range(4):
+            mean += (values[i] + values[i + 1]) / 8.
+            xi = [(x - middle) / half for x in points[i:i + 2]]
+            slope += 0.5 / 6. * 1.5 * (
+                values[i] * xi[0] + values[i + 1] * xi[1] +
+                (values[i] + values[i + 1]) * (xi[0] + xi[1]))
+        linear = (mean - slope, mean + slope)
+        rounding = 1e-9 * max(abs(value) for value in values)
+        is_wrong = not (
+            float(side["least_mean"]) - rounding <= mean <=
+            float(side["largest_mean"]) + rounding and
+            float(side["least_linear"]) - rounding <= min(linear) and
+            max(linear) <= float(side["largest_linear"]) + rounding)
+        if threshold is not None and side["state"] != "uncertain":
+            is_wrong |= (min(linear) < -threshold if side["state"] == "bonded"
+                         else max(linear) > -threshold)
+        certain += side["state"] != "uncertain"
+        wrong += is_wrong
+    return wrong, certain
+
+
 def main(debond, n, first):
     failures, widths = [], []
-    solved = unsolved = proofs_ended = 0
+    solved = unsolved = proofs_ended = n_sides = n_certain = 0
     for number in range(first, first + n):
         entries, cells = draw(random.Random(number))
-        intervals = []
+        intervals, sides = [], []
         for factor in (1, 4):
             result, summary = run(
                 debond, entries +
@@ -81,6 +122,9 @@ def main(debond, n, first):
             if summary is None or "certificate" not in summary:
                 break
             intervals.append(summary["certificate"])
+            if pathlib.Path("output/certified_sides.csv").exists():
+                sides.append(rows("output/certified_sides.csv"))
+            profile = rows("output/contact_profile.csv")
         if len(intervals) < 2:
             unsolved += 1
             if summary is None and result.returncode not in (2, 3):
@@ -92,6 +136,16 @@ def main(debond, n, first):
         proofs_ended += all(interval["proof_status"] == "proved"
                             for interval in intervals)
         widths.append(fine["relative_width"])
+        if sides and fine["upper"] <= coarse["upper"]:
+            thresholds = [float(entry.split("=")[1]) for entry in entries
+                          if entry.startswith("Contact law/Bond threshold")]
+            wrong, certain = wrong_sides(sides[0], profile,
+                                         (thresholds or [None])[0])
+            n_sides += len(sides[0])
+            n_certain += certain
+            if wrong > 0:
+                failures.append(f"{number}: {wrong} sides are not where they "
+                                f"are certain to be, {entries}")
         if not (coarse["lower"] <= fine["upper"] and
                 fine["lower"] <= coarse["upper"] and
                 fine["lower"] <= fine["upper"]):
@@ -101,7 +155,8 @@ def main(debond, n, first):
         print(f"{solved} scenes with intervals, {unsolved} without, in "
               f"{proofs_ended} all proofs ended; relative width on the finer "
               f"mesh {widths[len(widths) // 2]:.1e} in the median, "
-              f"{widths[-1]:.1e} at most")
+              f"{widths[-1]:.1e} at most; {n_certain} of {n_sides} sides of "
+              f"the coarse mesh are certain")
     elif solved < n // 2:
         failures.append(f"{unsolved} of {n} scenes have no certificate")
 

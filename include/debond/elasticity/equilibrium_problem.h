@@ -77,6 +77,10 @@ namespace Debond
     const std::vector<ContactSide> &
     contact_sides() const;
 
+    /// Of the mesh.
+    const std::vector<dealii::Point<2>> &
+    vertices() const;
+
     /// Fixes an unknown.
     void
     fix(const unsigned int unknown);

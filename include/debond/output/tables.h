@@ -6,6 +6,7 @@
 #include <debond/optimization/bundle/proximal_bundle.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
+#include <debond/solve/certificate.h>
 
 #include <optional>
 #include <string>
@@ -24,6 +25,14 @@ namespace Debond
   write_contact_profile(const ContactBoundary<dim> &boundary,
                         const Verification<dim>    &verification,
                         const std::string          &file_name);
+
+  /// What a certificate knows of each contact side, as CSV: x0, y0, x1, y1,
+  /// least_mean, largest_mean, least_linear, largest_linear, state ("uncertain"
+  /// if it is).
+  void
+  write_certified_sides(const Certificate &certificate,
+                        const AdhesiveLaw &law,
+                        const std::string &file_name);
 
   /// The iteration history as CSV: iteration, functional, v, t_L, t_R,
   /// bundle_size, qp_steps, kind. @p found: J of the state that a search or a

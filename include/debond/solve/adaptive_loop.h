@@ -37,7 +37,7 @@ namespace Debond
   /// The scene on the first mesh, which can be refined if its parameters ask
   /// for it. Throws as Scene does, and BadInput if the mesh cannot be refined.
   template <int dim>
-  std::unique_ptr<const Scene<dim>>
+  std::shared_ptr<const Scene<dim>>
   make_first_scene(const Parameters &parameters, const MatrixStorage storage);
 
   /// Solves the scene of make_first_scene(), and again and again on a mesh that
@@ -50,7 +50,7 @@ namespace Debond
   solve_adaptively(const MethodChoice                               &choice,
                    const Parameters                                 &parameters,
                    const std::function<void(const AdaptiveLevel &)> &report,
-                   std::unique_ptr<const Scene<dim>>                &scene);
+                   std::shared_ptr<const Scene<dim>>                &scene);
 } // namespace Debond
 
 #endif

@@ -5,9 +5,11 @@
 #include <debond/elasticity/equilibrium_problem.h>
 #include <debond/input/certificate_parameters.h>
 #include <debond/optimization/global/branch_and_bound.h>
+#include <debond/solve/global_bound.h>
 #include <debond/solve/scene.h>
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,16 @@ namespace Debond
   {
     global,     ///< the least J
     fixed_state ///< the least J with the bonds of each side as they are
+  };
+
+
+
+  /// Of the contact sides of each displacement with J at most the upper number,
+  /// those with bonds in a state: their length, at least and at most.
+  struct CertifiedLength
+  {
+    std::string state;
+    double      least, largest;
   };
 
 
@@ -47,6 +59,11 @@ namespace Debond
     /// where the bonds' branches are fixed; empty otherwise.
     std::vector<double> gaps;
 
+    /// Of the contact boundary, of all displacements with J at most `upper`;
+    /// empty unless the bound is for bonds that may break anywhere.
+    std::vector<CertifiedSide>   sides;
+    std::vector<CertifiedLength> lengths;
+
     double seconds = 0.;
 
     /// (upper - lower) / |upper|
@@ -60,24 +77,36 @@ namespace Debond
   class Certifier
   {
   public:
-    /// Keeps a reference to the scene. Throws EquilibriumError if there is no
-    /// certificate for it: with gaps, prescribed displacements, bonds that
-    /// vary, contact boundaries whose corners are rounded by a mean normal or,
-    /// for the least J with bonds that break, cells at the contact boundary
-    /// that are not crossed rectangles.
-    Certifier(const CertificateKind kind, const Scene<2> &scene);
+    /// Throws EquilibriumError if there is no certificate for the scene: with
+    /// gaps, prescribed displacements, bonds that vary, contact boundaries
+    /// whose corners are rounded by a mean normal or, for the least J with
+    /// bonds that break, cells at the contact boundary that are not crossed
+    /// rectangles.
+    Certifier(const CertificateKind                  kind,
+              const std::shared_ptr<const Scene<2>> &scene);
 
-    /// @p proof: limits of branch and bound. Throws EquilibriumError if no
-    /// bound was found.
+    /// Whether certify() takes displacements of finer meshes as well.
+    bool
+    is_for_finer_meshes() const;
+
+    /// Of the displacement @p u of @p solved, which is the scene, or the same
+    /// on a finer mesh. @p proof: limits of branch and bound. Throws
+    /// EquilibriumError if no bound was found.
     Certificate
-    certify(const dealii::Vector<double>   &u,
+    certify(const Scene<2>                 &solved,
+            const dealii::Vector<double>   &u,
             const BranchAndBoundParameters &proof,
             const std::function<bool()>    &may_go_on) const;
 
   private:
-    const Scene<2>          &scene;
-    const CertifiedMinimum   minimum;
-    const EquilibriumProblem equilibrium;
+    double
+    elastic_functional(
+      const Scene<2>                          &solved,
+      const std::vector<dealii::Tensor<1, 2>> &displacements) const;
+
+    const std::shared_ptr<const Scene<2>> scene;
+    const CertifiedMinimum                minimum;
+    const EquilibriumProblem              equilibrium;
 
     /// Of the contact sides, if branches are not fixed.
     std::vector<double> trace_constants;

@@ -79,6 +79,9 @@ namespace Debond
           const double       tolerance,
           const unsigned int maximum_rounds);
 
+      std::optional<NodeBall>
+      ball(const bool is_first);
+
     private:
       const Eigen::MatrixXd   &S;
       const SeparableBranches &phi;
@@ -326,6 +329,17 @@ namespace Debond
 
 
 
+    std::optional<NodeBall>
+    Relaxations::ball(const bool is_first)
+    {
+      if (!set_up(is_first))
+        return {};
+      minimise_relaxation(problem, envelopes, node.x);
+      return NodeBall{LowerBound(problem, node.x).value, node.x, inverse};
+    }
+
+
+
     /// The convexity with which @p other is not below the tangent of @p own at
     /// s and its parabola there.
     double
@@ -459,5 +473,20 @@ namespace Debond
   {
     return Relaxations(S, g, phi, node)
       .run(best_value, tolerance, node.number == 0 ? n_root_rounds : n_rounds);
+  }
+
+
+
+  std::vector<NodeBall>
+  NodeBound::balls(const ProofNode &node) const
+  {
+    std::vector<NodeBall> result;
+    for (const bool is_first : {false, true})
+      {
+        ProofNode own = node;
+        if (auto ball = Relaxations(S, g, phi, own).ball(is_first))
+          result.push_back(std::move(*ball));
+      }
+    return result;
   }
 } // namespace Debond

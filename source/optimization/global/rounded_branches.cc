@@ -70,4 +70,16 @@ namespace Debond
       }
     return false;
   }
+
+
+
+  std::optional<unsigned int>
+  RoundedBranches::exact_piece(const Interval &interval) const
+  {
+    for (const Line &line : lines)
+      if (interval.upper > line.lower && interval.lower < line.upper)
+        return {};
+    // Kinks are on lines.
+    return f.index(interval.upper);
+  }
 } // namespace Debond

@@ -47,6 +47,18 @@ namespace Debond
 
 
 
+  /// Where points of a node are: the functional is at least
+  ///     value + 1/2 (s - x)'A (s - x)
+  /// in the node's box.
+  struct NodeBall
+  {
+    double          value;
+    Eigen::VectorXd x;
+    Eigen::MatrixXd inverse; ///< of A
+  };
+
+
+
   /**
    * Bounds nodes of the branch and bound for 1/2 s'S s - g's + Phi(s), s <= 0,
    * Phi with branches.
@@ -87,6 +99,13 @@ namespace Debond
     bound(ProofNode   &node,
           const double best_value,
           const double tolerance) const;
+
+    /// Balls for the convexity that the node's bound was raised with, which has
+    /// a high value, and for that of its first relaxation, which has a large A;
+    /// none if S, with the terms that are decided, is not safely positive
+    /// definite.
+    std::vector<NodeBall>
+    balls(const ProofNode &node) const;
 
   private:
     const SeparableBranches &phi;

@@ -3,7 +3,9 @@
 #define debond_optimization_global_rounded_branches_h
 
 #include <debond/optimization/branch_minimum.h>
+#include <debond/optimization/interval.h>
 
+#include <optional>
 #include <vector>
 
 namespace Debond
@@ -35,6 +37,12 @@ namespace Debond
     /// on a line.
     bool
     is_rounded_near(const double s) const;
+
+    /// The piece of f that is not rounded on all of the interval, and for s > 0
+    /// if the interval has such: there
+    ///     conv(f + D/2 s^2)(s + w) >= f(s) + D/2 s^2 + (f'(s) + D s) w.
+    std::optional<unsigned int>
+    exact_piece(const Interval &interval) const;
 
   private:
     struct Line

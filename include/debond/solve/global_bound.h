@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_global_bound_h
+#define debond_solve_global_bound_h
+
+#include <deal.II/base/point.h>
+
+#include <debond/elasticity/equilibrium_problem.h>
+#include <debond/optimization/branch_minimum.h>
+#include <debond/optimization/global/branch_and_bound.h>
+#include <debond/optimization/interval.h>
+
+#include <array>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace Debond
+{
+  /// What each admissible displacement with J at most some value has at a side
+  /// of the contact boundary.
+  struct CertifiedSide
+  {
+    std::array<dealii::Point<2>, 2> ends;
+
+    /// The mean of u_nu.
+    Interval mean;
+
+    /// Contains, at each point, the linear function that is nearest to u_nu in
+    /// L2 of the side.
+    Interval linear;
+
+    /// The piece of the law on which that function is, if it is certain.
+    std::optional<unsigned int> piece;
+  };
+
+
+
+  struct GlobalBound
+  {
+    double lower = -std::numeric_limits<double>::infinity();
+
+    /// Of the branch and bound that has it.
+    ProofStatus  status = ProofStatus::no_bound;
+    unsigned int nodes  = 0; ///< of all
+
+    std::vector<CertifiedSide> sides;
+  };
+
+
+
+  /// trace_constant() of the contact sides. Throws EquilibriumError if there is
+  /// a cell at the contact boundary that is no crossed rectangle.
+  std::vector<double>
+  side_constants(const EquilibriumProblem &equilibrium,
+                 const ByRegion<Material> &materials,
+                 const bool                tangential_fixed);
+
+  /**
+   * A lower bound of the least J of the continuous problem, and where its
+   * minimisers are (theorems 1 and 2 of doc/reference/certificate.md).
+   *
+   * @p means: of u_nu on the contact sides, of a good displacement; @p upper:
+   * a value of J that is reached. Throws EquilibriumError if there is no bound.
+   */
+  GlobalBound
+  bound_global(const EquilibriumProblem       &equilibrium,
+               const std::vector<double>      &trace_constants,
+               const BranchMinimum            &law,
+               const Eigen::VectorXd          &means,
+               const double                    upper,
+               const BranchAndBoundParameters &proof,
+               const std::function<bool()>    &may_go_on);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,514 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/elasticity/trace_constant.h>
+#include <debond/linear_algebra/eigen_view.h>
+#include <debond/optimization/global/convexity_shift.h>
+#include <debond/optimization/global/growth.h>
+#include <debond/optimization/global/node_bound.h>
+#include <debond/optimization/global/rounded_branches.h>
+#include <debond/solve/global_bound.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Debond
+{
+  namespace
+  {
+    using ContactSide = EquilibriumProblem::ContactSide;
+
+
+
+    /// How far a proof goes, relative to J, which is much less than what meshes
+    /// leave.
+    constexpr double proof_tolerance = 1e-6;
+
+    /// Shifts at the kinks, relative to the stiffness of the bonds. Large ones
+    /// cost stiffness, small ones round the law: the finer the mesh, the larger
+    /// the best one is.
+    constexpr std::array<double, 2> first_shifts = {{2., 6.}};
+
+    constexpr double least_shift = 0.005;
+
+    /// Problems in which what is certain is used, as long as more is.
+    constexpr unsigned int n_stages = 6;
+
+    /// Nodes that tell where minimisers are.
+    constexpr unsigned int n_nodes_of_ranges = 32;
+
+
+
+    /// Throws EquilibriumError if the element is none.
+    RectangleAboveSide
+    rectangle(const ContactSide &side, const EquilibriumElement &element)
+    {
+      const dealii::Tensor<1, 2> a = element.corners[1] - element.corners[0];
+      const dealii::Tensor<1, 2> b = element.corners[2] - element.corners[1];
+      if (element.corners.size() != 4 ||
+          std::abs(a * b) > 1e-10 * a.norm() * b.norm())
+        throw EquilibriumError("cells at the contact boundary that are not "
+                               "crossed rectangles are not done");
+      return {side.length, element.area / side.length};
+    }
+
+
+
+    /// Where minimisers are on a side, as far as is known.
+    struct SideRange
+    {
+      Interval mean;   ///< of u_nu
+      Interval linear; ///< of the nearest linear function
+    };
+
+
+
+    /// The right side of theorem 2 for shifts D, as a function of the means m:
+    ///     constant + 1/2 m'S m - g'm + phi(m),
+    /// with the slopes k = offset + slopes m that belong to them.
+    struct MeanProblem
+    {
+      double                             constant;
+      dealii::FullMatrix<double>         S;
+      dealii::Vector<double>             g;
+      std::unique_ptr<SeparableBranches> phi;
+
+      /// Of the sides.
+      std::vector<std::optional<unsigned int>> pieces;
+
+      Eigen::VectorXd offset;
+      Eigen::MatrixXd slopes;
+      Eigen::MatrixXd inverse_in_slopes;
+    };
+
+
+
+    class Sides
+    {
+    public:
+      Sides(const EquilibriumProblem  &equilibrium,
+            const std::vector<double> &trace_constants,
+            const BranchMinimum       &law)
+        : equilibrium(equilibrium)
+        , trace_constants(trace_constants)
+        , law(law)
+        , sides(equilibrium.contact_sides())
+        , n(static_cast<unsigned int>(sides.size()))
+        , sharers(equilibrium.elements().size(), 0)
+      {
+        for (const ContactSide &side : sides)
+          ++sharers[side.element];
+      }
+
+      std::vector<double>
+      shifts_for_means(const Eigen::VectorXd &means,
+                       const double           multiple) const;
+
+      std::vector<double>
+      shifts_for_ranges(const std::vector<SideRange> &ranges,
+                        const double                  multiple) const;
+
+      MeanProblem
+      mean_problem(const std::vector<SideRange> &ranges,
+                   std::vector<double>          &D) const;
+
+    private:
+      std::optional<MeanProblem>
+      try_mean_problem(const std::vector<SideRange> &ranges,
+                       const std::vector<double>    &D) const;
+
+      /// The largest shift of a side: at least a tenth of an element's
+      /// stiffness stays.
+      double
+      available(const unsigned int i) const
+      {
+        return 0.9 * trace_constants[i] / sharers[sides[i].element];
+      }
+
+      const EquilibriumProblem       &equilibrium;
+      const std::vector<double>      &trace_constants;
+      const BranchMinimum            &law;
+      const std::vector<ContactSide> &sides;
+      const unsigned int              n;
+      std::vector<unsigned int>       sharers; ///< of elements
+    };
+
+
+
+    /// Large enough for the law not to be rounded at the mean, if that can be
+    /// with the given multiple of the bonds' stiffness.
+    std::vector<double>
+    Sides::shifts_for_means(const Eigen::VectorXd &means,
+                            const double           multiple) const
+    {
+      const double        largest = multiple * law[0].curvature;
+      std::vector<double> shifts;
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          double D = 0.02 * law[0].curvature;
+          while (D < largest &&
+                 RoundedBranches(law, D).is_rounded_near(means(i)))
+            D *= 1.25;
+          shifts.push_back(std::min({D, largest, available(i)}));
+        }
+      return shifts;
+    }
+
+
+
+    /// Large enough for the piece of the law to be certain, if that can be,
+    /// otherwise the given multiple of the bonds' stiffness.
+    std::vector<double>
+    Sides::shifts_for_ranges(const std::vector<SideRange> &ranges,
+                             const double                  multiple) const
+    {
+      const double        a = law[0].curvature;
+      std::vector<double> shifts;
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          double D = least_shift * a;
+          while (D < available(i) &&
+                 !RoundedBranches(law, D).exact_piece(ranges[i].linear))
+            D *= 1.1;
+          shifts.push_back(
+            D < available(i) ? D : std::min(multiple * a, available(i)));
+        }
+      return shifts;
+    }
+
+
+
+    /// Nothing if it is not convex in the slopes, or the means do not determine
+    /// the stresses.
+    std::optional<MeanProblem>
+    Sides::try_mean_problem(const std::vector<SideRange> &ranges,
+                            const std::vector<double>    &D) const
+    {
+      std::vector<double> weights(equilibrium.elements().size(), 1.);
+      for (unsigned int i = 0; i < n; ++i)
+        weights[sides[i].element] -= D[i] / trace_constants[i];
+      std::unique_ptr<const Condensation> condensed;
+      try
+        {
+          condensed = equilibrium.condense(true, weights);
+        }
+      catch (const std::runtime_error &)
+        {
+          return {};
+        }
+      Eigen::MatrixXd A = eigen_view(condensed->schur_complement());
+      Eigen::VectorXd b = eigen_view(condensed->load());
+
+      MeanProblem result;
+      result.constant = condensed->energy_at_zero();
+      std::vector<BranchMinimum> laws;
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          const double          length = sides[i].length;
+          const RoundedBranches rounded(law, D[i]);
+          result.pieces.push_back(rounded.exact_piece(ranges[i].linear));
+          if (!result.pieces.back())
+            {
+              A(n + i, n + i) -= length * D[i] / 3.;
+              laws.push_back(rounded.minimum().with_first_curvature(
+                length * law[0].curvature));
+              continue;
+            }
+          const BranchMinimum::Piece &piece = law[*result.pieces.back()];
+          A(i, i) += length * piece.curvature;
+          A(n + i, n + i) += length * piece.curvature / 3.;
+          b(i) -= length * piece.slope;
+          result.constant += length * static_cast<double>(piece.constant);
+          laws.push_back(BranchMinimum({{0., 0., 0.L, ""}}));
+        }
+
+      // That there is an inverse proves that it is convex in the slopes.
+      auto inverse = safe_inverse(A.bottomRightCorner(n, n));
+      if (!inverse)
+        return {};
+      result.inverse_in_slopes = std::move(*inverse);
+      result.offset            = result.inverse_in_slopes * b.tail(n);
+      result.slopes = -result.inverse_in_slopes * A.bottomLeftCorner(n, n);
+      result.constant -= 0.5 * b.tail(n).dot(result.offset);
+      const Eigen::MatrixXd S =
+        A.topLeftCorner(n, n) + A.topRightCorner(n, n) * result.slopes;
+      const Eigen::VectorXd g =
+        b.head(n) + result.slopes.transpose() * b.tail(n);
+      result.S.reinit(n, n);
+      result.g.reinit(n);
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          result.g(i) = g(i);
+          for (unsigned int j = 0; j < n; ++j)
+            result.S(i, j) = 0.5 * (S(i, j) + S(j, i));
+        }
+      result.phi = std::make_unique<SeparableBranches>(laws);
+      return result;
+    }
+
+
+
+    /// D is made smaller until there is one. Throws EquilibriumError if that
+    /// does not help.
+    MeanProblem
+    Sides::mean_problem(const std::vector<SideRange> &ranges,
+                        std::vector<double>          &D) const
+    {
+      constexpr unsigned int trials = 12;
+      for (unsigned int trial = 0; trial < trials; ++trial)
+        {
+          if (auto problem = try_mean_problem(ranges, D))
+            return std::move(*problem);
+          for (double &shift : D)
+            shift *= 0.5;
+        }
+      throw EquilibriumError("the equilibrated stresses are not determined by "
+                             "the mean displacements of the contact sides");
+    }
+
+
+
+    Interval
+    intersection(const Interval &a, const Interval &b)
+    {
+      return {std::max(a.lower, b.lower), std::min(a.upper, b.upper)};
+    }
+
+
+
+    /// Where displacements of a node can be if the functional of the means is
+    /// at most @p upper; nothing if they cannot.
+    std::optional<std::vector<SideRange>>
+    ranges_of_node(const MeanProblem &problem,
+                   const NodeBound   &bound,
+                   const ProofNode   &node,
+                   const double       upper)
+    {
+      const unsigned int n = static_cast<unsigned int>(problem.pieces.size());
+      constexpr double   infinity = std::numeric_limits<double>::infinity();
+      std::vector<SideRange> ranges;
+      for (unsigned int i = 0; i < n; ++i)
+        ranges.push_back(
+          {{node.lower(i), node.upper(i)}, {-infinity, infinity}});
+      for (const NodeBall &ball : bound.balls(node))
+        {
+          if (ball.value > upper)
+            return {};
+          const double radius =
+            std::sqrt(2. * (upper - ball.value)) * (1. + 1e-6);
+          const auto around = [&](const double centre,
+                                  const double variance) -> Interval {
+            const double distance = radius * std::sqrt(std::max(variance, 0.));
+            return {centre - distance, centre + distance};
+          };
+          const Eigen::VectorXd k = problem.offset + problem.slopes * ball.x;
+          const Eigen::MatrixXd product = problem.slopes * ball.inverse;
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              const double m       = ball.x(i);
+              const double of_mean = ball.inverse(i, i);
+              const double of_slope =
+                product.row(i).dot(problem.slopes.row(i)) +
+                problem.inverse_in_slopes(i, i);
+              const double mixed = 2. * product(i, i);
+              ranges[i].mean = intersection(ranges[i].mean, around(m, of_mean));
+              ranges[i].linear =
+                intersection(ranges[i].linear,
+                             hull(around(m + k(i), of_mean + mixed + of_slope),
+                                  around(m - k(i),
+                                         of_mean - mixed + of_slope)));
+            }
+        }
+      return ranges;
+    }
+
+
+
+    /// Shrinks the ranges to where displacements with J at most @p upper are.
+    void
+    shrink(const MeanProblem           &problem,
+           const double                 upper,
+           const std::function<bool()> &may_go_on,
+           std::vector<SideRange>      &ranges)
+    {
+      const double           best = upper - problem.constant;
+      const NodeBound        bound(problem.S, problem.g, *problem.phi);
+      std::vector<ProofNode> open;
+      if (auto root = bound.root(best))
+        {
+          for (unsigned int i = 0; i < ranges.size(); ++i)
+            {
+              root->lower(i) = std::max(root->lower(i), ranges[i].mean.lower);
+              root->upper(i) = std::min(root->upper(i), ranges[i].mean.upper);
+            }
+          open.push_back(*root);
+        }
+      else
+        return;
+      const SideRange        empty = {{1., -1.}, {1., -1.}};
+      std::vector<SideRange> hulls(ranges.size(), empty);
+      for (unsigned int nodes = 0; !open.empty(); ++nodes)
+        {
+          if (!may_go_on())
+            return;
+          ProofNode node = std::move(open.back());
+          open.pop_back();
+          NodeResult result;
+          if (nodes < n_nodes_of_ranges)
+            {
+              result = bound.bound(node, best, 0.);
+              if (!result.unknown && result.least >= best)
+                continue;
+            }
+          if (!result.unknown)
+            {
+              if (const auto own = ranges_of_node(problem, bound, node, best))
+                for (unsigned int i = 0; i < ranges.size(); ++i)
+                  {
+                    hulls[i].mean   = hull(hulls[i].mean, (*own)[i].mean);
+                    hulls[i].linear = hull(hulls[i].linear, (*own)[i].linear);
+                  }
+              continue;
+            }
+          const unsigned int i    = *result.unknown;
+          const double       kink = problem.phi->f[i][result.piece].upper;
+          ProofNode          near = node;
+          near.lower(i)           = kink;
+          near.number             = 2 * nodes + 1;
+          node.upper(i)           = kink;
+          node.number             = 2 * nodes + 2;
+          open.push_back(std::move(near));
+          open.push_back(std::move(node));
+        }
+      for (unsigned int i = 0; i < ranges.size(); ++i)
+        // No displacement at all would be one of rounding.
+        if (!hulls[i].mean.is_empty())
+          {
+            ranges[i].mean   = intersection(ranges[i].mean, hulls[i].mean);
+            ranges[i].linear = intersection(ranges[i].linear, hulls[i].linear);
+          }
+    }
+  } // namespace
+
+
+
+  std::vector<double>
+  side_constants(const EquilibriumProblem &equilibrium,
+                 const ByRegion<Material> &materials,
+                 const bool                tangential_fixed)
+  {
+    struct Known
+    {
+      RectangleAboveSide Q;
+      Material           material;
+      double             constant;
+    };
+    std::vector<Known>  known;
+    std::vector<double> constants;
+    for (const ContactSide &side : equilibrium.contact_sides())
+      {
+        const RectangleAboveSide Q =
+          rectangle(side, equilibrium.elements()[side.element]);
+        const Material &material = materials(side.material);
+        const auto      is_same  = [](const double one, const double other) {
+          return std::abs(one - other) <= 1e-12 * std::abs(other);
+        };
+        auto same =
+          std::find_if(known.begin(), known.end(), [&](const Known &other) {
+            return is_same(other.Q.width, Q.width) &&
+                   is_same(other.Q.height, Q.height) &&
+                   other.material.young_modulus == material.young_modulus &&
+                   other.material.poisson_ratio == material.poisson_ratio;
+          });
+        if (same == known.end())
+          same = known.insert(known.end(),
+                              {Q,
+                               material,
+                               trace_constant(Q, material, tangential_fixed)});
+        constants.push_back(same->constant);
+      }
+    return constants;
+  }
+
+
+
+  GlobalBound
+  bound_global(const EquilibriumProblem       &equilibrium,
+               const std::vector<double>      &trace_constants,
+               const BranchMinimum            &law,
+               const Eigen::VectorXd          &means,
+               const double                    upper,
+               const BranchAndBoundParameters &proof_parameters,
+               const std::function<bool()>    &may_go_on)
+  {
+    const Sides sides(equilibrium, trace_constants, law);
+
+    constexpr double       infinity = std::numeric_limits<double>::infinity();
+    const Interval         all      = {-infinity, infinity};
+    std::vector<SideRange> ranges(means.size(), {{-infinity, 0.}, all});
+
+    BranchAndBoundParameters parameters = proof_parameters;
+    parameters.tolerance                = proof_tolerance * std::abs(upper);
+    const dealii::Vector<double> start(means.begin(), means.end());
+    GlobalBound                  result;
+    /// Returns the bound.
+    const auto add_bound = [&](const MeanProblem &problem) {
+      const BranchAndBoundResult proof =
+        BranchAndBound(parameters)
+          .minimize(problem.S,
+                    problem.g,
+                    *problem.phi,
+                    start,
+                    [&](const ProofProgress &) { return may_go_on(); });
+      result.nodes += proof.nodes;
+      const double lower = proof.status == ProofStatus::no_bound ?
+                             -infinity :
+                             problem.constant + proof.lower;
+      if (lower > result.lower)
+        {
+          result.lower  = lower;
+          result.status = proof.status;
+        }
+      return lower;
+    };
+
+    std::optional<MeanProblem> best;
+    double                     best_shift = 0., best_lower = -infinity;
+    for (const double multiple : first_shifts)
+      {
+        std::vector<double> D       = sides.shifts_for_means(means, multiple);
+        MeanProblem         problem = sides.mean_problem(ranges, D);
+        const double        lower   = add_bound(problem);
+        if (!best || lower > best_lower)
+          {
+            best       = std::move(problem);
+            best_shift = multiple;
+            best_lower = lower;
+          }
+      }
+    const auto n_certain = [&best]() {
+      return best->pieces.size() -
+             std::count(best->pieces.begin(), best->pieces.end(), std::nullopt);
+    };
+    for (unsigned int stage = 0; stage < n_stages && may_go_on(); ++stage)
+      {
+        const auto before = n_certain();
+        shrink(*best, upper, may_go_on, ranges);
+        std::vector<double> D = sides.shifts_for_ranges(ranges, best_shift);
+        best                  = sides.mean_problem(ranges, D);
+        add_bound(*best);
+        if (n_certain() == before)
+          break;
+      }
+
+    for (unsigned int i = 0; i < ranges.size(); ++i)
+      {
+        const auto &side     = equilibrium.contact_sides()[i];
+        const auto &vertices = equilibrium.vertices();
+        result.sides.push_back(
+          {{{vertices[side.vertices[0]], vertices[side.vertices[1]]}},
+           ranges[i].mean,
+           ranges[i].linear,
+           best->pieces[i]});
+      }
+    return result;
+  }
+} // namespace Debond
