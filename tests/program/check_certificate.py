@@ -173,6 +173,24 @@ def main(debond, n, first):
     if without_bonds["minimum"] != "global":
         failures.append("without bonds a state is all there is")
 
+    # A flap that turns about a soft hinge opens the one contact side in reach
+    # from far below the threshold to far above it, while its stresses are those
+    # of the element: without the slope's term the bound is 5 % of the bonds'
+    # energy too high.
+    flap = run(debond, [
+        "Mesh/Lengths=0.4, 0.2", "Mesh/Cells=8, 4", "Parts/flap=x > 0.05",
+        "Parts/glued=bottom: if(x>0.05,if(x<0.1,1,0),0)",
+        "Boundary conditions/Contact boundary=glued",
+        "Boundary conditions/Clamped boundaries=left",
+        "Material/Young modulus=1", "Material/Young modulus flap=1e5",
+        "Material/Poisson ratio=0", "Loads/Traction top=",
+        "Loads/Traction right=-0.1*(y-0.1); 0",
+        "Contact law/Bond stiffness=8", "Contact law/Bond threshold=2e-4",
+        "Contact law/Tangential displacement=free",
+        "Certificate/Kind=global", "Accuracy/Maximum unknowns=20000"])[1]
+    if not 0. < flap["certificate"]["relative_width"] < 0.1:
+        failures.append(f"flap: {flap['certificate']}")
+
     def refused(words, added):
         result, _ = run(debond, ["Certificate/Kind=global"] + added)
         if result.returncode != 2 or words not in result.stderr:
