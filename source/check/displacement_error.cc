@@ -2,6 +2,7 @@
 #include <deal.II/base/quadrature_lib.h>
 
 #include <debond/check/displacement_error.h>
+#include <debond/elasticity/cell_nodes.h>
 
 #include <cmath>
 #include <limits>
@@ -94,6 +95,7 @@ namespace Debond
     dealii::SymmetricTensor<4, dim> stiffness;
     const dealii::Vector<double>    displacement =
       problem.unknowns().cartesian_displacement(u);
+    const unsigned int               degree = problem.unknowns().degree();
     const dealii::QGaussSimplex<dim> rule(3);
     const double reference_volume = dim == 2 ? 0.5 : 1. / 6.;
 
@@ -112,27 +114,32 @@ namespace Debond
     for (const auto &cell :
          problem.unknowns().dof_handler().active_cell_iterators())
       {
-        const dealii::Tensor<2, dim> gradient =
-          problem.fields().displacement_gradient(cell, displacement);
+        const CellNodes<dim> nodes(cell);
         stiffness =
           problem.fields().material(cell).template elasticity_tensor<dim>();
         // The points of the rule are further than twice that from the faces.
         const double step = 1e-3 * cell->minimum_vertex_distance();
         for (unsigned int q = 0; q < rule.size(); ++q)
           {
-            dealii::Point<dim>     point;
-            dealii::Tensor<1, dim> value;
+            dealii::Point<dim>                       point;
+            dealii::Tensor<1, dim>                   value;
+            typename ElasticFields<dim>::Barycentric barycentric;
             for (unsigned int v = 0; v <= dim; ++v)
               {
-                double shape = v == 0 ? 1. : rule.point(q)[v - 1];
+                barycentric[v] = v == 0 ? 1. : rule.point(q)[v - 1];
                 if (v == 0)
                   for (unsigned int d = 0; d < dim; ++d)
-                    shape -= rule.point(q)[d];
-                point += shape * cell->vertex(v);
-                for (unsigned int d = 0; d < dim; ++d)
-                  value[d] +=
-                    shape * displacement[cell->vertex_dof_index(v, d)];
+                    barycentric[v] -= rule.point(q)[d];
+                point += barycentric[v] * cell->vertex(v);
               }
+            const auto basis = bernstein(barycentric, degree);
+            for (unsigned int n = 0; n < nodes.size; ++n)
+              for (unsigned int d = 0; d < dim; ++d)
+                value[d] += basis[n] * displacement[nodes.dofs[n][d]];
+            const dealii::Tensor<2, dim> gradient =
+              problem.fields().displacement_gradient(cell,
+                                                     displacement,
+                                                     barycentric);
             const double weight =
               rule.weight(q) / reference_volume * cell->measure();
             const dealii::Tensor<1, dim> exact_value = value_at(point, exact);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/check/largest_values.h>
+#include <debond/elasticity/cell_nodes.h>
 
 #include <algorithm>
 
@@ -13,18 +14,21 @@ namespace Debond
   {
     const dealii::Vector<double> displacement =
       problem.unknowns().cartesian_displacement(u, factors);
+    const dealii::Vector<double> at_nodes =
+      problem.unknowns().nodal_values(displacement);
 
     LargestValues largest;
     for (const auto &cell :
          problem.unknowns().dof_handler().active_cell_iterators())
       {
-        for (const unsigned int v : cell->vertex_indices())
+        const CellNodes<dim> nodes(cell);
+        for (unsigned int n = 0; n < nodes.size; ++n)
           {
-            dealii::Tensor<1, dim> at_vertex;
+            dealii::Tensor<1, dim> at_node;
             for (unsigned int d = 0; d < dim; ++d)
-              at_vertex[d] = displacement(cell->vertex_dof_index(v, d));
+              at_node[d] = at_nodes(nodes.dofs[n][d]);
             largest.displacement =
-              std::max(largest.displacement, at_vertex.norm());
+              std::max(largest.displacement, at_node.norm());
           }
         largest.gradient = std::max(
           largest.gradient,

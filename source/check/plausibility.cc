@@ -31,7 +31,8 @@ namespace Debond
   plausibility_notes(const BodyShape     &shape,
                      const unsigned int   dim,
                      const bool           has_load,
-                     const LargestValues &largest)
+                     const LargestValues &largest,
+                     const unsigned int   degree)
   {
     std::vector<std::string> notes;
     std::ostringstream       text;
@@ -55,8 +56,9 @@ namespace Debond
         add_note();
       }
 
-    // How long and how thin a body of another shape is, is not known.
-    if (!shape.is_box)
+    // How long and how thin a body of another shape is, is not known; quadratic
+    // displacements bend.
+    if (!shape.is_box || degree > 1)
       return notes;
 
     const double thickness =

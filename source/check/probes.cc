@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/check/probes.h>
-#include <debond/elasticity/linear_simplex.h>
+#include <debond/elasticity/cell_nodes.h>
 
 #include <algorithm>
 #include <array>
@@ -16,14 +16,13 @@ namespace Debond
     using Kind = typename Probe<dim>::Kind;
     for (const Probe<dim> &probe : probes)
       {
-        // By vertex.
+        // By node.
         std::map<unsigned int, Vertex> vertices;
-        const auto                     add = [&vertices](const auto        &cell,
-                                     const unsigned int v,
-                                     const double       weight) {
-          Vertex &vertex = vertices[cell->vertex_index(v)];
-          for (unsigned int d = 0; d < dim; ++d)
-            vertex.dofs[d] = cell->vertex_dof_index(v, d);
+        const auto add = [&vertices](const CellNodes<dim> &nodes,
+                                     const unsigned int    node,
+                                     const double          weight) {
+          Vertex &vertex = vertices[nodes.indices[node]];
+          vertex.dofs    = nodes.dofs[node];
           vertex.weight += weight;
         };
 
@@ -55,8 +54,10 @@ namespace Debond
             constexpr double rounding = 1e-8;
             if (least < -rounding)
               throw ProbeError(probe.name, "the point is not in the body");
-            for (unsigned int v = 0; v <= dim; ++v)
-              add(inside, v, barycentric[v]);
+            const CellNodes<dim> nodes(inside);
+            const auto basis = bernstein(barycentric, unknowns.degree());
+            for (unsigned int n = 0; n < nodes.size; ++n)
+              add(nodes, n, basis[n]);
           }
         else if (const auto boundary = pieces.boundaries.find(probe.piece);
                  boundary != pieces.boundaries.end())
@@ -67,9 +68,22 @@ namespace Debond
                 if (!cell->face(f)->at_boundary() ||
                     boundary->second.count(cell->face(f)->boundary_id()) == 0)
                   continue;
+                // All basis functions of a face have the same integral.
+                const CellNodes<dim>          nodes(cell);
+                std::array<unsigned int, dim> in_cell;
                 for (unsigned int v = 0; v < dim; ++v)
-                  add(cell,
-                      cell->reference_cell().face_to_cell_vertices(f, v, 1),
+                  {
+                    in_cell[v] =
+                      cell->reference_cell().face_to_cell_vertices(f, v, 1);
+                    add(nodes, in_cell[v], cell->face(f)->measure());
+                  }
+                for (unsigned int k = dim;
+                     k < n_coefficients(dim, unknowns.degree());
+                     ++k)
+                  add(nodes,
+                      dim + 1 +
+                        edge_between(in_cell[simplex_edges[k - dim][0]],
+                                     in_cell[simplex_edges[k - dim][1]]),
                       cell->face(f)->measure());
               }
         else
@@ -78,8 +92,11 @@ namespace Debond
             for (const auto &cell :
                  unknowns.dof_handler().active_cell_iterators())
               if (ids.count(cell->material_id()) > 0)
-                for (unsigned int v = 0; v <= dim; ++v)
-                  add(cell, v, LinearSimplex<dim>(cell).volume);
+                {
+                  const CellNodes<dim> nodes(cell);
+                  for (unsigned int n = 0; n < nodes.size; ++n)
+                    add(nodes, n, LinearSimplex<dim>(cell).volume);
+                }
           }
 
         double total = 0.;

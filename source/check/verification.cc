@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/check/broken_zone.h>
 #include <debond/check/verification.h>
+#include <debond/elasticity/cell_nodes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -331,25 +332,27 @@ namespace Debond
         vertex_dofs_of_node(normals.size());
       for (const auto &cell :
            problem.unknowns().dof_handler().active_cell_iterators())
-        for (const unsigned int v : cell->vertex_indices())
-          {
-            bool has_contact_node = false;
-            for (unsigned int d = 0; d < dim; ++d)
-              has_contact_node |= is_normal[cell->vertex_dof_index(v, d)];
+        {
+          const CellNodes<dim> nodes(cell);
+          for (unsigned int n = 0; n < nodes.size; ++n)
+            {
+              bool has_contact_node = false;
+              for (const auto dof : nodes.dofs[n])
+                has_contact_node |= is_normal[dof];
 
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                const auto dof = cell->vertex_dof_index(v, d);
-                component[dof] = d;
-                if (is_normal[dof] || problem.unknowns().is_constrained(dof))
-                  (has_contact_node && !is_supported[dof] ? contact : clamped)(
-                    dof) = residual(dof);
-                if (is_normal[dof])
-                  for (unsigned int e = 0; e < dim; ++e)
-                    vertex_dofs_of_node[node_of_dof[dof]][e] =
-                      cell->vertex_dof_index(v, e);
-              }
-          }
+              for (unsigned int d = 0; d < dim; ++d)
+                {
+                  const auto dof = nodes.dofs[n][d];
+                  component[dof] = d;
+                  if (is_normal[dof] || problem.unknowns().is_constrained(dof))
+                    (has_contact_node && !is_supported[dof] ? contact :
+                                                              clamped)(dof) =
+                      residual(dof);
+                  if (is_normal[dof])
+                    vertex_dofs_of_node[node_of_dof[dof]] = nodes.dofs[n];
+                }
+            }
+        }
 
       const auto resultant = [&](const dealii::Vector<double> &forces) {
         const dealii::Vector<double> cartesian =

@@ -289,17 +289,15 @@ namespace Debond
   void
   AdhesionIntegral<dim>::collect_points(const dealii::Vector<double> &s) const
   {
+    const unsigned int n_face_nodes = boundary.n_face_nodes();
     point_list.clear();
     for (const auto &face : boundary.faces)
       {
-        std::array<double, dim> trace;
-        for (unsigned int k = 0; k < dim; ++k)
-          trace[k] = face.nodes[k] == dealii::numbers::invalid_unsigned_int ?
-                       held_trace(face, k) :
-                       s(face.nodes[k]);
-
-        for (const auto &quadrature_point : quadrature.points(trace))
+        const Trace trace = trace_on(face, s);
+        for (const auto &quadrature_point : quadrature.points_of(trace))
           {
+            const Trace shape =
+              bernstein(quadrature_point.barycentric, boundary.degree);
             Point point   = {};
             point.n_nodes = 0;
             point.weight  = quadrature_point.weight * face.measure;
@@ -307,14 +305,13 @@ namespace Debond
             for (unsigned int k = 0; k < dim; ++k)
               if (quadrature_point.barycentric[k] == 1.)
                 point.least_piece = least_piece_at(face, k);
-            for (unsigned int k = 0; k < dim; ++k)
-              if (face.nodes[k] == dealii::numbers::invalid_unsigned_int)
-                point.offset +=
-                  quadrature_point.barycentric[k] * held_trace(face, k);
-              else if (quadrature_point.barycentric[k] != 0.)
+            for (unsigned int k = 0; k < n_face_nodes; ++k)
+              if (face.node(k) == dealii::numbers::invalid_unsigned_int)
+                point.offset += shape[k] * trace[k];
+              else if (shape[k] != 0.)
                 {
-                  point.nodes[point.n_nodes] = face.nodes[k];
-                  point.shape[point.n_nodes] = quadrature_point.barycentric[k];
+                  point.nodes[point.n_nodes] = face.node(k);
+                  point.shape[point.n_nodes] = shape[k];
                   ++point.n_nodes;
                 }
             point_list.push_back(point);
@@ -386,11 +383,11 @@ namespace Debond
   double
   AdhesionIntegral<dim>::held_trace(
     const typename ContactBoundary<dim>::Face &face,
-    const unsigned int                         vertex) const
+    const unsigned int                         k) const
   {
     if (boundary.held_vertices.empty())
       return 0.;
-    const auto &held = boundary.held_vertices[face.held[vertex]];
+    const auto &held = boundary.held_vertices[face.held_at(k)];
     return load_factor * held.normal_displacement - held.gap;
   }
 
@@ -418,13 +415,28 @@ namespace Debond
                                const std::array<double, dim> &barycentric,
                                const dealii::Vector<double>  &s) const
   {
-    double result = 0.;
-    for (unsigned int k = 0; k < dim; ++k)
-      result += barycentric[k] *
-                (face.nodes[k] == dealii::numbers::invalid_unsigned_int ?
-                   held_trace(face, k) :
-                   s(face.nodes[k]));
+    const Trace coefficients = trace_on(face, s);
+    const Trace shape        = bernstein(barycentric, boundary.degree);
+    double      result       = 0.;
+    for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
+      result += shape[k] * coefficients[k];
     return result;
+  }
+
+
+
+  template <int dim>
+  typename ContactQuadrature<dim>::Trace
+  AdhesionIntegral<dim>::trace_on(
+    const typename ContactBoundary<dim>::Face &face,
+    const dealii::Vector<double>              &s) const
+  {
+    Trace trace = {};
+    for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
+      trace[k] = face.node(k) == dealii::numbers::invalid_unsigned_int ?
+                   held_trace(face, k) :
+                   s(face.node(k));
+    return trace;
   }
 
 
@@ -471,34 +483,30 @@ namespace Debond
       return forces;
     for (const auto &face : boundary.faces)
       {
-        std::array<double, dim> trace;
-        bool                    is_held = false;
-        for (unsigned int k = 0; k < dim; ++k)
-          {
-            const bool known =
-              face.nodes[k] == dealii::numbers::invalid_unsigned_int;
-            trace[k] = known ? held_trace(face, k) : s(face.nodes[k]);
-            is_held  = is_held || known;
-          }
+        const unsigned int n_face_nodes = boundary.n_face_nodes();
+        bool               is_held      = false;
+        for (unsigned int k = 0; k < n_face_nodes; ++k)
+          is_held |= face.node(k) == dealii::numbers::invalid_unsigned_int;
         if (!is_held)
           continue;
-        for (const auto &point : quadrature.points(trace))
+        const Trace trace = trace_on(face, s);
+        for (const auto &point : quadrature.points_of(trace))
           {
-            const BondScale bonds    = bonds_of(face, point.barycentric);
-            double          at_point = 0.;
-            unsigned int    least    = 0;
+            const BondScale bonds = bonds_of(face, point.barycentric);
+            const Trace shape = bernstein(point.barycentric, boundary.degree);
+            double      at_point = 0.;
+            for (unsigned int k = 0; k < n_face_nodes; ++k)
+              at_point += shape[k] * trace[k];
+            unsigned int least = 0;
             for (unsigned int k = 0; k < dim; ++k)
-              {
-                at_point += point.barycentric[k] * trace[k];
-                if (point.barycentric[k] == 1.)
-                  least = least_piece_at(face, k);
-              }
+              if (point.barycentric[k] == 1.)
+                least = least_piece_at(face, k);
             const double force =
               point.weight * face.measure * bonds.energy / bonds.stretch *
               law.derivative(at_point / bonds.stretch, least);
-            for (unsigned int k = 0; k < dim; ++k)
-              if (face.nodes[k] == dealii::numbers::invalid_unsigned_int)
-                forces[face.held[k]] += point.barycentric[k] * force;
+            for (unsigned int k = 0; k < n_face_nodes; ++k)
+              if (face.node(k) == dealii::numbers::invalid_unsigned_int)
+                forces[face.held_at(k)] += shape[k] * force;
           }
       }
     return forces;

@@ -9,11 +9,14 @@ namespace Debond
   {
     std::vector<std::set<unsigned int>> result(boundary.nodes.size());
     for (const auto &face : boundary.faces)
-      for (const unsigned int i : face.nodes)
-        for (const unsigned int j : face.nodes)
-          if (i != j && i != dealii::numbers::invalid_unsigned_int &&
-              j != dealii::numbers::invalid_unsigned_int)
-            result[i].insert(j);
+      for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
+        for (unsigned int l = 0; l < boundary.n_face_nodes(); ++l)
+          {
+            const unsigned int i = face.node(k), j = face.node(l);
+            if (i != j && i != dealii::numbers::invalid_unsigned_int &&
+                j != dealii::numbers::invalid_unsigned_int)
+              result[i].insert(j);
+          }
     return result;
   }
 

@@ -4,6 +4,7 @@
 #include <debond/contact/quadrature.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace Debond
@@ -65,15 +66,15 @@ namespace Debond
 
 
 
-    /// Points strictly inside, exact to degree 2: what the derivative of a
-    /// quadratic, or the quadratic itself, of a P1 trace needs, with a P1
-    /// basis function as factor of the former.
+    /// Points strictly inside, exact to degree 2, of a quadratic trace 4: what
+    /// the derivative of a quadratic, or the quadratic itself, of the trace
+    /// needs, with a basis function as factor of the former.
     template <int dim>
     dealii::Quadrature<dim - 1>
-    quadratic_rule()
+    quadratic_rule([[maybe_unused]] const unsigned int degree)
     {
       if constexpr (dim == 2)
-        return dealii::QGauss<1>(2);
+        return dealii::QGauss<1>(degree + 1);
       else
         return dealii::QWitherdenVincentSimplex<2>(1, false);
     }
@@ -82,11 +83,17 @@ namespace Debond
 
     template <int dim>
     std::vector<typename ContactQuadrature<dim>::QuadraturePoint>
-    rule_on_face(const ContactQuadratureParameters &parameters)
+    rule_on_face(const ContactQuadratureParameters &parameters,
+                 const unsigned int                 degree)
     {
       using Rule            = ContactQuadratureParameters::Rule;
       using QuadraturePoint = typename ContactQuadrature<dim>::QuadraturePoint;
 
+      if (degree == 2 && parameters.rule != Rule::gauss &&
+          !(dim == 2 && parameters.rule == Rule::exact))
+        throw std::invalid_argument(
+          "quadratic displacements (Mesh/Degree = 2) need \"gauss N\"" +
+          std::string(dim == 2 ? " or \"exact\"" : ""));
       std::vector<QuadraturePoint> points;
       switch (parameters.rule)
         {
@@ -109,7 +116,8 @@ namespace Debond
               gauss_rule<dim>(parameters.gauss_points));
             break;
           case Rule::exact:
-            points = in_barycentric_coordinates<dim>(quadratic_rule<dim>());
+            points =
+              in_barycentric_coordinates<dim>(quadratic_rule<dim>(degree));
             break;
         }
       return points;
@@ -157,11 +165,13 @@ namespace Debond
   template <int dim>
   ContactQuadrature<dim>::ContactQuadrature(
     const ContactQuadratureParameters &parameters,
-    const std::vector<double>         &law_kinks)
-    : split_at_kinks(parameters.rule ==
+    const std::vector<double>         &law_kinks,
+    const unsigned int                 degree)
+    : degree(degree)
+    , split_at_kinks(parameters.rule ==
                      ContactQuadratureParameters::Rule::exact)
     , kinks(law_kinks)
-    , fixed(rule_on_face<dim>(parameters))
+    , fixed(rule_on_face<dim>(parameters, degree))
   {}
 
 
@@ -193,6 +203,61 @@ namespace Debond
     split.clear();
     append(face, 1.);
     return split;
+  }
+
+
+
+  template <int dim>
+  const std::vector<typename ContactQuadrature<dim>::QuadraturePoint> &
+  ContactQuadrature<dim>::points_of(const Trace &trace) const
+  {
+    if (degree == 1)
+      {
+        std::array<double, dim> at_vertices;
+        std::copy_n(trace.begin(), dim, at_vertices.begin());
+        return points(at_vertices);
+      }
+    if (!split_at_kinks)
+      return fixed;
+    split.clear();
+    split_line(trace);
+    return split;
+  }
+
+
+
+  template <int dim>
+  void
+  ContactQuadrature<dim>::split_line(const Trace &trace) const
+  {
+    // trace(t) = c + 2 b t + a t^2.
+    const double        b = trace[dim] - trace[0];
+    const double        a = trace[1] - trace[dim] - b;
+    std::vector<double> ends{0., 1.};
+    for (const double kink : kinks)
+      {
+        const double c            = trace[0] - kink;
+        const double discriminant = b * b - a * c;
+        if (discriminant <= 0.)
+          continue;
+        // The root that loses no digits, and the other one from the product.
+        const double sum = -(b + std::copysign(std::sqrt(discriminant), b));
+        for (const double root : {sum / a, c / sum})
+          if (root > 0. && root < 1.)
+            ends.push_back(root);
+      }
+    std::sort(ends.begin(), ends.end());
+
+    for (unsigned int i = 0; i + 1 < ends.size(); ++i)
+      for (const QuadraturePoint &point : fixed)
+        {
+          const double    length = ends[i + 1] - ends[i];
+          QuadraturePoint image;
+          image.weight         = point.weight * length;
+          image.barycentric[1] = ends[i] + point.barycentric[1] * length;
+          image.barycentric[0] = 1. - image.barycentric[1];
+          split.push_back(image);
+        }
   }
 
 

@@ -3,8 +3,8 @@
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/full_matrix.h>
 
+#include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/elasticity/linear_simplex.h>
 #include <debond/elasticity/temperature_load.h>
 
 #include <array>
@@ -16,8 +16,9 @@ namespace Debond
   ElasticProblem<dim>::ElasticProblem(
     const dealii::Triangulation<dim> &triangulation,
     const BoundaryConditions         &conditions,
-    const Supports<dim>              &supports)
-    : elastic_unknowns(triangulation, conditions, supports)
+    const Supports<dim>              &supports,
+    const unsigned int                degree)
+    : elastic_unknowns(triangulation, conditions, supports, degree)
   {}
 
 
@@ -109,44 +110,60 @@ namespace Debond
     const auto stiffness = materials.transformed([](const Material &material) {
       return material.elasticity_tensor<dim>();
     });
-    constexpr unsigned int                       n_cell_dofs = dim * (dim + 1);
+    const unsigned int degree      = elastic_unknowns.degree();
+    const unsigned int n_cell_dofs = dim * n_coefficients(dim + 1, degree);
     dealii::FullMatrix<double>                   cell_matrix(n_cell_dofs);
     std::vector<dealii::types::global_dof_index> cell_dofs(n_cell_dofs);
-    std::array<dealii::SymmetricTensor<2, dim>, n_cell_dofs> strains;
+    std::array<dealii::Tensor<1, dim>, dim * CellNodes<dim>::maximum>
+      directions;
+    std::array<dealii::SymmetricTensor<2, dim>, dim * CellNodes<dim>::maximum>
+      strains;
 
     for (const auto &cell :
          elastic_unknowns.dof_handler().active_cell_iterators())
       {
-        const LinearSimplex<dim> simplex(cell);
+        const BernsteinSimplex<dim> simplex(cell, degree);
+        const CellNodes<dim>        nodes(cell);
 
-        // The basis function of the unknown k of vertex v is phi_v times the
+        // The basis function of the unknown k of node n is phi_n times the
         // direction of the unknown.
-        for (unsigned int v = 0; v <= dim; ++v)
+        for (unsigned int n = 0; n < nodes.size; ++n)
           {
-            const dealii::Tensor<2, dim> *const directions =
-              elastic_unknowns.directions(cell->vertex_index(v));
+            const dealii::Tensor<2, dim> *const frame =
+              elastic_unknowns.directions(nodes.indices[n]);
             for (unsigned int k = 0; k < dim; ++k)
               {
-                dealii::Tensor<1, dim> direction;
-                if (directions == nullptr)
-                  direction[k] = 1.;
+                const unsigned int i = n * dim + k;
+                cell_dofs[i]         = nodes.dofs[n][k];
+                directions[i]        = {};
+                if (frame == nullptr)
+                  directions[i][k] = 1.;
                 else
                   for (unsigned int d = 0; d < dim; ++d)
-                    direction[d] = (*directions)[d][k];
-
-                const unsigned int i = v * dim + k;
-                cell_dofs[i]         = cell->vertex_dof_index(v, k);
-                strains[i]           = dealii::symmetrize(
-                  dealii::outer_product(direction, simplex.gradients[v]));
+                    directions[i][d] = (*frame)[d][k];
               }
           }
 
-        for (unsigned int i = 0; i < n_cell_dofs; ++i)
+        cell_matrix = 0.;
+        for (unsigned int q = 0; q < simplex.n_points; ++q)
           {
-            const dealii::SymmetricTensor<2, dim> weighted_stress =
-              simplex.volume * (stiffness(cell->material_id()) * strains[i]);
-            for (unsigned int j = 0; j < n_cell_dofs; ++j)
-              cell_matrix(i, j) = weighted_stress * strains[j];
+            const auto point = simplex.point(q);
+            for (unsigned int n = 0; n < nodes.size; ++n)
+              {
+                const dealii::Tensor<1, dim> gradient =
+                  simplex.gradient(n, point);
+                for (unsigned int i = n * dim; i < (n + 1) * dim; ++i)
+                  strains[i] = dealii::symmetrize(
+                    dealii::outer_product(directions[i], gradient));
+              }
+            for (unsigned int i = 0; i < n_cell_dofs; ++i)
+              {
+                const dealii::SymmetricTensor<2, dim> weighted_stress =
+                  simplex.weight *
+                  (stiffness(cell->material_id()) * strains[i]);
+                for (unsigned int j = 0; j < n_cell_dofs; ++j)
+                  cell_matrix(i, j) += weighted_stress * strains[j];
+              }
           }
         elastic_unknowns.constraints().distribute_local_to_global(cell_matrix,
                                                                   cell_dofs,

@@ -10,16 +10,24 @@ namespace Debond
   ExtendedOperator<dim>::ExtendedOperator(
     const ElasticProblem<dim> &elastic_problem)
     : problem(elastic_problem)
+    , degree(problem.unknowns().degree())
+    , n_points(degree == 1 ? 1 : dim + 1)
   {
     cells.reserve(
       problem.unknowns().dof_handler().get_triangulation().n_active_cells());
     for (const auto &dof_cell :
          problem.unknowns().dof_handler().active_cell_iterators())
       {
-        Cell cell;
-        for (unsigned int v = 0; v <= dim; ++v)
-          for (unsigned int d = 0; d < dim; ++d)
-            cell.dofs[v][d] = dof_cell->vertex_dof_index(v, d);
+        Cell                 cell;
+        const CellNodes<dim> nodes(dof_cell);
+        std::copy_n(nodes.dofs.begin(), dim + 1, cell.dofs.begin());
+        if (degree == 2)
+          {
+            edge_dofs.emplace_back();
+            std::copy(nodes.dofs.begin() + dim + 1,
+                      nodes.dofs.end(),
+                      edge_dofs.back().begin());
+          }
 
         // Row v of edges is the edge to vertex v + 1, and the columns of its
         // inverse are the gradients.
@@ -61,22 +69,25 @@ namespace Debond
   ExtendedVector
   ExtendedOperator<dim>::operator*(const ExtendedVector &u) const
   {
-    const ExtendedVector displacement = cartesian(u);
-    ExtendedVector       forces       = ExtendedVector::Zero(u.size());
-    for (const Cell &cell : cells)
-      {
-        const Stress sigma = stress(cell, displacement);
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int v = 0; v < dim; ++v)
-            {
-              long double force = 0.;
-              for (unsigned int e = 0; e < dim; ++e)
-                force += sigma[d][e] * cell.gradients[v][e];
-              force *= cell.volume;
-              forces(cell.dofs[v + 1][d]) += force;
-              forces(cell.dofs[0][d]) -= force;
-            }
-      }
+    const ExtendedVector  displacement = cartesian(u);
+    ExtendedVector        forces       = ExtendedVector::Zero(u.size());
+    std::vector<Gradient> gradients;
+    for (unsigned int c = 0; c < cells.size(); ++c)
+      for (unsigned int q = 0; q < n_points; ++q)
+        {
+          make_gradients(cells[c], q, gradients);
+          const Stress sigma = stress(c, gradients, displacement);
+          for (unsigned int d = 0; d < dim; ++d)
+            for (unsigned int n = 0; n < gradients.size(); ++n)
+              {
+                long double force = 0.;
+                for (unsigned int e = 0; e < dim; ++e)
+                  force += sigma[d][e] * gradients[n][e];
+                force *= cells[c].volume / n_points;
+                forces(dofs(c, n + 1)[d]) += force;
+                forces(dofs(c, 0)[d]) -= force;
+              }
+        }
 
     ExtendedVector result = forces;
     for (const auto &frame : problem.unknowns().frames())
@@ -102,19 +113,22 @@ namespace Debond
     const ExtendedVector displacement = cartesian(u);
     const ExtendedVector rounded =
       cartesian(u.template cast<double>().template cast<long double>());
-    long double largest = 0., largest_change = 0.;
-    for (const Cell &cell : cells)
-      {
-        const Stress exact = stress(cell, displacement);
-        const Stress other = stress(cell, rounded);
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int e = 0; e < dim; ++e)
-            {
-              largest = std::max(largest, std::abs(exact[d][e]));
-              largest_change =
-                std::max(largest_change, std::abs(exact[d][e] - other[d][e]));
-            }
-      }
+    long double           largest = 0., largest_change = 0.;
+    std::vector<Gradient> gradients;
+    for (unsigned int c = 0; c < cells.size(); ++c)
+      for (unsigned int q = 0; q < n_points; ++q)
+        {
+          make_gradients(cells[c], q, gradients);
+          const Stress exact = stress(c, gradients, displacement);
+          const Stress other = stress(c, gradients, rounded);
+          for (unsigned int d = 0; d < dim; ++d)
+            for (unsigned int e = 0; e < dim; ++e)
+              {
+                largest = std::max(largest, std::abs(exact[d][e]));
+                largest_change =
+                  std::max(largest_change, std::abs(exact[d][e] - other[d][e]));
+              }
+        }
     return largest > 0. ? static_cast<double>(largest_change / largest) : 0.;
   }
 
@@ -139,18 +153,59 @@ namespace Debond
 
 
   template <int dim>
-  typename ExtendedOperator<dim>::Stress
-  ExtendedOperator<dim>::stress(const Cell           &cell,
-                                const ExtendedVector &cartesian_u) const
+  void
+  ExtendedOperator<dim>::make_gradients(const Cell            &cell,
+                                        const unsigned int     point,
+                                        std::vector<Gradient> &gradients) const
   {
-    Stress gradient = {};
-    for (unsigned int v = 0; v < dim; ++v)
+    if (degree == 1)
+      {
+        gradients.assign(cell.gradients.begin(), cell.gradients.end());
+        return;
+      }
+    const long double small =
+      dim == 2 ? 1.L / 6.L : (5.L - std::sqrt(5.L)) / 20.L;
+    std::array<long double, dim + 1> barycentric;
+    barycentric.fill(small);
+    barycentric[point] = 1.L - dim * small;
+    std::array<Gradient, dim + 1> of_vertices;
+    of_vertices[0] = {};
+    for (unsigned int v = 1; v <= dim; ++v)
+      {
+        of_vertices[v] = cell.gradients[v - 1];
+        for (unsigned int d = 0; d < dim; ++d)
+          of_vertices[0][d] -= of_vertices[v][d];
+      }
+    gradients.resize(CellNodes<dim>::maximum - 1);
+    for (unsigned int n = 1; n < CellNodes<dim>::maximum; ++n)
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const unsigned int a = n <= dim ? n : simplex_edges[n - (dim + 1)][0];
+          const unsigned int b = n <= dim ? n : simplex_edges[n - (dim + 1)][1];
+          // Of l_a^2 and of 2 l_a l_b.
+          gradients[n - 1][d] =
+            (a == b ? 1.L : 2.L) * (barycentric[a] * of_vertices[b][d] +
+                                    barycentric[b] * of_vertices[a][d]);
+        }
+  }
+
+
+
+  template <int dim>
+  typename ExtendedOperator<dim>::Stress
+  ExtendedOperator<dim>::stress(const unsigned int           c,
+                                const std::vector<Gradient> &gradients,
+                                const ExtendedVector        &cartesian_u) const
+  {
+    const Cell &cell     = cells[c];
+    Stress      gradient = {};
+    for (unsigned int n = 0; n < gradients.size(); ++n)
       for (unsigned int d = 0; d < dim; ++d)
         {
           const long double difference =
-            cartesian_u(cell.dofs[v + 1][d]) - cartesian_u(cell.dofs[0][d]);
+            cartesian_u(dofs(c, n + 1)[d]) - cartesian_u(dofs(c, 0)[d]);
           for (unsigned int e = 0; e < dim; ++e)
-            gradient[d][e] += difference * cell.gradients[v][e];
+            gradient[d][e] += difference * gradients[n][e];
         }
 
     long double trace = 0.;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/elasticity/fields.h>
-#include <debond/elasticity/linear_simplex.h>
 
 #include <boost/accumulators/accumulators.hpp>
 #include <boost/accumulators/statistics/stats.hpp>
@@ -67,15 +66,21 @@ namespace Debond
     dealii::Vector<double> forces(unknowns.n_dofs());
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
       {
-        const LinearSimplex<dim>              simplex(cell);
-        const dealii::SymmetricTensor<2, dim> sigma =
-          stress(cell, displacement, 0.);
-        for (unsigned int v = 0; v <= dim; ++v)
+        const BernsteinSimplex<dim> simplex(cell, unknowns.degree());
+        const CellNodes<dim>        nodes(cell);
+        for (unsigned int q = 0; q < simplex.n_points; ++q)
           {
-            const dealii::Tensor<1, dim> force =
-              simplex.volume * (sigma * simplex.gradients[v]);
-            for (unsigned int d = 0; d < dim; ++d)
-              forces[cell->vertex_dof_index(v, d)] += force[d];
+            const Barycentric                     point = simplex.point(q);
+            const dealii::SymmetricTensor<2, dim> sigma =
+              stiffness(cell->material_id()) *
+              dealii::symmetrize(gradient(simplex, nodes, displacement, point));
+            for (unsigned int n = 0; n < nodes.size; ++n)
+              {
+                const dealii::Tensor<1, dim> force =
+                  simplex.weight * (sigma * simplex.gradient(n, point));
+                for (unsigned int d = 0; d < dim; ++d)
+                  forces[nodes.dofs[n][d]] += force[d];
+              }
           }
       }
     forces -= applied_nodal_forces(factors);
@@ -95,20 +100,26 @@ namespace Debond
     dealii::Vector<double> rounding(unknowns.n_dofs());
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
       {
-        const LinearSimplex<dim> simplex(cell);
-        const double modulus  = stiffness(cell->material_id()).norm();
-        double       gradient = 0.;
-        for (unsigned int v = 0; v <= dim; ++v)
+        const BernsteinSimplex<dim> simplex(cell, unknowns.degree());
+        const CellNodes<dim>        nodes(cell);
+        const double modulus = stiffness(cell->material_id()).norm();
+        for (unsigned int q = 0; q < simplex.n_points; ++q)
           {
-            double size = 0.;
-            for (unsigned int d = 0; d < dim; ++d)
-              size += std::abs(displacement[cell->vertex_dof_index(v, d)]);
-            gradient += size * simplex.gradients[v].norm();
+            const Barycentric point         = simplex.point(q);
+            double            size_gradient = 0.;
+            for (unsigned int n = 0; n < nodes.size; ++n)
+              {
+                double size = 0.;
+                for (unsigned int d = 0; d < dim; ++d)
+                  size += std::abs(displacement[nodes.dofs[n][d]]);
+                size_gradient += size * simplex.gradient(n, point).norm();
+              }
+            for (unsigned int n = 0; n < nodes.size; ++n)
+              for (unsigned int d = 0; d < dim; ++d)
+                rounding[nodes.dofs[n][d]] += simplex.weight * modulus *
+                                              size_gradient *
+                                              simplex.gradient(n, point).norm();
           }
-        for (unsigned int v = 0; v <= dim; ++v)
-          for (unsigned int d = 0; d < dim; ++d)
-            rounding[cell->vertex_dof_index(v, d)] +=
-              simplex.volume * modulus * gradient * simplex.gradients[v].norm();
       }
     const dealii::Vector<double> forces = applied_nodal_forces(factors);
     for (unsigned int i = 0; i < rounding.size(); ++i)
@@ -124,13 +135,15 @@ namespace Debond
   ElasticFields<dim>::stress(
     const Cell                   &cell,
     const dealii::Vector<double> &cartesian_displacement,
-    const LoadFactors             factors) const
+    const LoadFactors             factors,
+    const Barycentric            &point) const
   {
     dealii::SymmetricTensor<2, dim> stress =
       stiffness(cell->material_id()) *
-      dealii::symmetrize(displacement_gradient(cell, cartesian_displacement));
+      dealii::symmetrize(
+        displacement_gradient(cell, cartesian_displacement, point));
     if (!thermal_stresses.empty())
-      stress -= factors.loads * thermal_stress(cell) *
+      stress -= factors.loads * thermal_stress(cell, point) *
                 dealii::unit_symmetric_tensor<dim>();
     return stress;
   }
@@ -142,23 +155,43 @@ namespace Debond
   ElasticFields<dim>::solid_stress(
     const Cell                   &cell,
     const dealii::Vector<double> &cartesian_displacement,
-    const LoadFactors             factors) const
+    const LoadFactors             factors,
+    const Barycentric            &point) const
   {
-    return material(cell).solid_stress(stress(cell,
-                                              cartesian_displacement,
-                                              factors),
-                                       factors.loads * thermal_stress(cell));
+    return material(cell).solid_stress(
+      stress(cell, cartesian_displacement, factors, point),
+      factors.loads * thermal_stress(cell, point));
   }
 
 
 
   template <int dim>
   double
-  ElasticFields<dim>::thermal_stress(const Cell &cell) const
+  ElasticFields<dim>::thermal_stress(const Cell        &cell,
+                                     const Barycentric &point) const
   {
-    return thermal_stresses.empty() ?
-             0. :
-             thermal_stresses[cell->active_cell_index()];
+    if (thermal_stresses.empty())
+      return 0.;
+    if (unknowns.degree() == 1)
+      return thermal_stresses[cell->active_cell_index()];
+    // The linear function that has these values at the points.
+    const double small = BernsteinSimplex<dim>::small_coordinate();
+    double       sum   = 0.;
+    for (unsigned int q = 0; q <= dim; ++q)
+      sum += (point[q] - small) / (1. - (dim + 1) * small) *
+             thermal_stresses[(dim + 1) * cell->active_cell_index() + q];
+    return sum;
+  }
+
+
+
+  template <int dim>
+  typename ElasticFields<dim>::Barycentric
+  ElasticFields<dim>::middle()
+  {
+    Barycentric result;
+    result.fill(1. / (dim + 1));
+    return result;
   }
 
 
@@ -167,21 +200,37 @@ namespace Debond
   dealii::Tensor<2, dim>
   ElasticFields<dim>::displacement_gradient(
     const Cell                   &cell,
-    const dealii::Vector<double> &cartesian_displacement) const
+    const dealii::Vector<double> &cartesian_displacement,
+    const Barycentric            &point) const
   {
-    const LinearSimplex<dim> simplex(cell);
-    dealii::Tensor<2, dim>   gradient;
+    return gradient(BernsteinSimplex<dim>(cell, unknowns.degree()),
+                    CellNodes<dim>(cell),
+                    cartesian_displacement,
+                    point);
+  }
+
+
+
+  template <int dim>
+  dealii::Tensor<2, dim>
+  ElasticFields<dim>::gradient(
+    const BernsteinSimplex<dim>  &simplex,
+    const CellNodes<dim>         &nodes,
+    const dealii::Vector<double> &cartesian_displacement,
+    const Barycentric            &point)
+  {
+    dealii::Tensor<2, dim> result;
     // The basis sums to one: without vertex 0 there are only differences of
     // neighbours' displacements, and a translation rounds nothing away.
-    for (unsigned int v = 1; v <= dim; ++v)
+    for (unsigned int n = 1; n < nodes.size; ++n)
       {
         dealii::Tensor<1, dim> difference;
         for (unsigned int d = 0; d < dim; ++d)
-          difference[d] = cartesian_displacement[cell->vertex_dof_index(v, d)] -
-                          cartesian_displacement[cell->vertex_dof_index(0, d)];
-        gradient += dealii::outer_product(difference, simplex.gradients[v]);
+          difference[d] = cartesian_displacement[nodes.dofs[n][d]] -
+                          cartesian_displacement[nodes.dofs[0][d]];
+        result += dealii::outer_product(difference, simplex.gradient(n, point));
       }
-    return gradient;
+    return result;
   }
 
 
@@ -245,10 +294,15 @@ namespace Debond
         sum;
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
       {
-        const dealii::SymmetricTensor<2, dim> strain =
-          dealii::symmetrize(displacement_gradient(cell, displacement));
-        sum(0.5 * LinearSimplex<dim>(cell).volume *
-            (strain * (stiffness(cell->material_id()) * strain)));
+        const BernsteinSimplex<dim> simplex(cell, unknowns.degree());
+        const CellNodes<dim>        nodes(cell);
+        for (unsigned int q = 0; q < simplex.n_points; ++q)
+          {
+            const dealii::SymmetricTensor<2, dim> strain = dealii::symmetrize(
+              gradient(simplex, nodes, displacement, simplex.point(q)));
+            sum(0.5 * simplex.weight *
+                (strain * (stiffness(cell->material_id()) * strain)));
+          }
       }
     const dealii::Vector<double> x = lifted(u, factors);
     for (unsigned int i = 0; i < x.size(); ++i)
@@ -265,15 +319,19 @@ namespace Debond
     const dealii::Vector<double> applied_forces = applied_nodal_forces(factors);
     dealii::Tensor<1, dim>       result;
     std::vector<bool>            visited(
-      unknowns.dof_handler().get_triangulation().n_vertices(), false);
+      n_nodes(unknowns.dof_handler().get_triangulation(), unknowns.degree()),
+      false);
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
-      for (const unsigned int v : cell->vertex_indices())
-        if (!visited[cell->vertex_index(v)])
-          {
-            visited[cell->vertex_index(v)] = true;
-            for (unsigned int d = 0; d < dim; ++d)
-              result[d] += applied_forces[cell->vertex_dof_index(v, d)];
-          }
+      {
+        const CellNodes<dim> nodes(cell);
+        for (unsigned int n = 0; n < nodes.size; ++n)
+          if (!visited[nodes.indices[n]])
+            {
+              visited[nodes.indices[n]] = true;
+              for (unsigned int d = 0; d < dim; ++d)
+                result[d] += applied_forces[nodes.dofs[n][d]];
+            }
+      }
     return result;
   }
 

@@ -3,6 +3,7 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/tensor.h>
 
+#include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/load_vector.h>
 #include <debond/mesh/crossed_mesh.h>
 
@@ -74,8 +75,9 @@ namespace Debond
 
 
     /// The integrals of a traction times each of the face's basis functions.
-    template <int dim>
-    using FaceForces = std::array<dealii::Tensor<1, dim>, dim>;
+    template <int dim, int degree>
+    using FaceForces =
+      std::array<dealii::Tensor<1, dim>, n_coefficients(dim, degree)>;
 
     template <typename Forces>
     double
@@ -87,13 +89,13 @@ namespace Debond
       return largest;
     }
 
-    /// Of the first entries, which are the forces themselves.
-    template <int dim, typename Forces>
+    /// Of the first @p n entries, which are the forces themselves.
+    template <unsigned int n, typename Forces>
     double
     sum_of_sizes(const Forces &forces)
     {
       double sum = 0.;
-      for (unsigned int v = 0; v < dim; ++v)
+      for (unsigned int v = 0; v < n; ++v)
         sum += forces[v].norm();
       return sum;
     }
@@ -130,10 +132,12 @@ namespace Debond
 
     /// Adaptive integration over a face. The rule has points at the ends of an
     /// interval, for otherwise a jump close to an end would go unnoticed.
-    template <int dim>
+    template <int dim, int degree>
     class TractionIntegral
     {
     public:
+      static constexpr unsigned int n_forces = n_coefficients(dim, degree);
+
       /// @p n_faces: faces of the side, which is sampled at 64 intervals in
       /// each direction at least, however coarse the mesh is.
       TractionIntegral(CheckedLoad<dim>  &load,
@@ -148,7 +152,7 @@ namespace Debond
       {}
 
       /// The nodal forces on the face with the given vertices.
-      FaceForces<dim>
+      FaceForces<dim, degree>
       operator()(const std::array<dealii::Point<dim>, dim> &face_vertices,
                  const double                               measure)
       {
@@ -156,7 +160,7 @@ namespace Debond
         largest       = 0.;
         n_evaluations = 0;
 
-        FaceForces<dim> forces;
+        FaceForces<dim, degree> forces;
         if constexpr (dim == 2)
           {
             Pieces pieces;
@@ -177,34 +181,35 @@ namespace Debond
             std::array<double, dim> pole;
             Pieces                  lines;
             const auto integrals = integrate(1e-11, lines, [&](const double s) {
-              Pieces                pieces;
-              const FaceForces<dim> mean =
+              Pieces                        pieces;
+              const FaceForces<dim, degree> mean =
                 integrate(1e-13, pieces, [&](const double t) {
                   return integrand({{(1. - s) * (1. - t), s, (1. - s) * t}});
                 });
-              std::array<dealii::Tensor<1, dim>, 2 * dim + 1> both;
-              for (unsigned int v = 0; v < dim; ++v)
+              std::array<dealii::Tensor<1, dim>, 2 * n_forces + 1> both;
+              for (unsigned int v = 0; v < n_forces; ++v)
                 {
-                  both[v]       = (1. - s) * mean[v];
-                  both[dim + v] = mean[v];
+                  both[v]            = (1. - s) * mean[v];
+                  both[n_forces + v] = mean[v];
                 }
               if (pieces.grow_without_bound())
                 {
-                  both[2 * dim][0] = pieces.size;
-                  pole             = {{(1. - s) * (1. - pieces.place),
-                                       s,
-                                       (1. - s) * pieces.place}};
+                  both[2 * n_forces][0] = pieces.size;
+                  pole                  = {{(1. - s) * (1. - pieces.place),
+                                            s,
+                                            (1. - s) * pieces.place}};
                 }
               return both;
             });
-            if (integrals[2 * dim][0] > largest_part_at_a_point * lines.size)
+            if (integrals[2 * n_forces][0] >
+                largest_part_at_a_point * lines.size)
               throw_unbounded(name, point_at(pole));
             if (lines.grow_without_bound())
               throw_unbounded(name,
                               point_at({{0.5 * (1. - lines.place),
                                          lines.place,
                                          0.5 * (1. - lines.place)}}));
-            std::copy_n(integrals.begin(), dim, forces.begin());
+            std::copy_n(integrals.begin(), n_forces, forces.begin());
           }
 
         // From the reference line (triangle) of measure 1 (1/2).
@@ -243,7 +248,7 @@ namespace Debond
         return point;
       }
 
-      FaceForces<dim>
+      FaceForces<dim, degree>
       integrand(const std::array<double, dim> &barycentric)
       {
         const dealii::Point<dim> point = point_at(barycentric);
@@ -257,9 +262,10 @@ namespace Debond
         const dealii::Tensor<1, dim> value = traction(point);
         largest                            = std::max(largest, value.norm());
 
-        FaceForces<dim> result;
-        for (unsigned int v = 0; v < dim; ++v)
-          result[v] = barycentric[v] * value;
+        const auto              basis = bernstein(barycentric, degree);
+        FaceForces<dim, degree> result;
+        for (unsigned int v = 0; v < n_forces; ++v)
+          result[v] = basis[v] * value;
         return result;
       }
 
@@ -305,7 +311,7 @@ namespace Debond
         if (depth >= minimum_depth &&
             largest_difference(whole, halves) <= tolerance * largest)
           {
-            pieces.size += sum_of_sizes<dim>(halves);
+            pieces.size += sum_of_sizes<n_forces>(halves);
             return halves;
           }
         const double size_before = pieces.size;
@@ -342,13 +348,14 @@ namespace Debond
 
 
 
-    /// The points of the rule of degree 2 in a simplex.
+    /// The points of the rule of degree 2, for quadratic displacements of
+    /// degree 3 and more, in a simplex.
     template <int dim>
     class SimplexRule
     {
     public:
-      SimplexRule()
-        : rule(2)
+      explicit SimplexRule(const unsigned int degree)
+        : rule(degree + 1)
       {
         for (const dealii::Point<dim> &point : rule.get_points())
           {
@@ -520,27 +527,29 @@ namespace Debond
     {
       const std::string      name = "body force";
       CheckedLoad<dim>       body_force(function, name);
-      const SimplexRule<dim> rule;
+      const unsigned int     degree = dof_handler.get_fe().degree;
+      const SimplexRule<dim> rule(degree);
       for (const auto &cell : dof_handler.active_cell_iterators())
         {
           Simplex<dim> simplex;
           for (unsigned int v = 0; v <= dim; ++v)
             simplex[v] = cell->vertex(v);
 
-          const double measure  = cell->measure();
-          double       smallest = std::numeric_limits<double>::max();
-          double       largest  = 0.;
+          const CellNodes<dim> nodes(cell);
+          const double         measure  = cell->measure();
+          double               smallest = std::numeric_limits<double>::max();
+          double               largest  = 0.;
           for (unsigned int q = 0; q < rule.size(); ++q)
             {
+              const auto basis = bernstein(rule.barycentric(q), degree);
               const dealii::Tensor<1, dim> value =
                 body_force(rule.point(q, simplex));
               smallest = std::min(smallest, value.norm());
               largest  = std::max(largest, value.norm());
-              for (unsigned int v = 0; v <= dim; ++v)
+              for (unsigned int n = 0; n < nodes.size; ++n)
                 for (unsigned int d = 0; d < dim; ++d)
-                  forces[cell->vertex_dof_index(v, d)] +=
-                    rule.barycentric(q)[v] * rule.weight(q) * measure *
-                    value[d];
+                  forces[nodes.dofs[n][d]] +=
+                    basis[n] * rule.weight(q) * measure * value[d];
             }
           if (largest > largest_ratio * smallest)
             check_growth(simplex, rule, name, body_force);
@@ -549,7 +558,7 @@ namespace Debond
 
 
 
-    template <int dim>
+    template <int dim, int degree>
     void
     add_traction(const dealii::DoFHandler<dim>   &dof_handler,
                  const dealii::types::boundary_id id,
@@ -565,21 +574,36 @@ namespace Debond
         throw std::invalid_argument("There is a traction on " + name +
                                     ", but the mesh has no such boundary.");
 
-      CheckedLoad<dim>      traction(function, "traction on " + name);
-      TractionIntegral<dim> integral(traction, "traction on " + name, n_faces);
+      CheckedLoad<dim>              traction(function, "traction on " + name);
+      TractionIntegral<dim, degree> integral(traction,
+                                             "traction on " + name,
+                                             n_faces);
       for (const auto &cell : dof_handler.active_cell_iterators())
         for (const auto &face : cell->face_iterators())
           if (face->at_boundary() && face->boundary_id() == id)
             {
+              const CellNodes<dim>                nodes(cell);
               std::array<dealii::Point<dim>, dim> vertices;
+              std::array<unsigned int, dim>       in_cell;
               for (unsigned int v = 0; v < dim; ++v)
-                vertices[v] = face->vertex(v);
+                {
+                  vertices[v] = face->vertex(v);
+                  in_cell[v]  = nodes.find(face->vertex_index(v));
+                }
 
-              const FaceForces<dim> face_forces =
+              const FaceForces<dim, degree> face_forces =
                 integral(vertices, face->measure());
-              for (unsigned int v = 0; v < dim; ++v)
-                for (unsigned int d = 0; d < dim; ++d)
-                  forces[face->vertex_dof_index(v, d)] += face_forces[v][d];
+              for (unsigned int n = 0; n < face_forces.size(); ++n)
+                {
+                  const unsigned int node =
+                    n < dim ?
+                      in_cell[n] :
+                      dim + 1 +
+                        edge_between(in_cell[simplex_edges[n - dim][0]],
+                                     in_cell[simplex_edges[n - dim][1]]);
+                  for (unsigned int d = 0; d < dim; ++d)
+                    forces[nodes.dofs[node][d]] += face_forces[n][d];
+                }
             }
     }
   } // namespace
@@ -610,12 +634,12 @@ namespace Debond
           add_body_force(dof_handler, *loads.body_force, forces);
         for (const auto &[id, traction] : loads.tractions)
           {
-            boundary = id;
-            add_traction(dof_handler,
-                         id,
-                         boundary_name(loads.boundary_names, id),
-                         *traction,
-                         forces);
+            boundary               = id;
+            const std::string name = boundary_name(loads.boundary_names, id);
+            if (dof_handler.get_fe().degree == 1)
+              add_traction<dim, 1>(dof_handler, id, name, *traction, forces);
+            else
+              add_traction<dim, 2>(dof_handler, id, name, *traction, forces);
           }
       }
     catch (const std::invalid_argument &error)

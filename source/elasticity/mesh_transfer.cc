@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/mesh_transfer.h>
 
 #include <algorithm>
@@ -35,10 +36,20 @@ namespace Debond
     dealii::Vector<double> result(problem.unknowns().n_dofs());
     for (const auto &cell :
          problem.unknowns().dof_handler().active_cell_iterators())
-      for (const unsigned int v : cell->vertex_indices())
-        for (unsigned int d = 0; d < dim; ++d)
-          result[cell->vertex_dof_index(v, d)] =
-            displacements[cell->vertex_index(v)][d];
+      {
+        const CellNodes<dim> nodes(cell);
+        for (unsigned int n = 0; n < nodes.size; ++n)
+          for (unsigned int d = 0; d < dim; ++d)
+            if (n <= dim)
+              result[nodes.dofs[n][d]] = displacements[nodes.indices[n]][d];
+            else
+              {
+                const auto &[a, b] = simplex_edges[n - (dim + 1)];
+                result[nodes.dofs[n][d]] =
+                  0.5 * (displacements[nodes.indices[a]][d] +
+                         displacements[nodes.indices[b]][d]);
+              }
+      }
     result = problem.unknowns().from_cartesian(result);
     if (problem.unknowns().has_gap())
       {
@@ -50,6 +61,66 @@ namespace Debond
         contact.add_normal(excess, result);
       }
     return result;
+  }
+
+
+
+  template <int dim>
+  dealii::Vector<double>
+  divided_displacement(const ElasticProblem<dim>       &source,
+                       const dealii::Vector<double>    &u,
+                       const std::vector<unsigned int> &ancestors,
+                       const ElasticProblem<dim>       &target)
+  {
+    using Cell        = typename dealii::DoFHandler<dim>::active_cell_iterator;
+    using Barycentric = std::array<double, dim + 1>;
+    std::vector<Cell> whole_cells;
+    for (const auto &cell :
+         source.unknowns().dof_handler().active_cell_iterators())
+      whole_cells.push_back(cell);
+    const unsigned int           degree = source.unknowns().degree();
+    const dealii::Vector<double> coefficients =
+      source.unknowns().cartesian_displacement(u);
+
+    dealii::Vector<double> result(target.unknowns().n_dofs());
+    for (const auto &cell :
+         target.unknowns().dof_handler().active_cell_iterators())
+      {
+        const Cell &whole = whole_cells[ancestors[cell->active_cell_index()]];
+        const LinearSimplex<dim>         simplex(whole);
+        const CellNodes<dim>             from(whole), to(cell);
+        std::array<Barycentric, dim + 1> vertices;
+        for (unsigned int v = 0; v <= dim; ++v)
+          for (unsigned int w = 0; w <= dim; ++w)
+            vertices[v][w] =
+              (w == 0 ? 1. : 0.) +
+              simplex.gradients[w] * (cell->vertex(v) - whole->vertex(0));
+
+        // A coefficient is the polynomial's polar form at the ends of an edge,
+        // or twice at a vertex.
+        for (unsigned int n = 0; n < to.size; ++n)
+          {
+            const unsigned int a = n <= dim ? n : simplex_edges[n - dim - 1][0];
+            const unsigned int b = n <= dim ? n : simplex_edges[n - dim - 1][1];
+            const Barycentric &x = vertices[a], &y = vertices[b];
+            std::array<double, CellNodes<dim>::maximum> weights = {};
+            for (unsigned int v = 0; v <= dim; ++v)
+              weights[v] = degree == 1 ? x[v] : x[v] * y[v];
+            for (unsigned int e = dim + 1; e < from.size; ++e)
+              {
+                const auto &[i, j] = simplex_edges[e - dim - 1];
+                weights[e]         = x[i] * y[j] + x[j] * y[i];
+              }
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                double sum = 0.;
+                for (unsigned int m = 0; m < from.size; ++m)
+                  sum += weights[m] * coefficients(from.dofs[m][d]);
+                result(to.dofs[n][d]) = sum;
+              }
+          }
+      }
+    return target.unknowns().from_cartesian(result);
   }
 
 
@@ -86,6 +157,16 @@ namespace Debond
   template dealii::Vector<double>
   from_vertex_displacements(const std::vector<dealii::Tensor<1, 3>> &,
                             const ElasticProblem<3> &);
+  template dealii::Vector<double>
+  divided_displacement(const ElasticProblem<2> &,
+                       const dealii::Vector<double> &,
+                       const std::vector<unsigned int> &,
+                       const ElasticProblem<2> &);
+  template dealii::Vector<double>
+  divided_displacement(const ElasticProblem<3> &,
+                       const dealii::Vector<double> &,
+                       const std::vector<unsigned int> &,
+                       const ElasticProblem<3> &);
   template dealii::Vector<double>
   interpolate_displacement(const Body<2> &,
                            const ElasticProblem<2> &,

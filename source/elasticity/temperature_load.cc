@@ -2,7 +2,7 @@
 #include <deal.II/base/quadrature_lib.h>
 
 #include <debond/contact/field_value.h>
-#include <debond/elasticity/linear_simplex.h>
+#include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/temperature_load.h>
 
 namespace Debond
@@ -27,6 +27,27 @@ namespace Debond
           throw TemperatureError(error.what());
         }
     };
+    const auto pressure_of_one = [&materials](const auto &cell) {
+      return materials(cell->material_id()).template thermal_stress<dim>();
+    };
+    if (dof_handler.get_fe().degree == 2)
+      {
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          {
+            const BernsteinSimplex<dim> simplex(cell, 2);
+            for (unsigned int q = 0; q < simplex.n_points; ++q)
+              {
+                const auto         barycentric = simplex.point(q);
+                dealii::Point<dim> point       = cell->vertex(0);
+                for (unsigned int v = 1; v <= dim; ++v)
+                  point += barycentric[v] * (cell->vertex(v) - cell->vertex(0));
+                stresses.push_back(pressure_of_one(cell) *
+                                   temperature_at(point));
+              }
+          }
+        return stresses;
+      }
+
     const dealii::QGaussSimplex<dim> rule(2);
     double                           reference_volume = 0.;
     for (unsigned int q = 0; q < rule.size(); ++q)
@@ -42,8 +63,7 @@ namespace Debond
                 rule.point(q)[d] * (cell->vertex(d + 1) - cell->vertex(0));
             mean += rule.weight(q) / reference_volume * temperature_at(point);
           }
-        stresses.push_back(
-          materials(cell->material_id()).template thermal_stress<dim>() * mean);
+        stresses.push_back(pressure_of_one(cell) * mean);
       }
     return stresses;
   }
@@ -60,12 +80,22 @@ namespace Debond
       return;
     for (const auto &cell : dof_handler.active_cell_iterators())
       {
-        const LinearSimplex<dim> simplex(cell);
-        for (unsigned int v = 0; v <= dim; ++v)
-          for (unsigned int d = 0; d < dim; ++d)
-            forces[cell->vertex_dof_index(v, d)] +=
-              simplex.volume * thermal_stresses[cell->active_cell_index()] *
-              simplex.gradients[v][d];
+        const BernsteinSimplex<dim> simplex(cell, cell->get_fe().degree);
+        const CellNodes<dim>        nodes(cell);
+        for (unsigned int q = 0; q < simplex.n_points; ++q)
+          {
+            const double stress =
+              thermal_stresses[simplex.n_points * cell->active_cell_index() +
+                               q];
+            for (unsigned int n = 0; n < nodes.size; ++n)
+              {
+                const dealii::Tensor<1, dim> gradient =
+                  simplex.gradient(n, simplex.point(q));
+                for (unsigned int d = 0; d < dim; ++d)
+                  forces[nodes.dofs[n][d]] +=
+                    simplex.weight * stress * gradient[d];
+              }
+          }
       }
   }
 

@@ -4,8 +4,8 @@
 
 #include <debond/base/text.h>
 #include <debond/contact/field_value.h>
+#include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/contact_frame.h>
-#include <debond/elasticity/linear_simplex.h>
 #include <debond/elasticity/rigid_motions.h>
 #include <debond/elasticity/unknowns.h>
 #include <debond/mesh/crossed_mesh.h>
@@ -27,18 +27,28 @@ namespace Debond
       template <typename CellIterator>
       BoundaryFace(const CellIterator &cell, const unsigned int face_no)
       {
-        id                     = cell->face(face_no)->boundary_id();
-        const auto   reference = cell->reference_cell();
-        unsigned int opposite  = dim * (dim + 1) / 2;
+        id                             = cell->face(face_no)->boundary_id();
+        const auto           reference = cell->reference_cell();
+        const CellNodes<dim> cell_nodes(cell);
+        n_nodes = n_coefficients(dim, cell->get_fe().degree);
+        unsigned int                  opposite = dim * (dim + 1) / 2;
+        std::array<unsigned int, dim> cell_vertices;
         for (unsigned int v = 0; v < dim; ++v)
           {
-            const unsigned int cell_vertex =
-              reference.face_to_cell_vertices(face_no, v, 1);
-            opposite -= cell_vertex;
-            indices[v]  = cell->vertex_index(cell_vertex);
-            vertices[v] = cell->vertex(cell_vertex);
-            for (unsigned int d = 0; d < dim; ++d)
-              dofs[v][d] = cell->vertex_dof_index(cell_vertex, d);
+            cell_vertices[v] = reference.face_to_cell_vertices(face_no, v, 1);
+            opposite -= cell_vertices[v];
+          }
+        for (unsigned int n = 0; n < n_nodes; ++n)
+          {
+            const unsigned int node =
+              n < dim ?
+                cell_vertices[n] :
+                dim + 1 +
+                  edge_between(cell_vertices[simplex_edges[n - dim][0]],
+                               cell_vertices[simplex_edges[n - dim][1]]);
+            indices[n]   = cell_nodes.indices[node];
+            positions[n] = node_position<dim>(cell, node);
+            dofs[n]      = cell_nodes.dofs[node];
           }
 
         // The basis function of the opposite vertex grows inwards.
@@ -49,12 +59,29 @@ namespace Debond
         normal  = -inward / inward.norm();
       }
 
-      dealii::types::boundary_id          id;
-      std::array<unsigned int, dim>       indices;
-      std::array<dealii::Point<dim>, dim> vertices;
-      std::array<std::array<dealii::types::global_dof_index, dim>, dim> dofs;
-      double                                                            measure;
-      dealii::Tensor<1, dim>                                            normal;
+      static constexpr unsigned int maximum = n_coefficients(dim, 2);
+
+      /// The coefficient of a node of a function with these values at the
+      /// nodes' positions.
+      template <typename Values>
+      double
+      coefficient(const unsigned int n, const Values &value) const
+      {
+        if (n < dim)
+          return value(positions[n]);
+        const auto &[a, b] = simplex_edges[n - dim];
+        return 2. * value(positions[n]) -
+               0.5 * (value(positions[a]) + value(positions[b]));
+      }
+
+      dealii::types::boundary_id              id;
+      unsigned int                            n_nodes; ///< vertices come first
+      std::array<unsigned int, maximum>       indices;
+      std::array<dealii::Point<dim>, maximum> positions;
+      std::array<std::array<dealii::types::global_dof_index, dim>, maximum>
+                             dofs;
+      double                 measure;
+      dealii::Tensor<1, dim> normal;
     };
 
 
@@ -168,12 +195,13 @@ namespace Debond
   ElasticUnknowns<dim>::ElasticUnknowns(
     const dealii::Triangulation<dim> &triangulation,
     const BoundaryConditions         &conditions,
-    const Supports<dim>              &supports)
+    const Supports<dim>              &supports,
+    const unsigned int                degree)
     : mapping_p1(dealii::FE_SimplexP<dim>(1))
-    , fe(dealii::FE_SimplexP<dim>(1), dim)
+    , fe(dealii::FE_SimplexP<dim>(degree), dim)
     , dofs(triangulation)
-    , frame_of_vertex(triangulation.n_vertices(),
-                      dealii::numbers::invalid_unsigned_int)
+    , frame_of_node(n_nodes(triangulation, degree),
+                    dealii::numbers::invalid_unsigned_int)
   {
     if (!triangulation.all_reference_cells_are_simplex() ||
         triangulation.has_hanging_nodes())
@@ -241,8 +269,8 @@ namespace Debond
                           static_cast<unsigned int>(names_of_supports.size()));
         if (is_new)
           names_of_supports.push_back(entry->first);
-        for (unsigned int v = 0; v < dim; ++v)
-          clamp_vertex(face.dofs[v], face.vertices[v], held, entry->second);
+        for (unsigned int n = 0; n < face.n_nodes; ++n)
+          clamp_vertex(face.dofs[n], face.positions[n], held, entry->second);
       }
   }
 
@@ -299,7 +327,7 @@ namespace Debond
       static_cast<unsigned int>(names_of_supports.size());
     names_of_supports.push_back(condition.name);
 
-    std::vector<bool>                    is_done(frame_of_vertex.size(), false);
+    std::vector<bool>                    is_done(frame_of_node.size(), false);
     const std::vector<BoundaryFace<dim>> faces =
       boundary_faces(dofs, condition.boundaries, conditions.names);
     for (const BoundaryFace<dim> &face : faces)
@@ -320,7 +348,7 @@ namespace Debond
                " is a contact boundary, whose normal displacement is left to "
                "the foundation and cannot be prescribed");
 
-        for (unsigned int v = 0; v < dim; ++v)
+        for (unsigned int v = 0; v < face.n_nodes; ++v)
           {
             if (is_done[face.indices[v]])
               continue;
@@ -344,9 +372,11 @@ namespace Debond
                                     [&] {
                                       try
                                         {
-                                          return field_value(*condition.values,
-                                                             face.vertices[v],
-                                                             d);
+                                          return face.coefficient(
+                                            v, [&](const auto &position) {
+                                              return field_value(
+                                                *condition.values, position, d);
+                                            });
                                         }
                                       catch (const std::invalid_argument &error)
                                         {
@@ -359,7 +389,8 @@ namespace Debond
               {
                 for (const Row &row : rows)
                   if (row.value != 0.)
-                    fail("the displacement at " + point_text(face.vertices[v]) +
+                    fail("the displacement at " +
+                         point_text(face.positions[v]) +
                          " is prescribed, but the vertex is clamped: leave its "
                          "side out of Clamped boundaries");
                 continue;
@@ -367,7 +398,7 @@ namespace Debond
 
             PrescribedVertex &vertex = vertices[face.indices[v]];
             vertex.dofs              = face.dofs[v];
-            vertex.position          = face.vertices[v];
+            vertex.position          = face.positions[v];
             for (Row row : rows)
               {
                 const double value = row.value;
@@ -404,7 +435,7 @@ namespace Debond
                                   std::vector<Support<dim>> &held)
   {
     if (vertex.rows.empty() || fixed.is_constrained(vertex.dofs[0]) ||
-        frame_of_vertex[index] != dealii::numbers::invalid_unsigned_int)
+        frame_of_node[index] != dealii::numbers::invalid_unsigned_int)
       return;
     for (const Row &row : vertex.rows)
       held.push_back({vertex.position, row.direction});
@@ -499,11 +530,11 @@ namespace Debond
     const std::vector<dealii::Tensor<1, dim>>              &rows)
   {
     Frame frame;
-    frame.dofs             = vertex_dofs;
-    frame.to_frame         = contact_frame(rows);
-    frame.to_cartesian     = dealii::invert(frame.to_frame);
-    frame_of_vertex[index] = static_cast<unsigned int>(vertex_frames.size());
-    vertex_frames.push_back(frame);
+    frame.dofs           = vertex_dofs;
+    frame.to_frame       = contact_frame(rows);
+    frame.to_cartesian   = dealii::invert(frame.to_frame);
+    frame_of_node[index] = static_cast<unsigned int>(node_frames.size());
+    node_frames.push_back(frame);
   }
 
 
@@ -522,17 +553,18 @@ namespace Debond
     const std::vector<BoundaryFace<dim>> faces =
       boundary_faces(dofs, conditions.contact, conditions.names);
 
-    // By vertex index; clamped vertices are left out. For each face, the group
+    // By node index; clamped vertices are left out. For each face, the group
     // of normals that it belongs to at each of its vertices.
-    std::map<unsigned int, ContactVertex<dim>> vertices;
-    std::vector<std::array<unsigned int, dim>> groups(faces.size());
+    std::map<unsigned int, ContactVertex<dim>>                        vertices;
+    std::vector<std::array<unsigned int, BoundaryFace<dim>::maximum>> groups(
+      faces.size());
     for (unsigned int f = 0; f < faces.size(); ++f)
-      for (unsigned int v = 0; v < dim; ++v)
+      for (unsigned int v = 0; v < faces[f].n_nodes; ++v)
         if (!fixed.is_constrained(faces[f].dofs[v][0]))
           {
             ContactVertex<dim> &vertex = vertices[faces[f].indices[v]];
             vertex.dofs                = faces[f].dofs[v];
-            vertex.position            = faces[f].vertices[v];
+            vertex.position            = faces[f].positions[v];
             groups[f][v] =
               vertex.normals.add_face(faces[f].normal, faces[f].measure);
           }
@@ -541,7 +573,11 @@ namespace Debond
       return supports.gap ? gap_value(*supports.gap, position) : 0.;
     };
 
-    ContactBoundary<dim>                             boundary;
+    ContactBoundary<dim> boundary;
+    boundary.degree = degree();
+    // All basis functions of a face have the same integral.
+    const double part_of_face =
+      static_cast<double>(dim) / boundary.n_face_nodes();
     std::vector<typename ContactBoundary<dim>::Node> nodes;
     std::vector<dealii::types::global_dof_index>     normal_dofs;
     for (auto &[index, vertex] : vertices)
@@ -586,7 +622,7 @@ namespace Debond
             directions.push_back(normals[k]);
             nodes.push_back({vertex.position,
                              normals[k],
-                             vertex.normals.measure(k),
+                             part_of_face * vertex.normals.measure(k),
                              gap_here});
           }
         for (unsigned int k = 0; k < normals.size(); ++k)
@@ -626,8 +662,7 @@ namespace Debond
                ++d)
             {
               constrain(vertex.dofs[d], 0., none);
-              held.push_back(
-                {vertex.position, vertex_frames.back().to_frame[d]});
+              held.push_back({vertex.position, node_frames.back().to_frame[d]});
             }
       }
 
@@ -673,30 +708,34 @@ namespace Debond
     for (unsigned int f = 0; f < faces.size(); ++f)
       {
         typename ContactBoundary<dim>::Face face;
-        face.vertices = faces[f].vertices;
-        face.normal   = faces[f].normal;
-        face.measure  = faces[f].measure;
-        for (unsigned int v = 0; v < dim; ++v)
+        std::copy_n(faces[f].positions.begin(), dim, face.vertices.begin());
+        face.normal  = faces[f].normal;
+        face.measure = faces[f].measure;
+        for (unsigned int v = 0; v < faces[f].n_nodes; ++v)
           {
+            unsigned int &face_node =
+              v < dim ? face.nodes[v] : face.edge_nodes[v - dim];
+            unsigned int &face_held =
+              v < dim ? face.held[v] : face.edge_held[v - dim];
             const auto entry = vertices.find(faces[f].indices[v]);
             if (entry == vertices.end())
               {
                 // Clamped, as far from the foundation as at rest.
-                face.nodes[v] = none;
-                face.held[v] =
+                face_node = none;
+                face_held =
                   static_cast<unsigned int>(boundary.held_vertices.size());
                 boundary.held_vertices.push_back(
                   {0.,
-                   gap_at(face.vertices[v]),
+                   gap_at(faces[f].positions[v]),
                    support_of(faces[f].dofs[v][0]),
                    faces[f].normal,
-                   face.vertices[v]});
+                   faces[f].positions[v]});
                 continue;
               }
             const ContactVertex<dim> &vertex = entry->second;
             const unsigned int        node   = vertex.nodes[groups[f][v]];
-            face.nodes[v] = node == none ? none : place[node];
-            face.held[v]  = vertex.held[groups[f][v]];
+            face_node = node == none ? none : place[node];
+            face_held = vertex.held[groups[f][v]];
           }
         boundary.faces.push_back(face);
       }
@@ -731,6 +770,15 @@ namespace Debond
 
 
   template <int dim>
+  unsigned int
+  ElasticUnknowns<dim>::degree() const
+  {
+    return fe.degree;
+  }
+
+
+
+  template <int dim>
   const ContactSpace<dim> &
   ElasticUnknowns<dim>::contact() const
   {
@@ -743,19 +791,19 @@ namespace Debond
   const std::vector<typename ElasticUnknowns<dim>::Frame> &
   ElasticUnknowns<dim>::frames() const
   {
-    return vertex_frames;
+    return node_frames;
   }
 
 
 
   template <int dim>
   const dealii::Tensor<2, dim> *
-  ElasticUnknowns<dim>::directions(const unsigned int vertex_index) const
+  ElasticUnknowns<dim>::directions(const unsigned int node_index) const
   {
-    const unsigned int frame = frame_of_vertex[vertex_index];
+    const unsigned int frame = frame_of_node[node_index];
     return frame == dealii::numbers::invalid_unsigned_int ?
              nullptr :
-             &vertex_frames[frame].to_cartesian;
+             &node_frames[frame].to_cartesian;
   }
 
 
@@ -874,7 +922,7 @@ namespace Debond
     if (has_lifting())
       u += lifting(factors);
     dealii::Vector<double> result = u;
-    for (const Frame &frame : vertex_frames)
+    for (const Frame &frame : node_frames)
       for (unsigned int d = 0; d < dim; ++d)
         {
           result[frame.dofs[d]] = 0.;
@@ -889,10 +937,35 @@ namespace Debond
 
   template <int dim>
   dealii::Vector<double>
+  ElasticUnknowns<dim>::nodal_values(
+    const dealii::Vector<double> &cartesian_displacement) const
+  {
+    dealii::Vector<double> result = cartesian_displacement;
+    if (degree() == 2)
+      for (const auto &cell : dofs.active_cell_iterators())
+        {
+          const CellNodes<dim> nodes(cell);
+          for (unsigned int n = dim + 1; n < nodes.size; ++n)
+            {
+              const auto &[a, b] = simplex_edges[n - (dim + 1)];
+              for (unsigned int d = 0; d < dim; ++d)
+                result(nodes.dofs[n][d]) =
+                  0.5 * cartesian_displacement(nodes.dofs[n][d]) +
+                  0.25 * (cartesian_displacement(nodes.dofs[a][d]) +
+                          cartesian_displacement(nodes.dofs[b][d]));
+            }
+        }
+    return result;
+  }
+
+
+
+  template <int dim>
+  dealii::Vector<double>
   ElasticUnknowns<dim>::to_frames(const dealii::Vector<double> &cartesian) const
   {
     dealii::Vector<double> result = cartesian;
-    for (const Frame &frame : vertex_frames)
+    for (const Frame &frame : node_frames)
       for (unsigned int k = 0; k < dim; ++k)
         {
           result[frame.dofs[k]] = 0.;
@@ -924,7 +997,7 @@ namespace Debond
   ElasticUnknowns<dim>::in_frames(const dealii::Vector<double> &forces) const
   {
     dealii::Vector<double> result = forces;
-    for (const Frame &frame : vertex_frames)
+    for (const Frame &frame : node_frames)
       for (unsigned int k = 0; k < dim; ++k)
         {
           result[frame.dofs[k]] = 0.;
@@ -943,7 +1016,7 @@ namespace Debond
     const dealii::Vector<double> &forces) const
   {
     dealii::Vector<double> result = forces;
-    for (const Frame &frame : vertex_frames)
+    for (const Frame &frame : node_frames)
       for (unsigned int d = 0; d < dim; ++d)
         {
           result[frame.dofs[d]] = 0.;
@@ -964,21 +1037,23 @@ namespace Debond
     std::vector<dealii::Vector<double>> modes(
       dim + n_rotations, dealii::Vector<double>(dofs.n_dofs()));
     for (const auto &cell : dofs.active_cell_iterators())
-      for (const unsigned int v : cell->vertex_indices())
-        {
-          for (unsigned int d = 0; d < dim; ++d)
-            modes[d][cell->vertex_dof_index(v, d)] = 1.;
-          // The rotation in the plane of the axes d and e.
-          unsigned int rotation = dim;
-          for (unsigned int d = 0; d < dim; ++d)
-            for (unsigned int e = d + 1; e < dim; ++e, ++rotation)
-              {
-                modes[rotation][cell->vertex_dof_index(v, d)] =
-                  -cell->vertex(v)[e];
-                modes[rotation][cell->vertex_dof_index(v, e)] =
-                  cell->vertex(v)[d];
-              }
-        }
+      {
+        const CellNodes<dim> nodes(cell);
+        for (unsigned int n = 0; n < nodes.size; ++n)
+          {
+            const dealii::Point<dim> position = node_position<dim>(cell, n);
+            for (unsigned int d = 0; d < dim; ++d)
+              modes[d][nodes.dofs[n][d]] = 1.;
+            // The rotation in the plane of the axes d and e.
+            unsigned int rotation = dim;
+            for (unsigned int d = 0; d < dim; ++d)
+              for (unsigned int e = d + 1; e < dim; ++e, ++rotation)
+                {
+                  modes[rotation][nodes.dofs[n][d]] = -position[e];
+                  modes[rotation][nodes.dofs[n][e]] = position[d];
+                }
+          }
+      }
     for (dealii::Vector<double> &mode : modes)
       {
         mode = to_frames(mode);

@@ -47,7 +47,7 @@ namespace Debond
         p.quadrature_name,
         parsed_by("nodal, midpoint, gauss N with N from 1 to 99, or exact",
                   ContactQuadratureParameters::parse),
-        "The quadrature of the adhesion energy on each face: at the vertices, at the midpoint, Gauss' rule with N points, at most 99 (in 3D for each direction, at most 7), or exact for the piecewise linear displacement, split at the kinks of the law",
+        "The quadrature of the adhesion energy on each face: at the vertices, at the midpoint, Gauss' rule with N points, at most 99 (in 3D for each direction, at most 7), or exact for the piecewise polynomial displacement, split at the kinks of the law",
         "none",
         [&p](const std::string &text) {
           p.quadrature_name = text;
@@ -90,6 +90,12 @@ namespace Debond
     bind(
       "Dimension", p.dimension, whole_number(2, 3), "Space dimension", "none");
     bind_mesh(body, *this);
+    bind(
+      "Mesh/Degree",
+      p.degree,
+      whole_number(1, 2),
+      "Degree of the displacement on each triangle or tetrahedron: linear, as in the paper, or quadratic, which has a much smaller error for as many unknowns and no locking; it needs Contact law/Quadrature = gauss N (in 2D: or exact)",
+      "none");
     bind_parts(parts, *this);
     bind_probes(p.probes, *this);
     bind_material(p.materials, *this);
@@ -233,6 +239,43 @@ namespace Debond
 
 
 
+    /// What cannot be together with quadratic displacements.
+    void
+    check_degree(const Parameters &p, ParameterTable &table)
+    {
+      if (p.degree == 1)
+        return;
+      using Rule        = ContactQuadratureParameters::Rule;
+      const auto refuse = [&](const bool         is_set,
+                              const std::string &entry,
+                              const std::string &reason) {
+        if (is_set)
+          table.reject(entry, reason, {"Mesh/Degree"});
+      };
+      refuse(p.quadrature.rule != Rule::gauss &&
+               !(p.dimension == 2 && p.quadrature.rule == Rule::exact),
+             "Contact law/Quadrature",
+             "Mesh/Degree = 2 needs gauss N, N from 1 to " +
+               std::string(p.dimension == 2 ? "99, or exact" : "7"));
+      refuse(!p.supports.gap.empty(),
+             "Contact law/Initial gap",
+             "there is none with Mesh/Degree = 2");
+      refuse(p.solver.linear_solver == "multigrid",
+             "Solver/Linear solver",
+             "Mesh/Degree = 2 needs a direct one");
+      refuse(p.solver.prove,
+             "Solver/Prove",
+             "needs a bond for each node, which Mesh/Degree = 2 has not");
+      refuse(p.certificate.kind != CertificateKind::none,
+             "Certificate/Kind",
+             "is for Mesh/Degree = 1");
+      refuse(!p.load_path.factors.empty(),
+             "Load path/Factors",
+             "load paths are for Mesh/Degree = 1");
+    }
+
+
+
     void
     check_exact_displacement(const Parameters &p, ParameterTable &table)
     {
@@ -319,6 +362,7 @@ namespace Debond
       }
     check_bonds(p, *this);
     check_certificate(p, *this);
+    check_degree(p, *this);
     check_exact_displacement(p, *this);
     check_accuracy(p, *this);
     if (!errors().empty())

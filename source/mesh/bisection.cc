@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <queue>
 #include <stdexcept>
 #include <unordered_map>
@@ -296,13 +297,17 @@ namespace Debond
     // The middle of an edge is a vertex only until all its cells are cut.
     EdgeMiddles               middles;
     std::vector<unsigned int> left = times;
+    whole_cells.resize(cells.size());
+    std::iota(whole_cells.begin(), whole_cells.end(), 0u);
     for (bool goes_on = true; goes_on;)
       {
         goes_on = false;
         std::vector<Simplex>      next;
         std::vector<unsigned int> next_left;
+        std::vector<unsigned int> next_whole;
         next.reserve(cells.size());
         next_left.reserve(cells.size());
+        next_whole.reserve(cells.size());
         for (unsigned int c = 0; c < cells.size(); ++c)
           {
             const Simplex &cell = cells[c];
@@ -310,6 +315,7 @@ namespace Debond
               {
                 next.push_back(cell);
                 next_left.push_back(0);
+                next_whole.push_back(whole_cells[c]);
                 continue;
               }
             goes_on              = true;
@@ -326,10 +332,12 @@ namespace Debond
               {
                 next.push_back(half);
                 next_left.push_back(left[c] > 0 ? left[c] - 1 : 0);
+                next_whole.push_back(whole_cells[c]);
               }
           }
-        cells = std::move(next);
-        left  = std::move(next_left);
+        cells       = std::move(next);
+        left        = std::move(next_left);
+        whole_cells = std::move(next_whole);
       }
   }
 
@@ -349,6 +357,15 @@ namespace Debond
   Bisection<dim>::vertices() const
   {
     return points;
+  }
+
+
+
+  template <int dim>
+  const std::vector<unsigned int> &
+  Bisection<dim>::ancestors() const
+  {
+    return whole_cells;
   }
 
 

@@ -563,9 +563,12 @@ namespace Debond
       record.line("scene", parameters.scene);
     record.add("/dimension", dim);
     record.add("/cells", scene.n_cells());
+    record.add("/degree", parameters.degree);
     record.line("mesh",
                 words(scene.n_cells(),
-                      dim == 2 ? " triangles" : " tetrahedra"));
+                      dim == 2 ? " triangles" : " tetrahedra",
+                      parameters.degree == 2 ? ", quadratic displacements" :
+                                               ""));
 
     const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
     const unsigned int          n_dofs   = unknowns.n_free_dofs();

@@ -3,6 +3,7 @@
 #include <deal.II/numerics/data_out.h>
 
 #include <debond/base/atomic_file.h>
+#include <debond/elasticity/cell_nodes.h>
 #include <debond/output/vtu.h>
 
 #include <zlib.h>
@@ -147,17 +148,38 @@ namespace Debond
       std::vector<dealii::Tensor<1, dim>> displacements(normals.size());
       for (const auto &cell :
            problem.unknowns().dof_handler().active_cell_iterators())
-        for (const unsigned int v : cell->vertex_indices())
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              const unsigned int node =
-                node_of_dof[cell->vertex_dof_index(v, d)];
-              if (node != dealii::numbers::invalid_unsigned_int)
-                for (unsigned int e = 0; e < dim; ++e)
-                  displacements[node][e] =
-                    cartesian(cell->vertex_dof_index(v, e));
-            }
+        {
+          const CellNodes<dim> nodes(cell);
+          for (unsigned int n = 0; n < nodes.size; ++n)
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const unsigned int node = node_of_dof[nodes.dofs[n][d]];
+                if (node != dealii::numbers::invalid_unsigned_int)
+                  for (unsigned int e = 0; e < dim; ++e)
+                    displacements[node][e] = cartesian(nodes.dofs[n][e]);
+              }
+        }
       return displacements;
+    }
+
+
+
+    /// The parts of a face with a node at each corner and none between.
+    template <int dim>
+    std::vector<std::array<unsigned int, dim>>
+    parts_of_face(const unsigned int degree)
+    {
+      if constexpr (dim == 2)
+        return degree == 1 ?
+                 std::vector<std::array<unsigned int, 2>>{{{0, 1}}} :
+                 std::vector<std::array<unsigned int, 2>>{{{0, 2}}, {{2, 1}}};
+      else
+        return degree == 1 ?
+                 std::vector<std::array<unsigned int, 3>>{{{0, 1, 2}}} :
+                 std::vector<std::array<unsigned int, 3>>{{{0, 3, 5}},
+                                                          {{3, 1, 4}},
+                                                          {{5, 4, 2}},
+                                                          {{3, 4, 5}}};
     }
   } // namespace
 
@@ -176,12 +198,14 @@ namespace Debond
     const std::string            axes = "xyz";
     const dealii::Vector<double> displacement =
       problem.unknowns().cartesian_displacement(u, factors);
+    const dealii::Vector<double> at_nodes =
+      problem.unknowns().nodal_values(displacement);
 
     dealii::DataOut<dim> data_out;
     data_out.set_flags(vtk_flags());
     data_out.attach_dof_handler(problem.unknowns().dof_handler());
     data_out.add_data_vector(
-      displacement,
+      at_nodes,
       std::vector<std::string>(dim, "displacement"),
       dealii::DataOut<dim>::type_dof_data,
       std::vector<
@@ -245,7 +269,9 @@ namespace Debond
           add(estimate->cells[cell->active_cell_index()] / cell->measure());
       }
 
-    data_out.build_patches(problem.unknowns().mapping());
+    // Two subdivisions make a quadratic cell each.
+    data_out.build_patches(problem.unknowns().mapping(),
+                           problem.unknowns().degree());
     std::ostringstream vtu;
     data_out.write_vtu(vtu);
     write_atomically(file_name, [&](std::ostream &out) {
@@ -295,58 +321,87 @@ namespace Debond
       return values;
     };
 
+    // In the middle of an edge displacements are not its coefficients.
+    const auto values_at = [&](const auto &face, const unsigned int k) {
+      ContactValues<dim> values = values_of(face.node(k));
+      if (k < dim)
+        return values;
+      const ContactValues<dim> a =
+        values_of(face.node(simplex_edges[k - dim][0]));
+      const ContactValues<dim> b =
+        values_of(face.node(simplex_edges[k - dim][1]));
+      const auto interpolate = [&](const unsigned int c) {
+        values[c] = 0.5 * values[c] + 0.25 * (a[c] + b[c]);
+      };
+      for (unsigned int d = 0; d < dim; ++d)
+        interpolate(d);
+      interpolate(2 * dim);
+      interpolate(2 * dim + 1);
+      return values;
+    };
+
     // Each vertex has its share of the face, so that its state can be shown
     // without a transition to that of its neighbours.
     std::vector<dealii::DataOutBase::Patch<dim - 1, dim>> patches;
     Field states = {"bond_state", {}};
     for (const auto &face : boundary.faces)
-      {
-        std::array<ContactValues<dim>, dim> values;
-        for (unsigned int k = 0; k < dim; ++k)
-          values[k] = values_of(face.nodes[k]);
+      for (const auto &part : parts_of_face<dim>(boundary.degree))
+        {
+          std::array<ContactValues<dim>, dim> values;
+          std::array<dealii::Point<dim>, dim> corners;
+          for (unsigned int k = 0; k < dim; ++k)
+            {
+              values[k] = values_at(face, part[k]);
+              corners[k] =
+                part[k] < dim ?
+                  face.vertices[part[k]] :
+                  face.vertices[simplex_edges[part[k] - dim][0]] +
+                    0.5 * (face.vertices[simplex_edges[part[k] - dim][1]] -
+                           face.vertices[simplex_edges[part[k] - dim][0]]);
+            }
 
-        for (unsigned int k = 0; k < dim; ++k)
-          {
-            const unsigned int next = (k + 1) % dim, last = (k + dim - 1) % dim;
-            dealii::DataOutBase::Patch<dim - 1, dim> patch;
-            patch.patch_index    = static_cast<unsigned int>(patches.size());
-            patch.reference_cell = dim == 2 ?
-                                     dealii::ReferenceCells::Line :
-                                     dealii::ReferenceCells::Quadrilateral;
-            patch.data.reinit(2 * dim + contact_scalars.size(), 2 * (dim - 1));
-            const auto set_point = [&](const unsigned int        point,
-                                       const dealii::Point<dim> &position,
-                                       const ContactValues<dim> &at_point) {
-              patch.vertices[point] = position;
-              for (unsigned int c = 0; c < at_point.size(); ++c)
-                patch.data(c, point) = static_cast<float>(at_point[c]);
-            };
-            const auto middle = [&face, k](const unsigned int other) {
-              return face.vertices[k] +
-                     0.5 * (face.vertices[other] - face.vertices[k]);
-            };
-            set_point(0, face.vertices[k], values[k]);
-            set_point(1, middle(next), mean<dim>(values[k], {values[next]}));
-            if constexpr (dim == 3)
-              {
-                set_point(2,
-                          middle(last),
-                          mean<dim>(values[k], {values[last]}));
-                set_point(3,
-                          face.vertices[0] +
-                            (face.vertices[1] - face.vertices[0]) / 3. +
-                            (face.vertices[2] - face.vertices[0]) / 3.,
-                          mean<dim>(values[k], {values[next], values[last]}));
-              }
-            patches.push_back(patch);
+          for (unsigned int k = 0; k < dim; ++k)
+            {
+              const unsigned int next = (k + 1) % dim,
+                                 last = (k + dim - 1) % dim;
+              dealii::DataOutBase::Patch<dim - 1, dim> patch;
+              patch.patch_index    = static_cast<unsigned int>(patches.size());
+              patch.reference_cell = dim == 2 ?
+                                       dealii::ReferenceCells::Line :
+                                       dealii::ReferenceCells::Quadrilateral;
+              patch.data.reinit(2 * dim + contact_scalars.size(),
+                                2 * (dim - 1));
+              const auto set_point = [&](const unsigned int        point,
+                                         const dealii::Point<dim> &position,
+                                         const ContactValues<dim> &at_point) {
+                patch.vertices[point] = position;
+                for (unsigned int c = 0; c < at_point.size(); ++c)
+                  patch.data(c, point) = static_cast<float>(at_point[c]);
+              };
+              const auto middle = [&corners, k](const unsigned int other) {
+                return corners[k] + 0.5 * (corners[other] - corners[k]);
+              };
+              set_point(0, corners[k], values[k]);
+              set_point(1, middle(next), mean<dim>(values[k], {values[next]}));
+              if constexpr (dim == 3)
+                {
+                  set_point(2,
+                            middle(last),
+                            mean<dim>(values[k], {values[last]}));
+                  set_point(3,
+                            corners[0] + (corners[1] - corners[0]) / 3. +
+                              (corners[2] - corners[0]) / 3.,
+                            mean<dim>(values[k], {values[next], values[last]}));
+                }
+              patches.push_back(patch);
 
-            const unsigned int node = face.nodes[k];
-            states.second.push_back(
-              node == dealii::numbers::invalid_unsigned_int ?
-                static_cast<float>(BondState::held) :
-                static_cast<float>(verification.nodes[node].state));
-          }
-      }
+              const unsigned int node = face.node(part[k]);
+              states.second.push_back(
+                node == dealii::numbers::invalid_unsigned_int ?
+                  static_cast<float>(BondState::held) :
+                  static_cast<float>(verification.nodes[node].state));
+            }
+        }
 
     std::vector<std::string> names(dim, "displacement");
     names.insert(names.end(), dim, "tangential_force_density");

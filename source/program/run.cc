@@ -248,7 +248,8 @@ namespace Debond
                scene.problem().unknowns().has_lifting() ||
                  scene.problem().fields().applied_nodal_forces().linfty_norm() >
                    0.,
-               result.largest),
+               result.largest,
+               parameters.degree),
              result.notes);
       result.displacement_error =
         error_of(parameters, scene.problem(), result.solve.u);
@@ -441,8 +442,12 @@ namespace Debond
         result.solve = std::move(adaptive.solve);
         shortfall    = adaptive.shortfall;
         // On the last mesh.
-        choice.memory = memory_with_factorisation(
-          scene_size(scene->body(), dim, parameters.contact_boundaries), dim);
+        choice.memory =
+          memory_with_factorisation(scene_size(scene->body(),
+                                               dim,
+                                               parameters.contact_boundaries,
+                                               parameters.degree),
+                                    dim);
         files = output_files(parameters.output, *scene, result, no_pictures);
       }
     else if (parameters.load_path.factors.empty())

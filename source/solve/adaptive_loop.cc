@@ -73,7 +73,7 @@ namespace Debond
     too_large(const Parameters &parameters, const Body<dim> &body)
     {
       const SceneSize size =
-        scene_size(body, dim, parameters.contact_boundaries);
+        scene_size(body, dim, parameters.contact_boundaries, parameters.degree);
       std::ostringstream text;
       text << "the next mesh would have " << std::fixed << std::setprecision(0)
            << size.unknowns << " unknowns, ";
@@ -91,6 +91,27 @@ namespace Debond
       else
         return "";
       return text.str();
+    }
+
+
+
+    /// The displacement u of the scene, on the next mesh.
+    template <int dim>
+    dealii::Vector<double>
+    on_next_mesh(const Scene<dim>             &scene,
+                 const dealii::Vector<double> &u,
+                 const BisectedBody<dim>      &body,
+                 const Scene<dim>             &next)
+    {
+      if (scene.problem().unknowns().degree() == 2)
+        return divided_displacement(scene.problem(),
+                                    u,
+                                    body.ancestors(),
+                                    next.problem());
+      std::vector<dealii::Tensor<1, dim>> displacements =
+        vertex_displacements(scene.problem(), u);
+      body.extend(displacements);
+      return from_vertex_displacements(displacements, next.problem());
     }
 
 
@@ -215,9 +236,6 @@ namespace Debond
               }
             return result;
           }
-        std::vector<dealii::Tensor<1, dim>> displacements =
-          vertex_displacements(scene->problem(), result.solve.u);
-        body->extend(displacements);
         next = std::make_shared<const Scene<dim>>(parameters,
                                                   body,
                                                   matrix_storage(choice));
@@ -227,7 +245,7 @@ namespace Debond
             return result;
           }
         start = std::make_unique<const dealii::Vector<double>>(
-          from_vertex_displacements(displacements, next->problem()));
+          on_next_mesh(*scene, result.solve.u, *body, *next));
       }
   }
 

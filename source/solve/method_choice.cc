@@ -133,7 +133,7 @@ namespace Debond
             choice.linear_solver = LinearSolver::direct;
           }
         else if (choice.linear_solver == LinearSolver::automatic &&
-                 parameters.accuracy.is_adaptive())
+                 (parameters.accuracy.is_adaptive() || parameters.degree == 2))
           choice.linear_solver = LinearSolver::direct;
         else if (choice.linear_solver == LinearSolver::automatic)
           {

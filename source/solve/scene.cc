@@ -300,10 +300,8 @@ namespace Debond
         entry               = "Boundary conditions/Clamped boundaries";
         boundary_conditions = make_conditions(parameters, boundaries);
         body_supports       = make_supports<dim>(parameters, boundaries);
-        elastic_problem =
-          std::make_unique<ElasticProblem<dim>>(triangulation,
-                                                boundary_conditions,
-                                                body_supports);
+        elastic_problem     = std::make_unique<ElasticProblem<dim>>(
+          triangulation, boundary_conditions, body_supports, parameters.degree);
         check_held_vertices(elastic_problem->unknowns(),
                             displacement_factors(parameters.load_path));
         entry = "Material/Poisson ratio";
@@ -372,9 +370,9 @@ namespace Debond
                           const MatrixStorage storage)
   {
     adhesive_law = std::make_unique<AdhesiveLaw>(parameters.law.branches);
-    quadrature =
-      std::make_unique<ContactQuadrature<dim>>(parameters.quadrature,
-                                               adhesive_law->kinks());
+    quadrature = std::make_unique<ContactQuadrature<dim>>(parameters.quadrature,
+                                                          adhesive_law->kinks(),
+                                                          parameters.degree);
     const auto field = [&](const std::string &expression) {
       return expression.empty() ?
                nullptr :

@@ -39,7 +39,8 @@ namespace Debond
   SceneSize
   scene_size(const BodyDescription       &body,
              const unsigned int           dimension,
-             const std::set<std::string> &contact_boundaries)
+             const std::set<std::string> &contact_boundaries,
+             const unsigned int           degree)
   {
     SceneSize size;
     size.cells         = body.n_cells();
@@ -47,6 +48,12 @@ namespace Debond
     size.contact_nodes = 0.;
     for (const std::string &name : contact_boundaries)
       size.contact_nodes += body.n_vertices_on(name);
+    if (degree == 2)
+      {
+        // Euler's formula.
+        size.unknowns += dimension * (body.n_vertices() + size.cells - 1.);
+        size.contact_nodes *= dimension == 2 ? 2. : 4.;
+      }
     size.shape = body.shape();
     return size;
   }
@@ -58,7 +65,8 @@ namespace Debond
   {
     return scene_size(*parameters.body,
                       parameters.dimension,
-                      parameters.contact_boundaries);
+                      parameters.contact_boundaries,
+                      parameters.degree);
   }
 
 

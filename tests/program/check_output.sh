@@ -30,7 +30,7 @@ keys=$(sed -n 's/^ *"\([a-z][a-z0-9_ ]*\)":.*/\1/p' output/bar/summary.json |
   LC_ALL=C sort -u | tr '\n' ' ')
 expected="applied_force assembly bond_states bonded broken build_type cells\
  clamped_reaction closed_nodes condition_estimate contact contact_nodes\
- contact_reaction deal_ii_version degrees_of_freedom degrees_of_freedom_paper\
+ contact_reaction deal_ii_version degree degrees_of_freedom degrees_of_freedom_paper\
  dimension equilibrium_residual force_imbalance functional\
  functional_from_start iterations kink largest_displacement\
  largest_displacement_gradient largest_qp_residual largest_von_mises\

@@ -16,10 +16,10 @@
 namespace Debond
 {
   /**
-   * Phi(s) = int_{Gamma_C} j_1(s) dGamma of the P1 trace with nodal values s,
-   * by quadrature on the contact boundary. The vector s is ordered as
-   * ContactBoundary::nodes; s of vertices that are none is prescribed, and
-   * grows with the load.
+   * Phi(s) = int_{Gamma_C} j_1(s) dGamma of the trace with coefficients s, the
+   * nodal values of degree 1, by quadrature on the contact boundary. The vector
+   * s is ordered as ContactBoundary::nodes; s of vertices that are none is
+   * prescribed, and grows with the load.
    *
    * Keeps references to its arguments. Use from one thread at a time.
    */
@@ -50,6 +50,11 @@ namespace Debond
     /// prescribed.
     double
     dissipated_energy() const;
+
+    /// The coefficients of s on a face, unknown or prescribed.
+    typename ContactQuadrature<dim>::Trace
+    trace_on(const typename ContactBoundary<dim>::Face &face,
+             const dealii::Vector<double>              &s) const;
 
     /// s at a vertex of a face, unknown or prescribed, and the bonds there.
     double
@@ -132,17 +137,19 @@ namespace Debond
     bonds_at(const unsigned int node) const;
 
   private:
+    using Trace = typename ContactQuadrature<dim>::Trace;
+
     /// A quadrature point on Gamma_C: the trace there is the sum of shape[k]
     /// s[nodes[k]], k < n_nodes.
     struct Point
     {
-      unsigned int                  n_nodes;
-      std::array<unsigned int, dim> nodes;
-      std::array<double, dim>       shape;
-      double                        weight; ///< length or area
-      double                        offset; ///< what is prescribed of the trace
-      BondScale                     bonds;
-      unsigned int                  least_piece; ///< of the law
+      unsigned int                                     n_nodes;
+      std::array<unsigned int, n_coefficients(dim, 2)> nodes;
+      Trace                                            shape;
+      double                                           weight; ///< length, area
+      double       offset; ///< what is prescribed of the trace
+      BondScale    bonds;
+      unsigned int least_piece; ///< of the law
 
       bool
       is_on_a_node() const;
@@ -151,10 +158,10 @@ namespace Debond
       trace(const dealii::Vector<double> &s) const;
     };
 
-    /// s of a prescribed vertex of a face.
+    /// A prescribed coefficient on a face.
     double
     held_trace(const typename ContactBoundary<dim>::Face &face,
-               const unsigned int                         vertex) const;
+               const unsigned int                         k) const;
 
     BondScale
     bonds_of(const typename ContactBoundary<dim>::Face &face,

@@ -6,6 +6,8 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/base/types.h>
 
+#include <debond/mesh/bernstein.h>
+
 #include <array>
 #include <vector>
 
@@ -14,9 +16,10 @@ namespace Debond
   /**
    * The contact boundary Gamma_C as the discrete problem sees it: the nodes
    * whose normal displacement is unknown, and the faces, on which the normal
-   * displacement is the linear interpolant of its nodal values. What is
-   * unknown is s = u_nu - gap <= 0, minus the opening between body and
-   * foundation.
+   * displacement is the polynomial with the nodes' numbers as coefficients (see
+   * bernstein()): its values at the vertices, and of degree 2 the coefficients
+   * of the edges as well. What is unknown is s = u_nu - gap <= 0, minus the
+   * opening between body and foundation.
    */
   template <int dim>
   struct ContactBoundary
@@ -36,7 +39,7 @@ namespace Debond
       double gap = 0.;
     };
 
-    /// A vertex whose normal displacement is prescribed.
+    /// A vertex (an edge) whose normal displacement is prescribed.
     struct HeldVertex
     {
       /// For the whole load.
@@ -60,6 +63,10 @@ namespace Debond
       /// Indices into `held_vertices` of the others, if it has any.
       std::array<unsigned int, dim> held = {};
 
+      /// The same of the edges, of degree 2.
+      std::array<unsigned int, n_simplex_edges(dim)> edge_nodes = {};
+      std::array<unsigned int, n_simplex_edges(dim)> edge_held  = {};
+
       std::array<dealii::Point<dim>, dim> vertices;
 
       /// Outward unit normal of the body.
@@ -67,7 +74,31 @@ namespace Debond
 
       /// Length or area.
       double measure;
+
+      /// Of the k-th coefficient, see `nodes`.
+      unsigned int
+      node(const unsigned int k) const
+      {
+        return k < dim ? nodes[k] : edge_nodes[k - dim];
+      }
+
+      /// See `held`.
+      unsigned int
+      held_at(const unsigned int k) const
+      {
+        return k < dim ? held[k] : edge_held[k - dim];
+      }
     };
+
+    /// Of the displacement: 1 or 2.
+    unsigned int degree = 1;
+
+    /// The number of coefficients on a face.
+    unsigned int
+    n_face_nodes() const
+    {
+      return n_coefficients(dim, degree);
+    }
 
     /// In lexicographic order of their positions.
     std::vector<Node> nodes;

@@ -2,6 +2,8 @@
 #ifndef debond_contact_quadrature_h
 #define debond_contact_quadrature_h
 
+#include <debond/mesh/bernstein.h>
+
 #include <array>
 #include <string>
 #include <vector>
@@ -16,7 +18,7 @@ namespace Debond
       nodal,    ///< the vertices (trapezoidal rule in 2D)
       midpoint, ///< the barycentre
       gauss,    ///< exact to degree 2 gauss_points - 1
-      exact     ///< split at the kinks of the law, exact for the P1 trace
+      exact     ///< split at the kinks of the law, exact for the trace
     };
 
     Rule rule = Rule::nodal;
@@ -36,6 +38,9 @@ namespace Debond
    * of the face, so that a point's coordinates are the values of the P1 basis
    * functions there. A rule may depend on the trace (Rule::exact splits the
    * face where the trace crosses a kink).
+   *
+   * For displacements of degree 2 there are Gauss points, and in 2D the exact
+   * rule.
    */
   template <int dim>
   class ContactQuadrature
@@ -47,10 +52,15 @@ namespace Debond
       double                  weight; ///< the weights of a face sum to 1
     };
 
-    /// @p law_kinks are those of the law, used by Rule::exact only. Throws
-    /// std::invalid_argument if there is no rule of that many Gauss points.
+    /// The trace on a face: its coefficients, see bernstein().
+    using Trace = std::array<double, n_coefficients(dim, 2)>;
+
+    /// @p law_kinks are those of the law, used by Rule::exact only; @p degree
+    /// is that of the trace. Throws std::invalid_argument if there is no rule
+    /// of that many Gauss points, or no such rule for that degree.
     ContactQuadrature(const ContactQuadratureParameters &parameters,
-                      const std::vector<double>         &law_kinks);
+                      const std::vector<double>         &law_kinks,
+                      const unsigned int                 degree = 1);
 
     /// Whether points() gives different points for different traces.
     bool
@@ -60,6 +70,10 @@ namespace Debond
     /// The reference is valid until the next call (one thread at a time).
     const std::vector<QuadraturePoint> &
     points(const std::array<double, dim> &trace) const;
+
+    /// The same from the coefficients of a trace of the rule's degree.
+    const std::vector<QuadraturePoint> &
+    points_of(const Trace &trace) const;
 
   private:
     /// A piece of a face: barycentric coordinates of its vertices and the
@@ -75,6 +89,12 @@ namespace Debond
     void
     append(const Piece &piece, const double measure) const;
 
+    /// Writes the points between the crossings of a quadratic trace on a line
+    /// to `split`.
+    void
+    split_line(const Trace &trace) const;
+
+    unsigned int        degree;
     bool                split_at_kinks;
     std::vector<double> kinks;
 

@@ -28,8 +28,8 @@ namespace Debond
 
 
   /**
-   * Linear elasticity on P1 simplices: the operator A and the load f on the
-   * unknowns of ElasticUnknowns.
+   * Linear elasticity on simplices of degree 1 or 2: the operator A and the
+   * load f on the unknowns of ElasticUnknowns.
    *
    * At constrained degrees of freedom A has only a diagonal entry: a positive
    * number of the size of the cells' own diagonal entries, without a meaning.
@@ -41,7 +41,8 @@ namespace Debond
     /// Throws as ElasticUnknowns does.
     ElasticProblem(const dealii::Triangulation<dim> &triangulation,
                    const BoundaryConditions         &conditions,
-                   const Supports<dim>              &supports = {});
+                   const Supports<dim>              &supports = {},
+                   const unsigned int                degree   = 1);
 
     /// Computes A and f. Throws std::invalid_argument if a material is not
     /// valid or a load is not, see load_vector() and

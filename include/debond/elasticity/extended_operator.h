@@ -2,6 +2,7 @@
 #ifndef debond_elasticity_extended_operator_h
 #define debond_elasticity_extended_operator_h
 
+#include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/elastic_problem.h>
 
 #include <Eigen/Core>
@@ -42,12 +43,15 @@ namespace Debond
     /// sigma[d][e].
     using Stress = std::array<std::array<long double, dim>, dim>;
 
+    using Dofs     = std::array<unsigned int, dim>;
+    using Gradient = std::array<long double, dim>;
+
     struct Cell
     {
-      std::array<std::array<unsigned int, dim>, dim + 1> dofs;
+      std::array<Dofs, dim + 1> dofs;
 
-      /// Of the basis functions of all vertices but the first.
-      std::array<std::array<long double, dim>, dim> gradients;
+      /// Of the barycentric coordinates of all vertices but the first.
+      std::array<Gradient, dim> gradients;
 
       long double volume;
       long double lambda; ///< Lame's
@@ -57,11 +61,32 @@ namespace Debond
     ExtendedVector
     cartesian(const ExtendedVector &u) const;
 
+    /// The gradients at a point of BernsteinSimplex of all basis functions but
+    /// the first.
+    void
+    make_gradients(const Cell            &cell,
+                   const unsigned int     point,
+                   std::vector<Gradient> &gradients) const;
+
     Stress
-    stress(const Cell &cell, const ExtendedVector &cartesian_u) const;
+    stress(const unsigned int           cell,
+           const std::vector<Gradient> &gradients,
+           const ExtendedVector        &cartesian_u) const;
+
+    const Dofs &
+    dofs(const unsigned int cell, const unsigned int node) const
+    {
+      return node <= dim ? cells[cell].dofs[node] :
+                           edge_dofs[cell][node - (dim + 1)];
+    }
 
     const ElasticProblem<dim> &problem;
+    const unsigned int         degree;
+    const unsigned int         n_points; ///< of BernsteinSimplex
     std::vector<Cell>          cells;
+
+    /// Of each cell, of degree 2.
+    std::vector<std::array<Dofs, n_simplex_edges(dim + 1)>> edge_dofs;
   };
 } // namespace Debond
 

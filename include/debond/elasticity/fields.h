@@ -6,6 +6,7 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/lac/vector.h>
 
+#include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/material.h>
 #include <debond/elasticity/unknowns.h>
 #include <debond/mesh/by_region.h>
@@ -21,13 +22,15 @@ namespace Debond
   class ElasticFields
   {
   public:
-    using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
+    using Cell        = typename dealii::DoFHandler<dim>::active_cell_iterator;
+    using Barycentric = typename BernsteinSimplex<dim>::Barycentric;
 
     /// Keeps a reference to the unknowns. @p applied_forces: the Cartesian
     /// nodal forces of all loads, at every degree of freedom; @p dead_forces:
     /// those of them that do not grow with the load factor, empty for none.
-    /// @p thermal_stresses: of each active cell the pressure that its change of
-    /// temperature makes if it cannot expand; none if empty.
+    /// @p thermal_stresses: of each point of BernsteinSimplex in each active
+    /// cell the pressure that the change of temperature makes if the body
+    /// cannot expand; none if empty.
     ElasticFields(const ElasticUnknowns<dim>   &unknowns,
                   const ByRegion<Material>     &materials,
                   const dealii::Vector<double> &applied_forces,
@@ -68,25 +71,27 @@ namespace Debond
     residual_rounding(const dealii::Vector<double> &u,
                       const LoadFactors             factors = 1.) const;
 
-    /// Strain-energy density, stress and displacement gradient are constant
-    /// on each cell: the stress of the active cell, in the units of E, with
-    /// @p factors times the change of temperature.
+    /// Stress and displacement gradient are constant on each cell, linear of
+    /// degree 2: the stress at a point of the active cell, by default its mean,
+    /// in the units of E, with @p factors times the change of temperature.
     dealii::SymmetricTensor<2, dim>
     stress(const Cell                   &cell,
            const dealii::Vector<double> &cartesian_displacement,
-           const LoadFactors             factors) const;
+           const LoadFactors             factors,
+           const Barycentric            &point = middle()) const;
 
     /// The same with what the hypothesis of plane bodies implies.
     dealii::SymmetricTensor<2, 3>
     solid_stress(const Cell                   &cell,
                  const dealii::Vector<double> &cartesian_displacement,
-                 const LoadFactors             factors) const;
+                 const LoadFactors             factors,
+                 const Barycentric            &point = middle()) const;
 
-    /// The displacement gradient of the cell, its row d that of component d.
+    /// The displacement gradient in the cell, its row d that of component d.
     dealii::Tensor<2, dim>
-    displacement_gradient(
-      const Cell                   &cell,
-      const dealii::Vector<double> &cartesian_displacement) const;
+    displacement_gradient(const Cell                   &cell,
+                          const dealii::Vector<double> &cartesian_displacement,
+                          const Barycentric            &point = middle()) const;
 
     /**
      * 1/2 <A u, u> - <f, u>, f with @p factors, from the strains of the cells,
@@ -107,6 +112,10 @@ namespace Debond
     load_work(const dealii::Vector<double> &u,
               const LoadFactors             factors = 1.) const;
 
+    /// The barycentric coordinates of a cell's middle.
+    static Barycentric
+    middle();
+
   private:
     /// u with its lifting, in the unknowns.
     dealii::Vector<double>
@@ -118,9 +127,16 @@ namespace Debond
            const LoadFactors             factors,
            const dealii::Vector<double> &load) const;
 
-    /// Of the cell, for the whole load.
+    /// The displacement gradient, of a cell that is known.
+    static dealii::Tensor<2, dim>
+    gradient(const BernsteinSimplex<dim>  &simplex,
+             const CellNodes<dim>         &nodes,
+             const dealii::Vector<double> &cartesian_displacement,
+             const Barycentric            &point);
+
+    /// At a point of the cell, for the whole load.
     double
-    thermal_stress(const Cell &cell) const;
+    thermal_stress(const Cell &cell, const Barycentric &point) const;
 
     const ElasticUnknowns<dim>               &unknowns;
     ByRegion<Material>                        materials;

@@ -52,7 +52,8 @@ namespace Debond
 
   /**
    * The nodal forces int f_0 phi + int f_2 phi, as Cartesian components at
-   * every degree of freedom of the P1 vector space of @p dof_handler.
+   * every degree of freedom of @p dof_handler, whose degree is 1 or 2: phi is a
+   * function of the Bernstein basis, see bernstein().
    *
    * Tractions are integrated adaptively on each face: the Gauss-Lobatto rule
    * of degree 5 on intervals that are halved until that changes the integral
@@ -65,9 +66,10 @@ namespace Debond
    * smooth traction on a fine mesh takes 144 evaluations a face, one that jumps
    * along a line in the order of 1e5 on each face the line crosses.
    *
-   * Body forces are integrated by a rule of degree 2 on each cell: let a jump
-   * of theirs follow the mesh. Where the values in a cell differ by a factor of
-   * two, it is bisected towards the largest ones, to see whether they grow.
+   * Body forces are integrated by a rule of degree 2 on each cell, for
+   * quadratic displacements 3 or more: let a jump of theirs follow the mesh.
+   * Where the values in a cell differ by a factor of two, it is bisected
+   * towards the largest ones, to see whether they grow.
    *
    * Throws LoadError, naming the boundary or the body force, the
    * point and the component, if a load cannot be evaluated, is not finite or is

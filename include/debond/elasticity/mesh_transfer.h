@@ -26,6 +26,17 @@ namespace Debond
     const std::vector<dealii::Tensor<1, dim>> &displacements,
     const ElasticProblem<dim>                 &problem);
 
+  /// The displacement u of a problem on a mesh whose cells are divided in that
+  /// of @p target, in its unknowns: the same polynomials of the same degree,
+  /// but for what the target's supports prescribe. @p ancestors: of each cell
+  /// of the target's the one that it is a part of.
+  template <int dim>
+  dealii::Vector<double>
+  divided_displacement(const ElasticProblem<dim>       &source,
+                       const dealii::Vector<double>    &u,
+                       const std::vector<unsigned int> &ancestors,
+                       const ElasticProblem<dim>       &target);
+
   /**
    * The P1 displacement u of a problem on the mesh of @p body, at the
    * vertices of another mesh of the same body: a vector of unknowns of

@@ -26,7 +26,8 @@ namespace Debond
 
   /// The stress of each active cell that its change of temperature makes if the
   /// body does not move, Material::thermal_stress() times the mean of the
-  /// change over the cell, as a pressure; empty if there is none. Throws
+  /// change over the cell, of degree 2 the change at each point of
+  /// BernsteinSimplex, as a pressure; empty if there is none. Throws
   /// TemperatureError with the place if the change is not finite somewhere.
   template <int dim>
   std::vector<double>

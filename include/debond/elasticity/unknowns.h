@@ -96,14 +96,18 @@ namespace Debond
 
 
   /**
-   * The unknowns of P1 elasticity on simplices: the Cartesian components of the
-   * displacement at each vertex, except at the contact nodes, where they are
-   * the components in the node's own frame: first u_nu (one degree of freedom,
-   * so that the unilateral constraint is a simple bound), then the tangential
-   * ones. A vertex where contact sides of different normals meet has one u_nu
-   * for each of them; if tangential displacements are fixed there, it is
-   * clamped. Normals that differ by less than 30 degrees count as one (their
-   * mean), as on a polygonal approximation of a smooth side.
+   * The unknowns of elasticity on simplices of degree 1 or 2: the Cartesian
+   * components of the displacement at each vertex, and of degree 2 those of the
+   * coefficient of each edge (see bernstein()), except at the contact nodes,
+   * where they are the components in the node's own frame: first u_nu (one
+   * degree of freedom, so that the unilateral constraint is a simple bound),
+   * then the tangential ones. A vertex where contact sides of different normals
+   * meet has one u_nu for each of them; if tangential displacements are fixed
+   * there, it is clamped. Normals that differ by less than 30 degrees count as
+   * one (their mean), as on a polygonal approximation of a smooth side. What is
+   * said of vertices below is true of edges, of degree 2: they are in their
+   * middles, and as u_nu on a face is nowhere above its largest coefficient,
+   * u_nu <= 0 holds at every point.
    *
    * All vectors have n_dofs() entries; the constrained ones are zero. So they
    * are w in u = w + G, where G, the lifting, has the prescribed displacements
@@ -132,7 +136,8 @@ namespace Debond
     /// somewhere, or if a roller is not flat.
     ElasticUnknowns(const dealii::Triangulation<dim> &triangulation,
                     const BoundaryConditions         &conditions,
-                    const Supports<dim>              &supports = {});
+                    const Supports<dim>              &supports = {},
+                    const unsigned int                degree   = 1);
 
     ElasticUnknowns(const ElasticUnknowns &) = delete;
 
@@ -142,6 +147,10 @@ namespace Debond
     const dealii::Mapping<dim> &
     mapping() const;
 
+    /// Of the displacement's polynomials.
+    unsigned int
+    degree() const;
+
     const ContactSpace<dim> &
     contact() const;
 
@@ -150,10 +159,10 @@ namespace Debond
     const std::vector<Frame> &
     frames() const;
 
-    /// The columns are the Cartesian directions of the vertex' unknowns; null
-    /// where the unknowns are Cartesian.
+    /// The columns are the Cartesian directions of the unknowns of a node
+    /// (CellNodes::indices); null where the unknowns are Cartesian.
     const dealii::Tensor<2, dim> *
-    directions(const unsigned int vertex_index) const;
+    directions(const unsigned int node_index) const;
 
     unsigned int
     n_dofs() const;
@@ -205,10 +214,16 @@ namespace Debond
     dealii::Vector<double>
     lifting(const LoadFactors factors = 1.) const;
 
-    /// The Cartesian components of the displacement u = w + G, at every vertex.
+    /// The Cartesian components of the displacement u = w + G, at every vertex
+    /// and of the coefficient of every edge.
     dealii::Vector<double>
     cartesian_displacement(const dealii::Vector<double> &w,
                            const LoadFactors             factors = 1.) const;
+
+    /// The same displacement's values at vertices and in the middles of edges,
+    /// from such coefficients: deal.II's degrees of freedom.
+    dealii::Vector<double>
+    nodal_values(const dealii::Vector<double> &cartesian_displacement) const;
 
     /// The vector w of a displacement that is given by its Cartesian
     /// components; constrained degrees of freedom are zero.
@@ -253,7 +268,7 @@ namespace Debond
     static void
     fix_rest(PrescribedVertex &vertex);
 
-    /// By vertex index.
+    /// By node index.
     using PrescribedVertices = std::map<unsigned int, PrescribedVertex>;
 
     void
@@ -306,9 +321,9 @@ namespace Debond
     const dealii::FESystem<dim>  fe;
     dealii::DoFHandler<dim>      dofs;
 
-    /// By vertex index, invalid_unsigned_int where the unknowns are Cartesian.
-    std::vector<unsigned int> frame_of_vertex;
-    std::vector<Frame>        vertex_frames;
+    /// By node index, invalid_unsigned_int where the unknowns are Cartesian.
+    std::vector<unsigned int> frame_of_node;
+    std::vector<Frame>        node_frames;
 
     dealii::AffineConstraints<double> fixed;
     ContactSpace<dim>                 contact_space;

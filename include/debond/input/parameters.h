@@ -52,6 +52,7 @@ namespace Debond
     std::string                            scene; ///< path of the file
     unsigned int                           dimension = 2;
     std::shared_ptr<const BodyDescription> body;
+    unsigned int                           degree = 1; ///< of displacements
     MaterialParameters                     materials;
     std::set<std::string>              clamped_boundaries = {"left", "right"};
     std::set<std::string>              contact_boundaries = {"bottom"};

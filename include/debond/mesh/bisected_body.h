@@ -34,6 +34,13 @@ namespace Debond
       bisection.extend(values);
     }
 
+    /// Of each cell the one of the mesh that this one is refined() from.
+    const std::vector<unsigned int> &
+    ancestors() const
+    {
+      return bisection.ancestors();
+    }
+
     std::set<std::string>
     boundaries() const override;
 

@@ -55,6 +55,10 @@ namespace Debond
     const std::vector<dealii::Point<dim>> &
     vertices() const;
 
+    /// Of each cell the one before the last refine() that it is a part of.
+    const std::vector<unsigned int> &
+    ancestors() const;
+
     /// Those on the boundaries with these ids.
     unsigned int
     n_vertices_on(const std::set<dealii::types::boundary_id> &boundaries) const;
@@ -105,6 +109,7 @@ namespace Debond
 
     std::vector<dealii::Point<dim>> points;
     std::vector<Simplex>            cells;
+    std::vector<unsigned int>       whole_cells; ///< see ancestors()
 
     /// The ends of the edge that each vertex is the middle of, from the number
     /// first_middle on.

@@ -11,15 +11,18 @@ namespace Debond
   struct SceneSize
   {
     double    cells;         ///< triangles or tetrahedra
-    double    unknowns;      ///< dim for each vertex
-    double    contact_nodes; ///< vertices of the contact boundaries
+    double    unknowns;      ///< dim for each vertex (and edge)
+    double    contact_nodes; ///< vertices (and edges) of the contact boundaries
     BodyShape shape;
   };
 
+  /// Edges, of degree 2, are those of a body without holes, in 3D about as
+  /// many.
   SceneSize
   scene_size(const BodyDescription       &body,
              const unsigned int           dimension,
-             const std::set<std::string> &contact_boundaries);
+             const std::set<std::string> &contact_boundaries,
+             const unsigned int           degree = 1);
 
   SceneSize
   scene_size(const Parameters &parameters);

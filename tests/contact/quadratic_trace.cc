@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The adhesion of quadratic traces: the Bernstein basis, the integral against
+// fine sums, its subgradient and curvature against finite differences, the
+// allowed forces, the broken zone and the rules that there are.
+
+#include <deal.II/base/numbers.h>
+
+#include <debond/check/broken_zone.h>
+#include <debond/contact/adhesion_integral.h>
+#include <debond/contact/boundary_graph.h>
+#include <debond/contact/laws/winkler.h>
+
+#include <cmath>
+#include <iostream>
+#include <random>
+
+#include "../check.h"
+
+using namespace Debond;
+
+constexpr unsigned int fixed = dealii::numbers::invalid_unsigned_int;
+
+
+
+template <std::size_t n>
+std::array<double, n>
+random_point(std::mt19937 &random)
+{
+  std::uniform_real_distribution<double> unit(0., 1.);
+  std::array<double, n>                  point;
+  double                                 sum = 0.;
+  for (double &coordinate : point)
+    sum += coordinate = -std::log(unit(random));
+  for (double &coordinate : point)
+    coordinate /= sum;
+  return point;
+}
+
+
+
+template <std::size_t n>
+void
+test_basis()
+{
+  std::mt19937 random(1);
+  double       sum_error = 0., affine_error = 0., edge_error = 0.;
+  bool         positive = true;
+  for (unsigned int trial = 0; trial < 100; ++trial)
+    {
+      const std::array<double, n> point = random_point<n>(random);
+      // An affine function has its values in the middles of edges as
+      // coefficients.
+      const auto affine = [](const std::array<double, n> &x) {
+        double value = 0.3;
+        for (unsigned int v = 0; v < n; ++v)
+          value += (1. + v * v) * x[v];
+        return value;
+      };
+      const auto basis = bernstein(point, 2);
+      double     sum = 0., value = 0.;
+      for (unsigned int k = 0; k < basis.size(); ++k)
+        {
+          std::array<double, n> position = {};
+          if (k < n)
+            position[k] = 1.;
+          else
+            for (const unsigned int end : simplex_edges[k - n])
+              position[end] = 0.5;
+          sum += basis[k];
+          positive = positive && basis[k] >= 0.;
+          value += basis[k] * affine(position);
+        }
+      sum_error    = std::max(sum_error, std::abs(sum - 1.));
+      affine_error = std::max(affine_error, std::abs(value - affine(point)));
+    }
+  for (unsigned int e = 0; e < n_simplex_edges(n); ++e)
+    {
+      const auto &[a, b] = simplex_edges[e];
+      edge_error += edge_between(a, b) != e || edge_between(b, a) != e;
+    }
+  const std::string vertices = std::to_string(n) + " vertices";
+  check("basis on " + vertices + ", sum", sum_error, 1e-14);
+  check("basis on " + vertices + ", affine functions", affine_error, 1e-14);
+  check("basis on " + vertices + ", nowhere negative", positive);
+  check("basis on " + vertices + ", numbers of edges", edge_error == 0.);
+}
+
+
+
+/// Two lines, or two triangles with a common edge; one node is held.
+template <int dim>
+ContactBoundary<dim>
+make_boundary()
+{
+  ContactBoundary<dim> boundary;
+  boundary.degree = 2;
+  boundary.faces.resize(2);
+  auto &first = boundary.faces[0], &second = boundary.faces[1];
+  if constexpr (dim == 2)
+    {
+      first.nodes       = {{0, 1}};
+      first.edge_nodes  = {{2}};
+      second.nodes      = {{1, fixed}};
+      second.edge_nodes = {{3}};
+    }
+  else
+    {
+      first.nodes       = {{0, 1, 2}};
+      first.edge_nodes  = {{3, 4, 5}};
+      second.nodes      = {{2, 1, fixed}};
+      second.edge_nodes = {{4, 6, 7}};
+    }
+  first.measure  = 0.2;
+  second.measure = 0.3;
+  boundary.nodes.resize(dim == 2 ? 4 : 8);
+  return boundary;
+}
+
+
+
+/// int j_1 by a very fine sum.
+template <int dim>
+double
+fine_sum(const ContactBoundary<dim>   &boundary,
+         const AdhesionIntegral<dim>  &integral,
+         const AdhesiveLaw            &law,
+         const dealii::Vector<double> &s)
+{
+  const unsigned int n   = dim == 2 ? 100000 : 600;
+  double             sum = 0.;
+  for (const auto &face : boundary.faces)
+    if constexpr (dim == 2)
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          const double x = (i + 0.5) / n;
+          sum += face.measure / n *
+                 law.value(integral.trace(face, {{1. - x, x}}, s));
+        }
+    else
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = 0; i + j < n; ++j)
+          for (unsigned int side = 0; side < (i + j + 1 < n ? 2u : 1u); ++side)
+            {
+              const double x = (i + (1. + side) / 3.) / n;
+              const double y = (j + (1. + side) / 3.) / n;
+              sum += face.measure / (n * n) *
+                     law.value(integral.trace(face, {{1. - x - y, x, y}}, s));
+            }
+  return sum;
+}
+
+
+
+template <int dim>
+void
+test_integral(const std::string &rule, const double tolerance)
+{
+  const double                 a = 69., M = 0.002;
+  const ContactBoundary<dim>   boundary = make_boundary<dim>();
+  const AdhesiveLaw            law(winkler_law(a, M).branches);
+  const ContactQuadrature<dim> quadrature(
+    ContactQuadratureParameters::parse(rule), law.kinks(), 2);
+  const AdhesionIntegral<dim> integral(boundary, law, quadrature);
+  const unsigned int          n     = boundary.nodes.size();
+  const double                scale = a * M * boundary.faces[0].measure;
+
+  std::mt19937                           random(7);
+  std::uniform_real_distribution<double> number(-2.5, 0.);
+  double value_error = 0., gradient_error = 0., curvature_error = 0.;
+  bool   intervals_hold = true, goldstein_holds = true;
+  for (unsigned int trial = 0; trial < (dim == 2 ? 20 : 5); ++trial)
+    {
+      dealii::Vector<double> s(n);
+      for (double &entry : s)
+        entry = M * number(random);
+      value_error = std::max(value_error,
+                             std::abs(integral.energy(s) -
+                                      fine_sum(boundary, integral, law, s)) /
+                               (scale * M));
+
+      dealii::Vector<double> xi(n);
+      integral.subgradient(s, xi);
+      const Eigen::SparseMatrix<double> curvature = integral.curvature(s);
+      const std::vector<Interval> clarke = integral.force_intervals(s, 0.);
+      const std::vector<Interval> goldstein =
+        integral.force_intervals(s, 0.2 * M);
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          const double           h     = 1e-6 * M;
+          dealii::Vector<double> right = s, left = s;
+          right(i) += h;
+          left(i) -= h;
+          gradient_error =
+            std::max(gradient_error,
+                     std::abs((integral.energy(right) - integral.energy(left)) /
+                                (2. * h) -
+                              xi(i)) /
+                       scale);
+          dealii::Vector<double> xi_right(n), xi_left(n);
+          integral.subgradient(right, xi_right);
+          integral.subgradient(left, xi_left);
+          for (unsigned int j = 0; j < n; ++j)
+            curvature_error =
+              std::max(curvature_error,
+                       std::abs((xi_right(j) - xi_left(j)) / (2. * h) -
+                                curvature.coeff(j, i)) /
+                         (scale / M));
+          intervals_hold = intervals_hold &&
+                           clarke[i].lower <= xi(i) + 1e-12 * scale &&
+                           xi(i) <= clarke[i].upper + 1e-12 * scale;
+          goldstein_holds = goldstein_holds &&
+                            goldstein[i].lower <= clarke[i].lower &&
+                            clarke[i].upper <= goldstein[i].upper;
+        }
+    }
+  const std::string name = std::to_string(dim) + "D, " + rule + ": ";
+  check(name + "int j_1 against a fine sum", value_error, tolerance);
+  check(name + "subgradient against differences", gradient_error, 1e-6);
+  // Where no point changes its branch; kinks that move have a part of theirs.
+  if (rule != "exact")
+    check(name + "curvature against differences", curvature_error, 1e-6);
+  check(name + "the subgradient is allowed", intervals_hold);
+  check(name + "more is allowed near by", goldstein_holds);
+}
+
+
+
+/// The exact rule is exact where all bonds hold, and where a trace touches the
+/// kink.
+void
+test_touching_kink()
+{
+  const double               a = 69., M = 0.002;
+  ContactBoundary<2>         boundary = make_boundary<2>();
+  const AdhesiveLaw          law(winkler_law(a, M).branches);
+  const ContactQuadrature<2> quadrature(
+    ContactQuadratureParameters::parse("exact"), law.kinks(), 2);
+  const AdhesionIntegral<2> integral(boundary, law, quadrature);
+  dealii::Vector<double>    s(4);
+  // On the first face s = -4 M t (1 - t) with its least value -M in the
+  // middle; the second one is closed. int (s/M)^2 = 16 / 30.
+  s(2) = -2. * M;
+  check("a trace that touches the kink",
+        std::abs(integral.energy(s) /
+                   (0.5 * a * M * M * 16. / 30. * boundary.faces[0].measure) -
+                 1.),
+        1e-13);
+  // Beyond -M between (1 -+ sqrt(1/2)) / 2 if it is twice as deep.
+  s(2) = -4. * M;
+  check("the broken zone of a parabola",
+        std::abs(broken_zone(boundary, law, integral, s) /
+                   (std::sqrt(0.5) * boundary.faces[0].measure) -
+                 1.),
+        1e-6);
+}
+
+
+
+void
+test_broken_zone_of_triangle()
+{
+  const double               M        = 0.002;
+  ContactBoundary<3>         boundary = make_boundary<3>();
+  const AdhesiveLaw          law(winkler_law(69., M).branches);
+  const ContactQuadrature<3> quadrature(
+    ContactQuadratureParameters::parse("gauss 5"), law.kinks(), 2);
+  const AdhesionIntegral<3> integral(boundary, law, quadrature);
+  dealii::Vector<double>    s(8);
+  // s = -2 M x: broken where x > 1/2, a quarter of the first face.
+  s(1) = -2. * M;
+  s(3) = s(4) = -M;
+  s(6)        = -M;
+  check("the broken zone on a triangle",
+        std::abs(
+          broken_zone(boundary, law, integral, s) /
+            (0.25 * (boundary.faces[0].measure + boundary.faces[1].measure)) -
+          1.),
+        1e-10);
+}
+
+
+
+void
+test_refusals()
+{
+  const auto print_error = [](const std::function<void()> &f) {
+    try
+      {
+        f();
+        std::cout << "no error" << std::endl;
+      }
+    catch (const std::invalid_argument &error)
+      {
+        std::cout << error.what() << std::endl;
+      }
+  };
+  for (const std::string rule : {"nodal", "midpoint", "exact"})
+    {
+      const auto parameters = ContactQuadratureParameters::parse(rule);
+      print_error([&] { ContactQuadrature<2>(parameters, {}, 2); });
+      print_error([&] { ContactQuadrature<3>(parameters, {}, 2); });
+    }
+}
+
+
+
+int
+main(int argc, char **)
+{
+  print_figures = argc > 1;
+  test_basis<2>();
+  test_basis<3>();
+  test_basis<4>();
+  test_integral<2>("exact", 1e-8);
+  test_integral<2>("gauss 8", 2e-2);
+  test_integral<3>("gauss 7", 2e-2);
+  test_touching_kink();
+  test_broken_zone_of_triangle();
+  std::cout << "neighbours of the common edge: "
+            << neighbours(make_boundary<3>())[4].size() << std::endl;
+  test_refusals();
+}

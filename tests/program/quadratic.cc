@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Scenes with quadratic displacements: J beside an independent program and
+// beside J without the error of the mesh, the foundation at every point,
+// methods beside each other, units, bodies of many kinds beside linear
+// displacements, and meshes that are refined.
+
+#include <debond/check/verification.h>
+#include <debond/input/parameters.h>
+#include <debond/solve/adaptive_loop.h>
+#include <debond/solve/method_choice.h>
+
+#include <cmath>
+
+#include "../check.h"
+
+using namespace Debond;
+
+namespace
+{
+  using Values = std::vector<std::string>;
+
+
+
+  Values
+  with(Values values, const Values &more)
+  {
+    values.insert(values.end(), more.begin(), more.end());
+    return values;
+  }
+
+
+
+  Parameters
+  parameters_of(const Values &values)
+  {
+    SceneTable        table;
+    std::stringstream none;
+    table.read(none, "test");
+    for (const std::string &value : values)
+      table.assign(value);
+    return table.parameters("test");
+  }
+
+
+
+  template <int dim>
+  struct Solved
+  {
+    explicit Solved(const Values &values)
+      : parameters(parameters_of(values))
+      , scene(parameters)
+    {
+      std::ostringstream log;
+      result = solve(choose_method(parameters), parameters, scene, log, false);
+      error  = verify(scene.problem(), scene.adhesion(), scene.law(), result.u)
+                .error();
+      estimate = estimate_error(scene.problem(),
+                                scene.adhesion(),
+                                scene.conditions(),
+                                scene.supports(),
+                                scene.loads(),
+                                result.u,
+                                result.functional)
+                   .relative();
+    }
+
+    double
+    J() const
+    {
+      return result.functional;
+    }
+
+    /// The largest u_nu at points of all faces, from the displacement there, in
+    /// parts of the largest one.
+    double
+    penetration() const
+    {
+      const auto                  &unknowns = scene.problem().unknowns();
+      const dealii::Vector<double> displacement =
+        unknowns.cartesian_displacement(result.u);
+      double largest = -1e300;
+      for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
+        for (const unsigned int f : cell->face_indices())
+          {
+            if (!cell->face(f)->at_boundary() ||
+                scene.conditions().contact.count(
+                  cell->face(f)->boundary_id()) == 0)
+              continue;
+            const CellNodes<dim>          nodes(cell);
+            const LinearSimplex<dim>      simplex(cell);
+            std::array<double, dim + 1>   barycentric = {};
+            std::array<unsigned int, dim> in_cell;
+            unsigned int                  opposite = dim * (dim + 1) / 2;
+            for (unsigned int v = 0; v < dim; ++v)
+              {
+                in_cell[v] =
+                  cell->reference_cell().face_to_cell_vertices(f, v, 1);
+                opposite -= in_cell[v];
+              }
+            const dealii::Tensor<1, dim> normal =
+              -simplex.gradients[opposite] / simplex.gradients[opposite].norm();
+            constexpr unsigned int n = 40;
+            for (unsigned int i = 0; i <= n; ++i)
+              for (unsigned int j = 0; j <= (dim == 3 ? n - i : 0); ++j)
+                {
+                  barycentric[in_cell[0]] = 1. - static_cast<double>(i + j) / n;
+                  barycentric[in_cell[1]] = static_cast<double>(i) / n;
+                  if constexpr (dim == 3)
+                    barycentric[in_cell[2]] = static_cast<double>(j) / n;
+                  const auto basis = bernstein(barycentric, 2);
+                  double     u_nu  = 0.;
+                  for (unsigned int k = 0; k < nodes.size; ++k)
+                    for (unsigned int d = 0; d < dim; ++d)
+                      u_nu +=
+                        basis[k] * normal[d] * displacement(nodes.dofs[k][d]);
+                  largest = std::max(largest, u_nu);
+                }
+          }
+      return largest / displacement.linfty_norm();
+    }
+
+    const Parameters parameters;
+    const Scene<dim> scene;
+    SolveResult      result;
+    double           error;
+    double           estimate;
+  };
+
+
+
+  const Values benchmark = {"Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)",
+                            "Contact law/Quadrature=exact"};
+
+  const Values quadratic = with(benchmark, {"Mesh/Degree=2"});
+
+  /// On refined meshes by two programs.
+  constexpr double limit = -5.91510e-04;
+
+
+
+  void
+  check_benchmark()
+  {
+    // A program of its own, in Python, with Gauss points on this mesh.
+    const Solved<2> coarse(with(quadratic, {"Mesh/Cells=20, 2"}));
+    check("20x2, J beside another program",
+          std::abs(coarse.J() / -5.892218422e-04 - 1.),
+          2e-6);
+    check("20x2, unknowns",
+          coarse.scene.problem().unknowns().n_free_dofs() == 671);
+    check("20x2, verification", coarse.error, 1e-9);
+    check("20x2, u_nu <= 0 at all points", coarse.penetration(), 1e-15);
+    const Solved<2> gauss(
+      with(quadratic, {"Mesh/Cells=20, 2", "Contact law/Quadrature=gauss 20"}));
+    check("gauss 20 beside exact", std::abs(gauss.J() / coarse.J() - 1.), 1e-5);
+
+    const Solved<2> fine(with(quadratic, {"Mesh/Cells=40, 4"}));
+    const double    error = fine.J() / limit - 1.;
+    check("40x4, J is above its limit", error < 0.);
+    check("40x4, error of J", std::abs(error), 2e-3);
+    check("40x4, estimate over error", std::abs(fine.estimate / -error), 1.3);
+    check("40x4, error over estimate", std::abs(-error / fine.estimate), 1.3);
+
+    for (const std::string method : {"energy bundle", "majorise minimise"})
+      {
+        const Solved<2> other(
+          with(quadratic, {"Mesh/Cells=20, 2", "Solver/Method=" + method}));
+        check(method + ", J", std::abs(other.J() / coarse.J() - 1.), 1e-9);
+        check(method + ", verification", other.error, 1e-5);
+      }
+    const Values    few = with(quadratic, {"Mesh/Cells=5, 1"});
+    const Solved<2> euclidean(with(few, {"Solver/Method=euclidean bundle"}));
+    check("euclidean bundle, J",
+          std::abs(euclidean.J() / Solved<2>(few).J() - 1.),
+          1e-5);
+
+    const Solved<2> pascal(with(quadratic,
+                                {"Mesh/Cells=20, 2",
+                                 "Mesh/Lengths=400, 40",
+                                 "Material/Young modulus=69e3",
+                                 "Loads/Traction top="
+                                 "0; if(x < 200, 690, -345)",
+                                 "Contact law/Bond stiffness=69",
+                                 "Contact law/Bond threshold=2"}));
+    check("in MPa and mm, J",
+          std::abs(pascal.J() * 1e-9 / coarse.J() - 1.),
+          1e-12);
+    check("in as many steps",
+          pascal.result.iterations == coarse.result.iterations);
+  }
+
+
+
+  /// J(x + h d) against the subgradient.
+  void
+  check_subgradient()
+  {
+    const Solved<2>        solved(with(quadratic, {"Mesh/Cells=10, 1"}));
+    const auto            &J = solved.scene.functional();
+    dealii::Vector<double> u = solved.result.u, d(u.size()), eta(u.size());
+    for (unsigned int i = 0; i < u.size(); ++i)
+      if (!solved.scene.problem().unknowns().is_constrained(i))
+        d(i) = 1e-4 * (std::fmod(0.618 * i, 1.) - 0.5);
+    u.add(0.3, d);
+    J.subgradient(u, eta);
+    const double           h     = 1e-4;
+    dealii::Vector<double> right = u, left = u;
+    right.add(h, d);
+    left.add(-h, d);
+    check("subgradient of J against differences",
+          std::abs((J.value(right) - J.value(left)) / (2. * h) / (eta * d) -
+                   1.),
+          1e-7);
+  }
+
+
+
+  /// Quadratic displacements are lower than linear ones on the same mesh, and
+  /// not lower than the limit that both have.
+  template <int dim>
+  void
+  check_body(const std::string &name, const Values &values, const double most)
+  {
+    const Solved<dim> one(values);
+    const Solved<dim> two(with(values, {"Mesh/Degree=2"}));
+    std::cout << name << std::endl;
+    check("  verification", two.error, 1e-6);
+    check("  u_nu <= 0 at all points", two.penetration(), 1e-15);
+    check("  J is lower than with linear displacements", two.J() < one.J());
+    check("  estimated error beside linear displacements",
+          two.estimate / one.estimate,
+          most);
+    if (print_figures)
+      std::cout << "  J " << one.J() << " (" << one.estimate << "), " << two.J()
+                << " (" << two.estimate << ')' << std::endl;
+  }
+
+
+
+  void
+  check_bodies()
+  {
+    const Values free = {"Contact law/Tangential displacement=free"};
+    check_body<2>("pad clamped on top",
+                  with(benchmark,
+                       {"Mesh/Lengths=0.1, 0.1",
+                        "Mesh/Cells=4, 4",
+                        "Boundary conditions/Clamped boundaries=top",
+                        "Contact law/Tangential displacement=free",
+                        "Loads/Traction top=",
+                        "Loads/Traction left=2; 0.5"}),
+                  0.7);
+    check_body<2>("L-shaped",
+                  {"Mesh/Source=generator",
+                   "Mesh/Generator=hyper_L",
+                   "Mesh/Arguments=0 : 2 : true",
+                   "Mesh/Refinements=1",
+                   "Boundary conditions/Clamped boundaries=0",
+                   "Boundary conditions/Contact boundary=3",
+                   "Contact law/Quadrature=exact",
+                   "Contact law/Tangential displacement=free",
+                   "Loads/Traction top=",
+                   "Loads/Traction 1=1; 0.5"},
+                  0.7);
+    check_body<2>("plane strain, nu = 0.4999",
+                  with(benchmark,
+                       {"Mesh/Cells=20, 2",
+                        "Material/Hypothesis=plane strain",
+                        "Material/Poisson ratio=0.4999"}),
+                  0.7);
+    check_body<2>("two materials",
+                  with(benchmark,
+                       {"Mesh/Cells=20, 2",
+                        "Parts/upper=y > 0.02",
+                        "Material/Young modulus upper=6.9"}),
+                  0.7);
+    check_body<2>("supports that move",
+                  with(benchmark,
+                       {"Mesh/Cells=20, 2",
+                        "Contact law/Tangential displacement=free",
+                        "Boundary conditions/Clamped boundaries=left",
+                        "Boundary conditions/Displacement right="
+                        "free; 0.003 + 0.01*y*y"}),
+                  0.7);
+    check_body<2>("turned, gauss 5",
+                  with(benchmark,
+                       {"Mesh/Cells=20, 2",
+                        "Mesh/Rotation=30",
+                        "Loads/Traction top=-0.2; 0.3",
+                        "Contact law/Quadrature=gauss 5"}),
+                  0.7);
+    check_body<3>("bar",
+                  {"Dimension=3",
+                   "Mesh/Lengths=0.4, 0.04, 0.04",
+                   "Mesh/Cells=6, 1, 1",
+                   "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345); 0",
+                   "Contact law/Quadrature=gauss 5"},
+                  0.7);
+  }
+
+
+
+  void
+  check_loop(const std::string &name, const Values &values)
+  {
+    const Parameters           parameters = parameters_of(values);
+    const MethodChoice         choice     = choose_method(parameters);
+    std::vector<AdaptiveLevel> levels;
+    auto scene = make_first_scene<2>(parameters, matrix_storage(choice));
+    const AdaptiveResult result = solve_adaptively(
+      choice,
+      parameters,
+      [&](const AdaptiveLevel &level) { levels.push_back(level); },
+      scene);
+    bool falls = true, is_held = true;
+    for (unsigned int k = 1; k < levels.size(); ++k)
+      falls = falls && levels[k].functional < levels[k - 1].functional;
+    for (const AdaptiveLevel &level : levels)
+      is_held = is_held && level.functional > limit * (1. + 2e-6);
+    std::cout << name << std::endl;
+    check("  several meshes", levels.size() >= 3);
+    check("  J falls on each", falls);
+    check("  and stays above its limit", is_held);
+    check("  nothing is short", result.shortfall.empty());
+    check("  error of J",
+          std::abs(result.solve.functional / limit - 1.),
+          1.3e-4);
+    check("  unknowns", levels.back().unknowns, 2500.);
+    // With the state of the mesh before; kinks of the trace move.
+    check("  steps on the last mesh",
+          levels.back().iterations < levels.front().iterations);
+    if (print_figures)
+      for (const AdaptiveLevel &level : levels)
+        std::cout << "  " << level.unknowns << ' '
+                  << level.functional / limit - 1. << ' '
+                  << level.estimated_error << ' ' << level.iterations
+                  << std::endl;
+  }
+} // namespace
+
+
+
+int
+main(int argc, char **)
+{
+  print_figures = argc > 1;
+  check_benchmark();
+  check_subgradient();
+  check_bodies();
+  check_loop("refined meshes",
+             with(quadratic, {"Mesh/Cells=20, 2", "Accuracy/Target=1e-4"}));
+}
