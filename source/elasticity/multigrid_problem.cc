@@ -3,11 +3,8 @@
 #include <deal.II/lac/solver_control.h>
 
 #include <debond/elasticity/multigrid_problem.h>
-#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace Debond
 {
@@ -35,12 +32,7 @@ namespace Debond
     void
     vmult(dealii::Vector<double> &dst, const dealii::Vector<double> &src) const
     {
-      problem.A.vmult(dst, src);
-      const dealii::Vector<double> s     = problem.contact.trace(src);
-      const Eigen::VectorXd        force = problem.E * eigen_view(s);
-      for (unsigned int i = 0; i < s.size(); ++i)
-        dst(problem.normals[i]) += force(i);
-      problem.restrict_to_free(dst);
+      problem.multiply_majorant(dst, src);
     }
 
   private:
@@ -71,100 +63,46 @@ namespace Debond
 
 
 
+  namespace
+  {
+    template <int dim>
+    dealii::Vector<double>
+    diagonal_of(const ElasticProblem<dim> &problem)
+    {
+      dealii::Vector<double> result(problem.unknowns().n_dofs());
+      for (unsigned int i = 0; i < result.size(); ++i)
+        result(i) = problem.diagonal_entry(i);
+      return result;
+    }
+  } // namespace
+
+
+
   template <int dim>
-  MultigridProblem<dim>::MultigridProblem(
-    const ElasticProblem<dim>   &elastic_problem,
-    const PiecewiseQuadratic    &nonsmooth,
-    const Multigrid             &preconditioner,
-    dealii::Vector<double>      &start,
-    const std::function<bool()> &go_on)
-    : A(elastic_problem.trilinos_matrix())
-    , f(elastic_problem.load())
-    , phi(nonsmooth)
+  MultigridProblem<dim>::MultigridProblem(const ElasticProblem<dim> &problem,
+                                          const PiecewiseQuadratic  &nonsmooth,
+                                          const Multigrid &preconditioner,
+                                          dealii::Vector<double>      &start,
+                                          const std::function<bool()> &go_on)
+    : DisplacementProblem(problem.load(),
+                          nonsmooth,
+                          {problem.unknowns().contact().normals().begin(),
+                           problem.unknowns().contact().normals().end()},
+                          diagonal_of(problem),
+                          start,
+                          go_on)
+    , A(problem.trilinos_matrix())
     , multigrid(preconditioner)
-    , u(start)
-    , may_go_on(go_on ? go_on : []() { return true; })
-    , contact(elastic_problem.unknowns().contact())
-    , normals(contact.normals())
-    , active(contact.size())
-  {
-    diagonal.reinit(u);
-    for (unsigned int i = 0; i < u.size(); ++i)
-      diagonal(i) = A.diag_element(i);
-    const dealii::Vector<double> s = contact.trace(u);
-    for (unsigned int i = 0; i < s.size(); ++i)
-      active[i] = s(i) == 0.;
-  }
+  {}
 
 
 
   template <int dim>
-  MajorantProblem::State
-  MultigridProblem<dim>::evaluate()
+  void
+  MultigridProblem<dim>::multiply(dealii::Vector<double>       &dst,
+                                  const dealii::Vector<double> &src) const
   {
-    dealii::Vector<double> internal(u.size());
-    A.vmult(internal, u);
-    const dealii::Vector<double> s = contact.trace(u);
-    dealii::Vector<double>       xi(s.size());
-    phi.subgradient(s, xi);
-
-    State        state;
-    const double energy   = 0.5 * (internal * u);
-    const double work     = f * u;
-    const double adhesion = phi.value(s);
-    state.functional      = energy - work + adhesion;
-
-    // The terms of a row of A u are as large as diagonal times displacement,
-    // and cancel.
-    dealii::Vector<double> terms = diagonal;
-    terms.scale(u);
-    force_rounding =
-      4. * std::numeric_limits<double>::epsilon() * terms.l2_norm();
-    state.functional_rounding = force_rounding * u.l2_norm();
-
-    dealii::Vector<double> violation = f;
-    violation -= internal;
-    // Vectors without entries have no norm in deal.II.
-    const double adhesive_force = xi.size() == 0 ? 0. : xi.l2_norm();
-    largest_force = std::max({f.l2_norm(), internal.l2_norm(), adhesive_force});
-    state.n_active = 0;
-    for (unsigned int i = 0; i < normals.size(); ++i)
-      {
-        // On a node in contact only a force that pulls violates the law.
-        double &force = violation(normals[i]);
-        force -= xi(i);
-        if (s(i) == 0.)
-          {
-            ++state.n_active;
-            force = std::min(force, 0.);
-          }
-      }
-    const double scale      = largest_force == 0. ? 1. : 1. / largest_force;
-    state.residual          = scale * violation.l2_norm();
-    state.residual_rounding = scale * force_rounding;
-    return state;
-  }
-
-
-
-  template <int dim>
-  bool
-  MultigridProblem<dim>::majorise()
-  {
-    // Phi <= Phi(s_k) + xi'(s - s_k) + 1/2 (s - s_k)'E (s - s_k).
-    const dealii::Vector<double> s = contact.trace(u);
-    dealii::Vector<double>       xi(s.size());
-    phi.subgradient(s, xi);
-    const Eigen::SparseMatrix<double> previous_E   = E;
-    const Eigen::VectorXd             previous_b_c = b_c;
-    E                                              = phi.curvature(s);
-    const Eigen::VectorXd E_s                      = E * eigen_view(s);
-    b_c                                            = E_s - eigen_view(xi);
-    if (previous_b_c.size() != b_c.size())
-      return true;
-    constexpr double noise = 1e-12;
-    return (b_c - previous_b_c).norm() > noise * (E_s.norm() + b_c.norm()) ||
-           (E - previous_E).norm() > noise * E.norm();
+    A.vmult(dst, src);
   }
 
 
@@ -257,31 +195,6 @@ namespace Debond
           }
       }
     return result;
-  }
-
-
-
-  template <int dim>
-  void
-  MultigridProblem<dim>::majorant_force(dealii::Vector<double> &force) const
-  {
-    A.vmult(force, u);
-    force.sadd(-1., 1., f);
-    const dealii::Vector<double> s   = contact.trace(u);
-    const Eigen::VectorXd        E_s = E * eigen_view(s);
-    for (unsigned int i = 0; i < normals.size(); ++i)
-      force(normals[i]) += b_c(i) - E_s(i);
-  }
-
-
-
-  template <int dim>
-  void
-  MultigridProblem<dim>::restrict_to_free(dealii::Vector<double> &v) const
-  {
-    for (unsigned int i = 0; i < normals.size(); ++i)
-      if (active[i] != 0)
-        v(normals[i]) = 0.;
   }
 
 

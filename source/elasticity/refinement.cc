@@ -137,6 +137,38 @@ namespace Debond
 
 
   template <int dim>
+  LevelCorrection<dim>::LevelCorrection(ElasticLevels<dim> &elastic_levels)
+    : levels(elastic_levels)
+  {}
+
+
+
+  template <int dim>
+  void
+  LevelCorrection<dim>::prepare(const Eigen::SparseMatrix<double> &E,
+                                const ActiveSet                   &held)
+  {
+    std::vector<unsigned int> held_normals;
+    for (unsigned int i = 0; i < held.size(); ++i)
+      if (held[i] != 0)
+        held_normals.push_back(levels.normals(0)[i]);
+    levels.cycle().truncate(0, held_normals, levels.normals(0), E);
+  }
+
+
+
+  template <int dim>
+  dealii::Vector<double>
+  LevelCorrection<dim>::solve(const dealii::Vector<double> &r) const
+  {
+    dealii::Vector<double> result(r.size());
+    levels.cycle().vmult(result, r);
+    return result;
+  }
+
+
+
+  template <int dim>
   double
   energy_rounding(const ElasticProblem<dim>    &problem,
                   const PiecewiseQuadratic     &phi,
@@ -507,4 +539,6 @@ namespace Debond
          CorrectionSolver &,
          const std::function<bool()> &,
          dealii::Vector<double> &);
+  template class LevelCorrection<2>;
+  template class LevelCorrection<3>;
 } // namespace Debond

@@ -15,4 +15,26 @@ namespace Debond
     return narrowest != names.end() ? narrowest->first :
                                       "boundary " + std::to_string(id);
   }
+
+
+
+  bool
+  BodyDescription::has_coarse_levels() const
+  {
+    return false;
+  }
+
+
+
+  template <int dim>
+  std::vector<CoarseLevel<dim>>
+  Body<dim>::coarse_levels(const std::vector<dealii::Point<dim>> &) const
+  {
+    return {};
+  }
+
+
+
+  template class Body<2>;
+  template class Body<3>;
 } // namespace Debond

@@ -230,6 +230,15 @@ namespace Debond
 
 
   template <int dim>
+  bool
+  PartedBody<dim>::has_coarse_levels() const
+  {
+    return whole->has_coarse_levels();
+  }
+
+
+
+  template <int dim>
   PieceNames
   PartedBody<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
   {
@@ -344,6 +353,16 @@ namespace Debond
     const std::vector<dealii::Point<dim>>     &points) const
   {
     return whole->interpolate(mesh, values, points);
+  }
+
+
+
+  template <int dim>
+  std::vector<CoarseLevel<dim>>
+  PartedBody<dim>::coarse_levels(
+    const std::vector<dealii::Point<dim>> &vertices) const
+  {
+    return whole->coarse_levels(vertices);
   }
 
 

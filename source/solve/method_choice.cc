@@ -106,7 +106,7 @@ namespace Debond
     const double            limit  = memory_limit(solver);
     const double direct_memory     = memory_with_factorisation(size, dim);
 
-    MethodChoice choice = {solver.method, solver.linear_solver, "", 0.};
+    MethodChoice choice = {solver.method, solver.linear_solver, "", 0., false};
     if (choice.method == SolverMethod::euclidean_bundle)
       {
         choice.linear_solver = LinearSolver::none;
@@ -162,9 +162,11 @@ namespace Debond
                  " s with a factorisation, " + rounded(multigrid_seconds) +
                  " s with multigrid");
           }
+        choice.has_levels = choice.linear_solver == LinearSolver::multigrid &&
+                            parameters.body->has_coarse_levels();
         choice.memory = choice.linear_solver == LinearSolver::direct ?
                           direct_memory :
-                          memory_with_multigrid(size, dim);
+                          memory_with_multigrid(size, dim, choice.has_levels);
       }
 
     if (!parameters.load_path.factors.empty())

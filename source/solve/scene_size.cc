@@ -87,9 +87,13 @@ namespace Debond
 
 
   double
-  memory_with_multigrid(const SceneSize &size, const unsigned int dimension)
+  memory_with_multigrid(const SceneSize   &size,
+                        const unsigned int dimension,
+                        const bool         has_levels)
   {
-    return memory_of_program + (dimension == 2 ? 1700. : 4600.) * size.unknowns;
+    const double bytes = has_levels ? (dimension == 2 ? 1300. : 2700.) :
+                                      (dimension == 2 ? 1700. : 4600.);
+    return memory_of_program + bytes * size.unknowns;
   }
 
 
@@ -131,6 +135,8 @@ namespace Debond
   {
     const SceneSize size = scene_size(parameters);
     const double    N    = size.unknowns;
+    if (parameters.body->has_coarse_levels())
+      return (parameters.dimension == 2 ? 4e-6 : 1.2e-5) * N;
     if (parameters.dimension == 2)
       return 5e-6 * N;
 

@@ -5,6 +5,8 @@
 #include <debond/base/text.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/elasticity/contact_condensation.h>
+#include <debond/elasticity/elastic_levels.h>
+#include <debond/elasticity/level_problem.h>
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/elasticity/multigrid.h>
 #include <debond/elasticity/multigrid_problem.h>
@@ -12,6 +14,7 @@
 #include <debond/optimization/bundle/metric_direction.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/optimization/majorise/restricted_function.h>
 #include <debond/solve/progress.h>
 #include <debond/solve/scene_size.h>
 #include <debond/solve/solve.h>
@@ -38,6 +41,9 @@ namespace Debond
 
     /// On coarser meshes, where the time for a factorisation does not count.
     constexpr double largest_coarse_factorisation = 3e4;
+
+    /// A level needs to be solved to what the next finer one makes of it.
+    constexpr double coarse_level_tolerance = 1e-4;
 
 
 
@@ -505,6 +511,165 @@ namespace Debond
       MultigridCorrection solver(multigrid, normals);
       refine_result(scene, solver, watch, result);
     }
+
+
+
+    void
+    keep_admissible(const std::vector<unsigned int> &normals, Vector &u)
+    {
+      for (const unsigned int normal : normals)
+        u(normal) = std::min(u(normal), 0.);
+    }
+
+
+
+    /// Minima on the coarser levels, each the start of the next finer one, from
+    /// that of the first coarser mesh that is factorised, on which the search
+    /// of the scene is done; @p result gets its counts and notes.
+    template <int dim>
+    Vector
+    start_from_levels(const Parameters     &parameters,
+                      const Scene<dim>     &scene,
+                      ElasticLevels<dim>   &levels,
+                      const InterruptGuard &guard,
+                      const Watch          &fine_watch,
+                      SolveResult          &result)
+    {
+      std::shared_ptr<const Body<dim>> body = scene.body().coarser();
+      unsigned int                     l    = 1;
+      for (; body &&
+             scene_size(*body, dim, parameters.contact_boundaries).unknowns >
+               largest_coarse_factorisation;
+           ++l)
+        body = body->coarser();
+
+      Vector     u;
+      const bool is_solved = body != nullptr;
+      if (is_solved)
+        {
+          Parameters coarse = parameters;
+          coarse.solver.start.clear(); // belongs to the finest mesh
+          coarse.solver.prove = false;
+          const Scene<dim> coarse_scene(coarse, body, MatrixStorage::serial);
+          Watch            watch(guard, fine_watch);
+          SolveResult      start;
+          solve_condensed(SolverMethod::majorise_minimise,
+                          coarse.solver,
+                          coarse_scene,
+                          nullptr,
+                          nullptr,
+                          watch,
+                          start);
+          result.notes                   = start.notes;
+          result.minimum                 = start.minimum;
+          result.minimum.proof_attempted = false;
+          if (!can_be_verified(start.status))
+            result.notes.push_back(
+              "start on the mesh of " + std::to_string(coarse_scene.n_cells()) +
+              (dim == 2 ? " triangles: " : " tetrahedra: ") + start.message);
+          // The subspaces are those of what is zero where it is prescribed.
+          if (scene.problem().unknowns().has_lifting() ||
+              l >= levels.n_levels())
+            return interpolate_displacement(coarse_scene.body(),
+                                            coarse_scene.problem(),
+                                            start.u,
+                                            scene.problem());
+          u = levels.from_vertex_displacements(
+            l,
+            body->interpolate(coarse_scene.problem()
+                                .unknowns()
+                                .dof_handler()
+                                .get_triangulation(),
+                              vertex_displacements(coarse_scene.problem(),
+                                                   start.u),
+                              levels.vertices(l)));
+          keep_admissible(levels.normals(l), u);
+        }
+      else
+        {
+          l = levels.n_levels() - 1;
+          u.reinit(levels.n_unknowns(l));
+        }
+
+      MajoriseMinimiseParameters coarse_parameters =
+        parameters.solver.majorise_minimise;
+      coarse_parameters.tolerance =
+        std::max(coarse_parameters.tolerance, coarse_level_tolerance);
+      const unsigned int solved_level = is_solved ? l : levels.n_levels();
+      for (; l > 0; --l)
+        {
+          if (l != solved_level && fine_watch.may_go_on())
+            {
+              const RestrictedFunction     phi(scene.adhesion(),
+                                           levels.trace_prolongation(l));
+              LevelProblem<dim>            problem(levels, l, phi, u, [&]() {
+                return fine_watch.may_go_on();
+              });
+              const MajoriseMinimiseResult minimum =
+                MajoriseMinimise(coarse_parameters)
+                  .minimize(problem, [&](const MajoriseMinimiseIteration &) {
+                    return fine_watch.may_go_on();
+                  });
+              if (!can_be_verified(minimum.status))
+                result.notes.push_back("start on " +
+                                       std::to_string(levels.n_unknowns(l)) +
+                                       " unknowns: " + minimum.message);
+            }
+          u = levels.prolongate(l, u);
+          keep_admissible(levels.normals(l - 1), u);
+        }
+      return u;
+    }
+
+
+
+    /// By the coarser levels of the body, one truncated cycle for each
+    /// majorant.
+    template <int dim>
+    void
+    solve_by_levels(const Parameters     &parameters,
+                    const Scene<dim>     &scene,
+                    const InterruptGuard &guard,
+                    Watch                &watch,
+                    SolveResult          &result)
+    {
+      dealii::Timer timer;
+      const double  energy =
+        prescribed_energy(scene.problem(), scene.adhesion());
+      watch.add_energy(energy);
+      watch.announce("multigrid", scene.problem().unknowns().n_free_dofs());
+      const auto levels =
+        ElasticLevels<dim>::make(scene.body(), scene.problem());
+      result.parts["multigrid setup"] = timer.wall_time();
+
+      timer.restart();
+      result.u =
+        start_from_levels(parameters, scene, *levels, guard, watch, result);
+      result.parts["coarser meshes"] = timer.wall_time();
+      if (!watch.may_go_on())
+        {
+          result.status  = SolverStatus::interrupted;
+          result.message = "multigrid: the start from coarser meshes was "
+                           "interrupted, and is the result.";
+          return;
+        }
+
+      timer.restart();
+      LevelProblem<dim> problem(*levels,
+                                0,
+                                scene.adhesion(),
+                                result.u,
+                                [&watch]() { return watch.may_go_on(); });
+      add_majorise_result(MajoriseMinimise(parameters.solver.majorise_minimise)
+                            .minimize(problem, std::ref(watch)),
+                          result);
+      for (MajoriseMinimiseIteration &iteration : result.majorise_history)
+        iteration.functional += energy;
+      result.parts["contact"] = timer.wall_time();
+
+      LevelCorrection<dim> solver(*levels);
+      refine_result(scene, solver, watch, result);
+    }
   } // namespace
 
 
@@ -552,7 +717,8 @@ namespace Debond
   MatrixStorage
   matrix_storage(const MethodChoice &choice)
   {
-    return choice.linear_solver == LinearSolver::multigrid ?
+    return choice.linear_solver == LinearSolver::multigrid &&
+               !choice.has_levels ?
              MatrixStorage::trilinos :
              MatrixStorage::serial;
   }
@@ -578,6 +744,8 @@ namespace Debond
       if (choice.method == SolverMethod::euclidean_bundle)
         solve_by_euclidean_bundle(
           parameters.solver.bundle, scene, checkpoints, *watch, result);
+      else if (choice.has_levels)
+        solve_by_levels(parameters, scene, guard, *watch, result);
       else if (choice.linear_solver == LinearSolver::multigrid)
         solve_by_multigrid(parameters, scene, guard, *watch, result);
       else

@@ -5,6 +5,7 @@
 #include <deal.II/lac/lapack_full_matrix.h>
 #include <deal.II/lac/vector.h>
 
+#include <debond/elasticity/elastic_levels.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/multigrid.h>
 #include <debond/linear_algebra/condensation.h>
@@ -83,6 +84,27 @@ namespace Debond
     const Multigrid                             &multigrid;
     std::vector<dealii::types::global_dof_index> normals;
     ActiveSet                                    active;
+  };
+
+
+
+  /// By the truncated cycle of the finest level.
+  template <int dim>
+  class LevelCorrection : public CorrectionSolver
+  {
+  public:
+    /// Keeps a reference, and truncates the cycle.
+    explicit LevelCorrection(ElasticLevels<dim> &levels);
+
+    void
+    prepare(const Eigen::SparseMatrix<double> &E,
+            const ActiveSet                   &held) override;
+
+    dealii::Vector<double>
+    solve(const dealii::Vector<double> &r) const override;
+
+  private:
+    ElasticLevels<dim> &levels;
   };
 
 

@@ -6,6 +6,8 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/grid/tria.h>
 
+#include <debond/linear_algebra/multigrid/interpolation.h>
+
 #include <array>
 #include <map>
 #include <memory>
@@ -94,6 +96,21 @@ namespace Debond
 
     virtual BodyShape
     shape() const = 0;
+
+    /// Whether Body::coarse_levels() has any.
+    virtual bool
+    has_coarse_levels() const;
+  };
+
+
+
+  /// A coarser mesh that need not be built: its vertices, by numbers of their
+  /// own, and its P1 fields at those of the next finer mesh.
+  template <int dim>
+  struct CoarseLevel
+  {
+    std::vector<dealii::Point<dim>> vertices;
+    Interpolation                   to_finer;
   };
 
 
@@ -121,6 +138,12 @@ namespace Debond
     interpolate(const dealii::Triangulation<dim>          &mesh,
                 const std::vector<dealii::Tensor<1, dim>> &values,
                 const std::vector<dealii::Point<dim>>     &points) const = 0;
+
+    /// The meshes of the coarser bodies as far as they are good for multigrid,
+    /// finest first, down to one that takes nothing to solve; @p vertices are
+    /// those of the body's own mesh, in any order. Empty if there are none.
+    virtual std::vector<CoarseLevel<dim>>
+    coarse_levels(const std::vector<dealii::Point<dim>> &vertices) const;
   };
 } // namespace Debond
 

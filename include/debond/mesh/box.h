@@ -64,11 +64,15 @@ namespace Debond
     BodyShape
     shape() const override;
 
+    bool
+    has_coarse_levels() const override;
+
     PieceNames
     make_mesh(dealii::Triangulation<dim> &mesh) const override;
 
-    /// Odd numbers of cells are rounded up: a box of one cell is its own
-    /// coarsest.
+    /// Half as many cells in the directions in which they are shortest: those
+    /// of stretched cells get rounder first. Odd numbers are rounded up: a box
+    /// of one cell is its own coarsest.
     std::unique_ptr<const Body<dim>>
     coarser() const override;
 
@@ -77,7 +81,15 @@ namespace Debond
                 const std::vector<dealii::Tensor<1, dim>> &values,
                 const std::vector<dealii::Point<dim>> &points) const override;
 
+    std::vector<CoarseLevel<dim>>
+    coarse_levels(
+      const std::vector<dealii::Point<dim>> &vertices) const override;
+
   private:
+    /// Those of coarse_levels().
+    std::vector<BoxParameters>
+    coarse_boxes() const;
+
     const BoxParameters parameters;
   };
 } // namespace Debond

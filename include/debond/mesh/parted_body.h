@@ -50,6 +50,9 @@ namespace Debond
     BodyShape
     shape() const override;
 
+    bool
+    has_coarse_levels() const override;
+
     /// Throws PartError if a part has no face (no cell).
     PieceNames
     make_mesh(dealii::Triangulation<dim> &mesh) const override;
@@ -62,6 +65,11 @@ namespace Debond
     interpolate(const dealii::Triangulation<dim>          &mesh,
                 const std::vector<dealii::Tensor<1, dim>> &values,
                 const std::vector<dealii::Point<dim>> &points) const override;
+
+    /// Those of the whole.
+    std::vector<CoarseLevel<dim>>
+    coarse_levels(
+      const std::vector<dealii::Point<dim>> &vertices) const override;
 
   private:
     const std::shared_ptr<const Body<dim>> whole;

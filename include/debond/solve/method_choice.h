@@ -39,6 +39,9 @@ namespace Debond
 
     /// Estimate of the program's peak, in bytes.
     double memory;
+
+    /// Whether multigrid has the coarser meshes of the body, not only A.
+    bool has_levels = false;
   };
 
   /// Chooses by the numbers of unknowns and contact nodes, the dimension and

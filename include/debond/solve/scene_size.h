@@ -34,7 +34,9 @@ namespace Debond
                             const unsigned int dimension);
 
   double
-  memory_with_multigrid(const SceneSize &size, const unsigned int dimension);
+  memory_with_multigrid(const SceneSize   &size,
+                        const unsigned int dimension,
+                        const bool         has_levels);
 
   /// Without any linear solver: mesh, A and a bundle of vectors.
   double

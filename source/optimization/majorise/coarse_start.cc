@@ -4,6 +4,7 @@
 #include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/optimization/majorise/restricted_function.h>
 
 #include <algorithm>
 
@@ -21,44 +22,6 @@ namespace Debond
       std::copy(product.begin(), product.end(), result.begin());
       return result;
     }
-
-
-
-    /// s_k -> Phi(P s_k).
-    class Restricted : public PiecewiseQuadratic
-    {
-    public:
-      Restricted(const PiecewiseQuadratic          &phi,
-                 const Eigen::SparseMatrix<double> &prolongation)
-        : phi(phi)
-        , P(prolongation)
-      {}
-
-      double
-      value(const dealii::Vector<double> &s) const override
-      {
-        return phi.value(times(P, s));
-      }
-
-      void
-      subgradient(const dealii::Vector<double> &s,
-                  dealii::Vector<double>       &xi) const override
-      {
-        dealii::Vector<double> fine(static_cast<unsigned int>(P.rows()));
-        phi.subgradient(times(P, s), fine);
-        xi = times(P.transpose(), fine);
-      }
-
-      Eigen::SparseMatrix<double>
-      curvature(const dealii::Vector<double> &s) const override
-      {
-        return P.transpose() * phi.curvature(times(P, s)) * P;
-      }
-
-    private:
-      const PiecewiseQuadratic          &phi;
-      const Eigen::SparseMatrix<double> &P;
-    };
 
 
 
@@ -95,7 +58,7 @@ namespace Debond
       const Eigen::SparseMatrix<double> &P        = *level;
       const dealii::FullMatrix<double>   coarse_S = galerkin_product(S, P);
       const dealii::Vector<double>       coarse_g = times(P.transpose(), g);
-      const Restricted                   coarse_phi(phi, P);
+      const RestrictedFunction           coarse_phi(phi, P);
 
       dealii::Vector<double>       s = start_on_level(coarse_S,
                                                 coarse_g,

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_displacement_problem_h
+#define debond_elasticity_displacement_problem_h
+
+#include <deal.II/lac/vector.h>
+
+#include <debond/optimization/majorise/bound_qp.h>
+#include <debond/optimization/majorise/majorant_problem.h>
+#include <debond/optimization/piecewise_quadratic.h>
+
+#include <Eigen/SparseCore>
+
+#include <functional>
+#include <vector>
+
+namespace Debond
+{
+  /**
+   * J = 1/2 <A u, u> - <f, u> + Phi(s), s <= 0, on all unknowns u, of which
+   * some are the normal displacements s: what does not depend on how majorants
+   * are minimised.
+   *
+   * Residuals are Euclidean norms of forces, relative to the largest of the
+   * load, the internal forces and the forces of the foundation.
+   */
+  class DisplacementProblem : public MajorantProblem
+  {
+  public:
+    State
+    evaluate() override;
+
+    bool
+    majorise() override;
+
+  protected:
+    /// Keeps references; @p start is the current point, @p diagonal that of A.
+    DisplacementProblem(const dealii::Vector<double>    &load,
+                        const PiecewiseQuadratic        &nonsmooth,
+                        const std::vector<unsigned int> &normals,
+                        const dealii::Vector<double>    &diagonal,
+                        dealii::Vector<double>          &start,
+                        const std::function<bool()>     &go_on);
+
+    /// dst = A src.
+    virtual void
+    multiply(dealii::Vector<double>       &dst,
+             const dealii::Vector<double> &src) const = 0;
+
+    dealii::Vector<double>
+    trace(const dealii::Vector<double> &v) const;
+
+    /// Minus the majorant's gradient at u: a force for each unknown.
+    void
+    majorant_force(dealii::Vector<double> &force) const;
+
+    /// dst = (A + E) src on the unknowns that are not active, zero on the
+    /// others.
+    void
+    multiply_majorant(dealii::Vector<double>       &dst,
+                      const dealii::Vector<double> &src) const;
+
+    /// Sets the normals of active nodes to zero.
+    void
+    restrict_to_free(dealii::Vector<double> &v) const;
+
+    const dealii::Vector<double>   &f;
+    const PiecewiseQuadratic       &phi;
+    dealii::Vector<double>         &u;
+    const std::vector<unsigned int> normals;  ///< the unknowns s
+    const dealii::Vector<double>    diagonal; ///< of A
+    const std::function<bool()>     may_go_on;
+
+    /// As of the last evaluate().
+    double largest_force  = 0.; ///< what residuals are relative to
+    double force_rounding = 0.; ///< what rounding leaves in A u
+
+    /// The majorant 1/2 <A v, v> - <f, v> + 1/2 s'E s - b_c's + const.
+    Eigen::SparseMatrix<double> E;
+    Eigen::VectorXd             b_c;
+    ActiveSet                   active;
+  };
+} // namespace Debond
+
+#endif

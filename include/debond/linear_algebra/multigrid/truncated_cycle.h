@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_linear_algebra_multigrid_truncated_cycle_h
+#define debond_linear_algebra_multigrid_truncated_cycle_h
+
+#include <deal.II/lac/sparse_matrix.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/linear_algebra/multigrid/transfer.h>
+
+#include <Eigen/SparseCore>
+
+#include <memory>
+#include <vector>
+
+namespace Debond
+{
+  /**
+   * One V-cycle for A + E with some unknowns held at zero, symmetric and
+   * positive definite: a preconditioner for conjugate gradients that costs no
+   * more steps than for A alone. E couples few unknowns.
+   *
+   * Coarser matrices are Galerkin products with the rows of the held unknowns
+   * left out of the finest prolongation (truncation; Kornhuber, Krause, Comput.
+   * Vis. Sci. 4, 2001; Graeser, Sack, Sander, 2009): they differ from those of
+   * A only next to these unknowns and those of E, where they are made anew.
+   * Smoothers are Chebyshev polynomials of degree 2 in D^{-1}A with the blocks
+   * of the diagonal D; the coarsest matrix is factorised. Numbers are in single
+   * precision, but for the products that make the matrices.
+   */
+  template <int dim>
+  class TruncatedCycle
+  {
+  public:
+    /// @p frames are those of the unknowns of A, @p interpolations those from
+    /// each coarser level to the next finer one, finest first. Keeps a
+    /// reference to A.
+    TruncatedCycle(const dealii::SparseMatrix<double> &A,
+                   const NodeFrames<dim>              &frames,
+                   std::vector<Interpolation>          interpolations);
+
+    TruncatedCycle(const TruncatedCycle &) = delete;
+
+    ~TruncatedCycle();
+
+    unsigned int
+    n_levels() const;
+
+    /// From the level l + 1 to the level l.
+    const Transfer<dim> &
+    transfer(const unsigned int l) const;
+
+    /// The Galerkin product of A on the level l > 0, nothing truncated.
+    const BlockMatrix<dim, double> &
+    matrix(const unsigned int l) const;
+
+    /// From now on the cycle is that for the matrix of the given level, with @p
+    /// held unknowns and E[i, j] added at the unknowns coupled[i], coupled[j].
+    /// Entries of E must be at nodes that A couples.
+    void
+    truncate(const unsigned int                 level,
+             const std::vector<unsigned int>   &held,
+             const std::vector<unsigned int>   &coupled,
+             const Eigen::SparseMatrix<double> &E);
+
+    /// dst = B src, on the level of truncate().
+    void
+    vmult(dealii::Vector<double> &dst, const dealii::Vector<double> &src) const;
+
+    /// Bytes.
+    std::size_t
+    memory_consumption() const;
+
+  private:
+    struct Level;
+    class CoarseSolver;
+
+    /// D^{-1} and the largest eigenvalue of D^{-1}A.
+    void
+    prepare_smoother(Level &level);
+
+    static void
+    invert_diagonal(Level &level, const unsigned int node);
+
+    /// Adds the changes to the matrix of the level.
+    static void
+    change(Level &level, const BlockMatrix<dim, double> &changes);
+
+    void
+    cycle(const unsigned int l) const;
+
+    const dealii::SparseMatrix<double> &A;
+    std::vector<Level>                  levels;
+    std::unique_ptr<CoarseSolver>       coarse_solver;
+    unsigned int                        first = 0; ///< level of the cycle
+    std::vector<unsigned int>           held_unknowns;
+  };
+} // namespace Debond
+
+#endif

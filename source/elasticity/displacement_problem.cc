@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/elasticity/displacement_problem.h>
+#include <debond/linear_algebra/eigen_view.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace Debond
+{
+  DisplacementProblem::DisplacementProblem(
+    const dealii::Vector<double>    &load,
+    const PiecewiseQuadratic        &nonsmooth,
+    const std::vector<unsigned int> &contact_normals,
+    const dealii::Vector<double>    &diagonal_of_A,
+    dealii::Vector<double>          &start,
+    const std::function<bool()>     &go_on)
+    : f(load)
+    , phi(nonsmooth)
+    , u(start)
+    , normals(contact_normals)
+    , diagonal(diagonal_of_A)
+    , may_go_on(go_on ? go_on : []() { return true; })
+    , active(contact_normals.size())
+  {
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      active[i] = u(normals[i]) == 0.;
+  }
+
+
+
+  dealii::Vector<double>
+  DisplacementProblem::trace(const dealii::Vector<double> &v) const
+  {
+    dealii::Vector<double> s(static_cast<unsigned int>(normals.size()));
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      s(i) = v(normals[i]);
+    return s;
+  }
+
+
+
+  MajorantProblem::State
+  DisplacementProblem::evaluate()
+  {
+    dealii::Vector<double> internal(u.size());
+    multiply(internal, u);
+    const dealii::Vector<double> s = trace(u);
+    dealii::Vector<double>       xi(s.size());
+    phi.subgradient(s, xi);
+
+    State        state;
+    const double energy   = 0.5 * (internal * u);
+    const double work     = f * u;
+    const double adhesion = phi.value(s);
+    state.functional      = energy - work + adhesion;
+
+    // The terms of a row of A u are as large as diagonal times displacement,
+    // and cancel.
+    dealii::Vector<double> terms = diagonal;
+    terms.scale(u);
+    force_rounding =
+      4. * std::numeric_limits<double>::epsilon() * terms.l2_norm();
+    state.functional_rounding = force_rounding * u.l2_norm();
+
+    dealii::Vector<double> violation = f;
+    violation -= internal;
+    // Vectors without entries have no norm in deal.II.
+    const double adhesive_force = xi.size() == 0 ? 0. : xi.l2_norm();
+    largest_force = std::max({f.l2_norm(), internal.l2_norm(), adhesive_force});
+    state.n_active = 0;
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      {
+        // On a node in contact only a force that pulls violates the law.
+        double &force = violation(normals[i]);
+        force -= xi(i);
+        if (s(i) == 0.)
+          {
+            ++state.n_active;
+            force = std::min(force, 0.);
+          }
+      }
+    const double scale      = largest_force == 0. ? 1. : 1. / largest_force;
+    state.residual          = scale * violation.l2_norm();
+    state.residual_rounding = scale * force_rounding;
+    return state;
+  }
+
+
+
+  bool
+  DisplacementProblem::majorise()
+  {
+    // Phi <= Phi(s_k) + xi'(s - s_k) + 1/2 (s - s_k)'E (s - s_k).
+    const dealii::Vector<double> s = trace(u);
+    dealii::Vector<double>       xi(s.size());
+    phi.subgradient(s, xi);
+    const Eigen::SparseMatrix<double> previous_E   = E;
+    const Eigen::VectorXd             previous_b_c = b_c;
+    E                                              = phi.curvature(s);
+    const Eigen::VectorXd E_s                      = E * eigen_view(s);
+    b_c                                            = E_s - eigen_view(xi);
+    if (previous_b_c.size() != b_c.size())
+      return true;
+    constexpr double noise = 1e-12;
+    return (b_c - previous_b_c).norm() > noise * (E_s.norm() + b_c.norm()) ||
+           (E - previous_E).norm() > noise * E.norm();
+  }
+
+
+
+  void
+  DisplacementProblem::majorant_force(dealii::Vector<double> &force) const
+  {
+    multiply(force, u);
+    force.sadd(-1., 1., f);
+    const dealii::Vector<double> s   = trace(u);
+    const Eigen::VectorXd        E_s = E * eigen_view(s);
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      force(normals[i]) += b_c(i) - E_s(i);
+  }
+
+
+
+  void
+  DisplacementProblem::multiply_majorant(
+    dealii::Vector<double>       &dst,
+    const dealii::Vector<double> &src) const
+  {
+    multiply(dst, src);
+    const dealii::Vector<double> s   = trace(src);
+    const Eigen::VectorXd        E_s = E * eigen_view(s);
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      dst(normals[i]) += E_s(i);
+    restrict_to_free(dst);
+  }
+
+
+
+  void
+  DisplacementProblem::restrict_to_free(dealii::Vector<double> &v) const
+  {
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      if (active[i] != 0)
+        v(normals[i]) = 0.;
+  }
+} // namespace Debond

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Contact by truncated multigrid on the coarser meshes of a box: how many
+// cycles it takes, beside conjugate gradients for A u = f with the same cycle,
+// and that the factorisation has nothing to add to its results:
+// majorise-minimise on the condensed problem, started there, ends with the same
+// J, contact and bonds.
+//
+// With a scene and assignments as arguments: the figures for that scene.
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/timer.h>
+#include <deal.II/lac/solver_cg.h>
+
+#include <debond/check/verification.h>
+#include <debond/elasticity/elastic_levels.h>
+#include <debond/input/parameters.h>
+#include <debond/solve/scene.h>
+#include <debond/solve/solve.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "../check.h"
+
+using namespace Debond;
+
+namespace
+{
+  using Assignments = std::vector<std::string>;
+
+
+
+  struct Outcome
+  {
+    SolveResult  result;
+    unsigned int linear_cycles; ///< for A u = f
+    double       law_violation;
+    double       J_error;         ///< of J, against the direct path from there
+    unsigned int other_nodes = 0; ///< whose contact or bonds it changes
+    double       linear_seconds, seconds;
+  };
+
+
+
+  Assignments
+  operator+(Assignments first, const Assignments &second)
+  {
+    first.insert(first.end(), second.begin(), second.end());
+    return first;
+  }
+
+
+
+  Parameters
+  parameters_of(const std::string &scene, const Assignments &assignments)
+  {
+    SceneTable table;
+    if (scene.empty())
+      table.assign("Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)");
+    else
+      read_scene(scene, table);
+    table.assign("Output/Machine details=false");
+    for (const std::string &assignment : assignments)
+      table.assign(assignment);
+    return table.parameters(scene.empty() ? "benchmark.prm" : scene);
+  }
+
+
+
+  template <int dim>
+  Outcome
+  outcome_of(const Parameters &parameters,
+             const Parameters &direct_parameters,
+             const bool        compare)
+  {
+    Outcome            outcome = {};
+    const MethodChoice choice  = choose_method(parameters);
+    const Scene<dim>   scene(parameters, matrix_storage(choice));
+    const auto        &problem = scene.problem();
+    dealii::Timer      timer;
+    {
+      const auto levels = ElasticLevels<dim>::make(scene.body(), problem);
+      dealii::Vector<double> u(problem.unknowns().n_dofs());
+      dealii::SolverControl  control(1000, 1e-10 * problem.load().l2_norm());
+      dealii::SolverCG<dealii::Vector<double>>(control).solve(problem.matrix(),
+                                                              u,
+                                                              problem.load(),
+                                                              levels->cycle());
+      outcome.linear_cycles = control.last_step();
+      if (print_figures)
+        std::cout << "    " << levels->n_levels() << " levels, "
+                  << 1. * levels->cycle().memory_consumption() /
+                       problem.unknowns().n_dofs()
+                  << " bytes per unknown\n";
+    }
+    outcome.linear_seconds = timer.cpu_time();
+
+    std::ostringstream log;
+    timer.restart();
+    outcome.result  = solve(choice, parameters, scene, log, false);
+    outcome.seconds = timer.cpu_time();
+    outcome.law_violation =
+      verify(problem, scene.adhesion(), scene.law(), outcome.result.u).error();
+    for (const std::string &note : outcome.result.notes)
+      std::cout << "    " << note << '\n';
+
+    if (!compare)
+      return outcome;
+    const SolveResult direct = solve(choose_method(direct_parameters),
+                                     direct_parameters,
+                                     scene,
+                                     log,
+                                     false,
+                                     nullptr,
+                                     &outcome.result.u);
+    outcome.J_error =
+      std::abs(outcome.result.functional / direct.functional - 1.);
+    const auto s = problem.unknowns().contact().trace(outcome.result.u);
+    const auto r = problem.unknowns().contact().trace(direct.u);
+    const auto E = scene.adhesion().curvature(s);
+    const auto F = scene.adhesion().curvature(r);
+    for (unsigned int i = 0; i < s.size(); ++i)
+      outcome.other_nodes +=
+        (s(i) == 0.) != (r(i) == 0.) || E.coeff(i, i) != F.coeff(i, i);
+    return outcome;
+  }
+
+
+
+  Outcome
+  outcome_of(const std::string &scene,
+             const Assignments &assignments,
+             const bool         compare = true)
+  {
+    const Assignments method = {"Solver/Method=majorise minimise",
+                                "Solver/Search=none"};
+    const Parameters  parameters =
+      parameters_of(scene,
+                    method + Assignments{"Solver/Linear solver=multigrid"} +
+                      assignments);
+    const Parameters direct = parameters_of(
+      scene, method + Assignments{"Solver/Linear solver=direct"} + assignments);
+    const Outcome outcome = parameters.dimension == 2 ?
+                              outcome_of<2>(parameters, direct, compare) :
+                              outcome_of<3>(parameters, direct, compare);
+    if (print_figures)
+      {
+        std::cout << "    " << to_string(outcome.result.status) << ", J ";
+        std::cout.precision(12);
+        std::cout << outcome.result.functional << ", off by ";
+        std::cout.precision(3);
+        std::cout << outcome.J_error << ", " << outcome.other_nodes
+                  << " other nodes, law violation " << outcome.law_violation
+                  << ", iterations " << outcome.result.iterations << '\n'
+                  << "    cycles " << outcome.result.linear_iterations
+                  << " for contact, " << outcome.linear_cycles
+                  << " for A u = f, seconds " << outcome.seconds << ", "
+                  << outcome.linear_seconds << ":";
+        for (const auto &[part, seconds] : outcome.result.parts)
+          std::cout << ' ' << part << ' ' << seconds;
+        std::cout << std::endl;
+      }
+    return outcome;
+  }
+
+
+
+  /// At most the given numbers of cycles for A u = f and for contact.
+  void
+  test(const std::string &name,
+       const unsigned int linear_cycles,
+       const unsigned int contact_cycles,
+       const Assignments &assignments)
+  {
+    if (print_figures)
+      std::cout << name << std::endl;
+    const Outcome outcome = outcome_of("", assignments);
+    std::cout << name << ": " << to_string(outcome.result.status)
+              << ", cycles for A u = f at most " << linear_cycles << ": "
+              << verdict(outcome.linear_cycles, linear_cycles)
+              << ", for contact at most " << contact_cycles << ": "
+              << verdict(outcome.result.linear_iterations, contact_cycles)
+              << ", law: " << verdict(outcome.law_violation, 1e-6)
+              << ", J of the direct path: " << verdict(outcome.J_error, 1e-11)
+              << ", its contact and bonds: " << verdict(outcome.other_nodes, 0.)
+              << std::endl;
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *argv[])
+{
+  print_figures = argc > 1;
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  if (argc > 2)
+    {
+      const std::string scene = argv[1];
+      const bool        alone = scene == "alone";
+      outcome_of(alone ? argv[2] : scene,
+                 Assignments(argv + 2 + alone, argv + argc),
+                 !alone);
+      return 0;
+    }
+
+  const Assignments d3    = {"Dimension=3",
+                             "Mesh/Lengths=0.4, 0.04, 0.04",
+                             "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345); 0"};
+  const auto        cells = [](const std::string &numbers) {
+    return Assignments{"Mesh/Cells=" + numbers};
+  };
+  const auto bonds = [](const std::string &a, const std::string &M) {
+    return Assignments{"Contact law/Bond stiffness=" + a,
+                       "Contact law/Bond threshold=" + M};
+  };
+  test("2D, 80x8", 16, 18, cells("80, 8"));
+  test("2D, 320x32", 16, 18, cells("320, 32"));
+  test("2D, 640x64, by a level without a scene", 16, 18, cells("640, 64"));
+  test("3D, 40x4x4", 16, 18, d3 + cells("40, 4, 4"));
+
+  for (const auto &[a, M] : {std::make_pair("6.9", "0.002"),
+                             {"690", "0.002"},
+                             {"6900", "0.002"},
+                             {"1e5", "2e-4"}})
+    {
+      test("2D, 80x8, a = " + std::string(a),
+           16,
+           18,
+           cells("80, 8") + bonds(a, M));
+      test("3D, 20x2x2, a = " + std::string(a),
+           16,
+           18,
+           d3 + cells("20, 2, 2") + bonds(a, M));
+    }
+
+  test("2D, odd, 75x7", 17, 19, cells("75, 7"));
+  test("3D, odd, 37x5x3", 17, 19, d3 + cells("37, 5, 3"));
+  test("2D, cells 4:1", 17, 19, cells("40, 16"));
+  test("2D, cells 10:1", 17, 19, cells("40, 40"));
+  test("3D, cells 4:1", 17, 19, d3 + cells("20, 8, 8"));
+
+  const Assignments top = {"Boundary conditions/Clamped boundaries=top",
+                           "Loads/Traction top=0; 0",
+                           "Loads/Body force=0; if(x < 0.2, 30, -15)"};
+  test("2D, pad clamped on top", 16, 18, top + cells("80, 8"));
+  test("2D, clamped left, tangentially free",
+       20,
+       24,
+       Assignments{"Boundary conditions/Clamped boundaries=left",
+                   "Contact law/Tangential displacement=free"} +
+         cells("80, 8"));
+  test("2D, turned, bottom and top in contact",
+       16,
+       18,
+       Assignments{"Mesh/Rotation=30",
+                   "Boundary conditions/Contact boundary=bottom, top",
+                   "Loads/Traction top=0; 0",
+                   "Loads/Body force=3; 10"} +
+         cells("80, 8"));
+  test("3D, plate clamped at two sides",
+       16,
+       18,
+       d3 + Assignments{"Mesh/Lengths=0.4, 0.04, 0.4",
+                        "Mesh/Cells=24, 3, 24",
+                        "Boundary conditions/Clamped boundaries=left, back"});
+  test("2D, gauss 2",
+       16,
+       18,
+       cells("80, 8") + Assignments{"Contact law/Quadrature=gauss 2"});
+  test("2D, 0.001 off the foundation, pressed",
+       16,
+       22,
+       cells("80, 8") + Assignments{"Contact law/Initial gap=0.001"});
+
+  for (const auto &[nu, linear, contact] :
+       {std::make_tuple("0.45", 40, 50), std::make_tuple("0.49", 90, 110)})
+    test("2D, plane strain, nu = " + std::string(nu),
+         linear,
+         contact,
+         cells("80, 8") +
+           Assignments{"Material/Hypothesis=plane strain",
+                       "Material/Poisson ratio=" + std::string(nu)});
+
+  // In Pa and m, and MPa and mm.
+  const auto steps = [](const Assignments &assignments) {
+    const Outcome outcome = outcome_of("", assignments, false);
+    return std::make_pair(outcome.linear_cycles,
+                          outcome.result.linear_iterations);
+  };
+  const auto gpa = steps(cells("80, 8"));
+  check("as many cycles in Pa and m",
+        gpa == steps(cells("80, 8") +
+                     Assignments{
+                       "Material/Young modulus=69e9",
+                       "Contact law/Bond stiffness=69e9",
+                       "Loads/Traction top=0; if(x < 0.2, 0.69e9, -0.345e9)"}));
+  check("as many cycles in MPa and mm",
+        gpa ==
+          steps(cells("80, 8") +
+                Assignments{"Mesh/Lengths=400, 40",
+                            "Material/Young modulus=69e3",
+                            "Contact law/Bond stiffness=69",
+                            "Contact law/Bond threshold=2",
+                            "Loads/Traction top=0; if(x < 200, 690, -345)"}));
+}
