@@ -26,6 +26,22 @@ namespace Debond
 
 
 
+    EquilibriumProblem
+    equilibrium_problem(const Scene<2> &scene)
+    {
+      const auto &dofs = scene.problem().unknowns().dof_handler();
+      return EquilibriumProblem(dofs.get_triangulation(),
+                                scene.conditions(),
+                                scene.supports(),
+                                scene.materials(),
+                                scene.loads(),
+                                thermal_stresses(dofs,
+                                                 scene.materials(),
+                                                 scene.loads()));
+    }
+
+
+
     std::vector<dealii::Tensor<1, 2>>
     vertex_displacements(const ElasticProblem<2>      &problem,
                          const dealii::Vector<double> &u)
@@ -286,14 +302,7 @@ namespace Debond
                   scene->law().branches().size() == 1 ?
                 CertifiedMinimum::global :
                 CertifiedMinimum::fixed_state)
-    , equilibrium(scene->problem().unknowns().dof_handler().get_triangulation(),
-                  scene->conditions(),
-                  scene->supports(),
-                  scene->materials(),
-                  scene->loads(),
-                  thermal_stresses(scene->problem().unknowns().dof_handler(),
-                                   scene->materials(),
-                                   scene->loads()))
+    , equilibrium(equilibrium_problem(*scene))
   {
     check_normals(scene->problem().unknowns().contact().boundary());
     if (scene->adhesion().has_field())
@@ -393,15 +402,6 @@ namespace Debond
   {
     if (&solved == scene.get())
       return equilibrium.elastic_functional(displacements);
-    return EquilibriumProblem(
-             solved.problem().unknowns().dof_handler().get_triangulation(),
-             solved.conditions(),
-             solved.supports(),
-             solved.materials(),
-             solved.loads(),
-             thermal_stresses(solved.problem().unknowns().dof_handler(),
-                              solved.materials(),
-                              solved.loads()))
-      .elastic_functional(displacements);
+    return equilibrium_problem(solved).elastic_functional(displacements);
   }
 } // namespace Debond

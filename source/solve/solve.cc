@@ -458,6 +458,41 @@ namespace Debond
 
 
 
+    void
+    end_at_start(SolveResult &result)
+    {
+      result.status  = SolverStatus::interrupted;
+      result.message = "multigrid: the start from coarser meshes was "
+                       "interrupted, and is the result.";
+    }
+
+
+
+    /// Majorise-minimise from result.u, which @p problem refers to, and what
+    /// rounding spoils of that by @p solver. @p energy is that of what is
+    /// prescribed, which the problem does not know.
+    template <int dim>
+    void
+    minimise_and_refine(const Parameters &parameters,
+                        const Scene<dim> &scene,
+                        const double      energy,
+                        MajorantProblem  &problem,
+                        CorrectionSolver &solver,
+                        Watch            &watch,
+                        SolveResult      &result)
+    {
+      const dealii::Timer timer;
+      add_majorise_result(MajoriseMinimise(parameters.solver.majorise_minimise)
+                            .minimize(problem, std::ref(watch)),
+                          result);
+      for (MajoriseMinimiseIteration &iteration : result.majorise_history)
+        iteration.functional += energy;
+      result.parts["contact"] = timer.wall_time();
+      refine_result(scene, solver, watch, result);
+    }
+
+
+
     template <int dim>
     void
     solve_by_multigrid(const Parameters     &parameters,
@@ -472,9 +507,7 @@ namespace Debond
       result.parts["coarser meshes"] = timer.wall_time();
       if (!watch.may_go_on())
         {
-          result.status  = SolverStatus::interrupted;
-          result.message = "multigrid: the start from coarser meshes was "
-                           "interrupted, and is the result.";
+          end_at_start(result);
           return;
         }
 
@@ -495,21 +528,14 @@ namespace Debond
       const Multigrid multigrid(scene.problem(), held);
       result.parts["multigrid setup"] = timer.wall_time();
 
-      timer.restart();
       MultigridProblem<dim> problem(scene.problem(),
                                     scene.adhesion(),
                                     multigrid,
                                     result.u,
                                     [&watch]() { return watch.may_go_on(); });
-      add_majorise_result(MajoriseMinimise(parameters.solver.majorise_minimise)
-                            .minimize(problem, std::ref(watch)),
-                          result);
-      for (MajoriseMinimiseIteration &iteration : result.majorise_history)
-        iteration.functional += energy;
-      result.parts["contact"] = timer.wall_time();
-
-      MultigridCorrection solver(multigrid, normals);
-      refine_result(scene, solver, watch, result);
+      MultigridCorrection   solver(multigrid, normals);
+      minimise_and_refine(
+        parameters, scene, energy, problem, solver, watch, result);
     }
 
 
@@ -648,27 +674,18 @@ namespace Debond
       result.parts["coarser meshes"] = timer.wall_time();
       if (!watch.may_go_on())
         {
-          result.status  = SolverStatus::interrupted;
-          result.message = "multigrid: the start from coarser meshes was "
-                           "interrupted, and is the result.";
+          end_at_start(result);
           return;
         }
 
-      timer.restart();
-      LevelProblem<dim> problem(*levels,
+      LevelProblem<dim>    problem(*levels,
                                 0,
                                 scene.adhesion(),
                                 result.u,
                                 [&watch]() { return watch.may_go_on(); });
-      add_majorise_result(MajoriseMinimise(parameters.solver.majorise_minimise)
-                            .minimize(problem, std::ref(watch)),
-                          result);
-      for (MajoriseMinimiseIteration &iteration : result.majorise_history)
-        iteration.functional += energy;
-      result.parts["contact"] = timer.wall_time();
-
       LevelCorrection<dim> solver(*levels);
-      refine_result(scene, solver, watch, result);
+      minimise_and_refine(
+        parameters, scene, energy, problem, solver, watch, result);
     }
   } // namespace
 

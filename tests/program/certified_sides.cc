@@ -5,7 +5,6 @@
 // value, have to be there, and some of them near the ends of the intervals.
 // Their J is not below the bound either.
 
-#include <debond/input/parameters.h>
 #include <debond/solve/certificate.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/solve.h>
@@ -15,25 +14,12 @@
 #include <sstream>
 
 #include "../check.h"
-#include "assignments.h"
+#include "parameters_of.h"
 
 using namespace Debond;
 
 namespace
 {
-  Parameters
-  parameters_of(const Values &values)
-  {
-    SceneTable        table;
-    std::stringstream none;
-    table.read(none, "test");
-    for (const std::string &value : values)
-      table.assign(value);
-    return table.parameters("test");
-  }
-
-
-
   dealii::Vector<double>
   solution(const Values &values)
   {

@@ -8,7 +8,6 @@
 
 #include <debond/check/displacement_error.h>
 #include <debond/input/expression.h>
-#include <debond/input/parameters.h>
 #include <debond/program/run.h>
 #include <debond/solve/adaptive_loop.h>
 
@@ -18,26 +17,13 @@
 #include <fstream>
 
 #include "../check.h"
+#include "parameters_of.h"
 
 using namespace Debond;
 
 namespace
 {
-  using Values = std::vector<std::string>;
-  using Json   = nlohmann::json;
-
-
-
-  Parameters
-  parameters_of(const Values &values)
-  {
-    SceneTable        table;
-    std::stringstream none;
-    table.read(none, "test");
-    for (const std::string &value : values)
-      table.assign(value);
-    return table.parameters("test");
-  }
+  using Json = nlohmann::json;
 
 
 
@@ -98,15 +84,6 @@ namespace
 
   const Values no_contact = {"Contact law/Law=none",
                              "Boundary conditions/Contact boundary="};
-
-  Values
-  with(Values values, const Values &more)
-  {
-    values.insert(values.end(), more.begin(), more.end());
-    return values;
-  }
-
-
 
   /// Loads and supports of many kinds, and one strain everywhere, or one in
   /// each layer.

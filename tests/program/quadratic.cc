@@ -6,44 +6,18 @@
 // displacements, and meshes that are refined.
 
 #include <debond/check/verification.h>
-#include <debond/input/parameters.h>
 #include <debond/solve/adaptive_loop.h>
 #include <debond/solve/method_choice.h>
 
 #include <cmath>
 
 #include "../check.h"
+#include "parameters_of.h"
 
 using namespace Debond;
 
 namespace
 {
-  using Values = std::vector<std::string>;
-
-
-
-  Values
-  with(Values values, const Values &more)
-  {
-    values.insert(values.end(), more.begin(), more.end());
-    return values;
-  }
-
-
-
-  Parameters
-  parameters_of(const Values &values)
-  {
-    SceneTable        table;
-    std::stringstream none;
-    table.read(none, "test");
-    for (const std::string &value : values)
-      table.assign(value);
-    return table.parameters("test");
-  }
-
-
-
   template <int dim>
   struct Solved
   {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/full_matrix.h>
 
-#include <debond/linear_algebra/eigen_view.h>
+#include <debond/linear_algebra/product.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/majorise/restricted_function.h>
@@ -12,19 +12,6 @@ namespace Debond
 {
   namespace
   {
-    /// The coefficients of a product with a prolongation or its transpose.
-    template <typename MatrixType>
-    dealii::Vector<double>
-    times(const MatrixType &matrix, const dealii::Vector<double> &v)
-    {
-      const Eigen::VectorXd  product = matrix * eigen_view(v);
-      dealii::Vector<double> result(static_cast<unsigned int>(product.size()));
-      std::copy(product.begin(), product.end(), result.begin());
-      return result;
-    }
-
-
-
     dealii::FullMatrix<double>
     galerkin_product(const dealii::FullMatrix<double>  &S,
                      const Eigen::SparseMatrix<double> &P)
@@ -57,7 +44,7 @@ namespace Debond
 
       const Eigen::SparseMatrix<double> &P        = *level;
       const dealii::FullMatrix<double>   coarse_S = galerkin_product(S, P);
-      const dealii::Vector<double>       coarse_g = times(P.transpose(), g);
+      const dealii::Vector<double>       coarse_g = product(P.transpose(), g);
       const RestrictedFunction           coarse_phi(phi, P);
 
       dealii::Vector<double>       s = start_on_level(coarse_S,
@@ -76,7 +63,7 @@ namespace Debond
                            " of the contact nodes: " + result.message);
       if (on_coarsest && level + 1 == end)
         on_coarsest(coarse_S, coarse_g, coarse_phi, s);
-      return times(P, s);
+      return product(P, s);
     }
   } // namespace
 

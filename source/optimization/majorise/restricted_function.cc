@@ -1,26 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/linear_algebra/eigen_view.h>
+#include <debond/linear_algebra/product.h>
 #include <debond/optimization/majorise/restricted_function.h>
-
-#include <algorithm>
 
 namespace Debond
 {
-  namespace
-  {
-    template <typename MatrixType>
-    dealii::Vector<double>
-    product(const MatrixType &matrix, const dealii::Vector<double> &v)
-    {
-      const Eigen::VectorXd  values = matrix * eigen_view(v);
-      dealii::Vector<double> result(static_cast<unsigned int>(values.size()));
-      std::copy(values.begin(), values.end(), result.begin());
-      return result;
-    }
-  } // namespace
-
-
-
   RestrictedFunction::RestrictedFunction(
     const PiecewiseQuadratic          &fine_function,
     const Eigen::SparseMatrix<double> &prolongation)
