@@ -472,6 +472,16 @@ namespace Debond
 
 
   void
+  ParameterTable::derive(const std::string &path,
+                         const std::string &value,
+                         const std::string &source)
+  {
+    set(path, value, location(source));
+  }
+
+
+
+  void
   ParameterTable::parse()
   {
     for (const auto &[path, reader] : readers)

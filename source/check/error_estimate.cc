@@ -523,7 +523,7 @@ namespace Debond
                        s(face.node(k)) >= -tolerance * largest_s);
         if (is_closed)
           r_nu = std::min(r_nu, 0.);
-        return conditions.tangential_displacement_fixed ?
+        return conditions.fixes_tangential(face.id) ?
                  r_nu * normal :
                  r + (r_nu - r * normal) * normal;
       }

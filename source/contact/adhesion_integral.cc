@@ -2,6 +2,7 @@
 #include <debond/contact/adhesion_integral.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 namespace Debond
@@ -17,7 +18,64 @@ namespace Debond
     , quadrature(quadrature_rule)
     , field(bond_field)
   {
+    collect_bonds();
     update_points();
+  }
+
+
+
+  template <int dim>
+  void
+  AdhesionIntegral<dim>::collect_bonds()
+  {
+    if (field == nullptr)
+      return;
+
+    struct Sum
+    {
+      BondScale first;
+      bool      is_mixed  = false;
+      double    measure   = 0.;
+      double    stiffness = 0.; ///< times measure, as is the energy
+      double    energy    = 0.;
+    };
+    std::vector<Sum> nodes(boundary.nodes.size());
+    std::vector<Sum> held(boundary.held_vertices.size());
+    const auto       add = [](const BondScale &bonds,
+                        const double     measure,
+                        Sum             &sum) {
+      if (sum.measure == 0.)
+        sum.first = bonds;
+      sum.is_mixed = sum.is_mixed || bonds.energy != sum.first.energy ||
+                     bonds.stretch != sum.first.stretch;
+      sum.measure += measure;
+      sum.stiffness += measure * bonds.energy / (bonds.stretch * bonds.stretch);
+      sum.energy += measure * bonds.energy;
+    };
+    for (const auto &face : boundary.faces)
+      for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
+        if (const unsigned int node = face.node(k);
+            node != dealii::numbers::invalid_unsigned_int)
+          add(field->at(boundary.nodes[node].position, face.id),
+              face.measure,
+              nodes[node]);
+        else if (!held.empty())
+          add(field->at(boundary.held_vertices[face.held_at(k)].position,
+                        face.id),
+              face.measure,
+              held[face.held_at(k)]);
+
+    const auto mean = [](const Sum &sum) -> BondScale {
+      if (!sum.is_mixed)
+        return sum.first;
+      if (sum.energy == 0.)
+        return {0., 1.};
+      return {sum.energy / sum.measure, std::sqrt(sum.energy / sum.stiffness)};
+    };
+    for (const Sum &sum : nodes)
+      bonds_of_nodes.push_back(mean(sum));
+    for (const Sum &sum : held)
+      bonds_of_held.push_back(mean(sum));
   }
 
 
@@ -120,6 +178,14 @@ namespace Debond
     const typename ContactBoundary<dim>::Face &face,
     const unsigned int                         vertex) const
   {
+    // Only nodal quadrature has bonds of nodes.
+    if (quadrature.is_nodal() && field != nullptr)
+      {
+        if (face.nodes[vertex] != dealii::numbers::invalid_unsigned_int)
+          return bonds_of_nodes[face.nodes[vertex]];
+        if (!bonds_of_held.empty())
+          return bonds_of_held[face.held[vertex]];
+      }
     std::array<double, dim> barycentric = {};
     barycentric[vertex]                 = 1.;
     return bonds_of(face, barycentric);
@@ -286,6 +352,27 @@ namespace Debond
 
 
   template <int dim>
+  const std::vector<typename ContactQuadrature<dim>::QuadraturePoint> &
+  AdhesionIntegral<dim>::rule_on(
+    const typename ContactBoundary<dim>::Face &face,
+    const Trace                               &trace) const
+  {
+    if (field == nullptr || !quadrature.depends_on_trace())
+      return quadrature.points_of(trace);
+
+    // The kinks are those of the face's bonds.
+    std::array<double, dim> centre;
+    centre.fill(1. / dim);
+    const double stretch  = bonds_of(face, centre).stretch;
+    Trace        relative = trace;
+    for (double &coefficient : relative)
+      coefficient /= stretch;
+    return quadrature.points_of(relative);
+  }
+
+
+
+  template <int dim>
   void
   AdhesionIntegral<dim>::collect_points(const dealii::Vector<double> &s) const
   {
@@ -294,7 +381,7 @@ namespace Debond
     for (const auto &face : boundary.faces)
       {
         const Trace trace = trace_on(face, s);
-        for (const auto &quadrature_point : quadrature.points_of(trace))
+        for (const auto &quadrature_point : rule_on(face, trace))
           {
             const Trace shape =
               bernstein(quadrature_point.barycentric, boundary.degree);
@@ -304,7 +391,10 @@ namespace Debond
             point.bonds   = bonds_of(face, quadrature_point.barycentric);
             for (unsigned int k = 0; k < dim; ++k)
               if (quadrature_point.barycentric[k] == 1.)
-                point.least_piece = least_piece_at(face, k);
+                {
+                  point.bonds       = bonds_at(face, k);
+                  point.least_piece = least_piece_at(face, k);
+                }
             for (unsigned int k = 0; k < n_face_nodes; ++k)
               if (face.node(k) == dealii::numbers::invalid_unsigned_int)
                 point.offset += shape[k] * trace[k];
@@ -404,7 +494,7 @@ namespace Debond
     dealii::Point<dim> position;
     for (unsigned int k = 0; k < dim; ++k)
       position += barycentric[k] * face.vertices[k];
-    return field->at(position);
+    return field->at(position, face.id);
   }
 
 
@@ -468,8 +558,7 @@ namespace Debond
   BondScale
   AdhesionIntegral<dim>::bonds_at(const unsigned int node) const
   {
-    return field == nullptr ? BondScale() :
-                              field->at(boundary.nodes[node].position);
+    return field == nullptr ? BondScale() : bonds_of_nodes[node];
   }
 
 
@@ -490,9 +579,9 @@ namespace Debond
         if (!is_held)
           continue;
         const Trace trace = trace_on(face, s);
-        for (const auto &point : quadrature.points_of(trace))
+        for (const auto &point : rule_on(face, trace))
           {
-            const BondScale bonds = bonds_of(face, point.barycentric);
+            BondScale   bonds = bonds_of(face, point.barycentric);
             const Trace shape = bernstein(point.barycentric, boundary.degree);
             double      at_point = 0.;
             for (unsigned int k = 0; k < n_face_nodes; ++k)
@@ -500,7 +589,10 @@ namespace Debond
             unsigned int least = 0;
             for (unsigned int k = 0; k < dim; ++k)
               if (point.barycentric[k] == 1.)
-                least = least_piece_at(face, k);
+                {
+                  bonds = bonds_at(face, k);
+                  least = least_piece_at(face, k);
+                }
             const double force =
               point.weight * face.measure * bonds.energy / bonds.stretch *
               law.derivative(at_point / bonds.stretch, least);

@@ -8,11 +8,12 @@ namespace Debond
   {
     template <int dim>
     double
-    bond_value(const std::shared_ptr<const dealii::Function<dim>> &field,
-               const double                                        everywhere,
-               const dealii::Point<dim>                           &point,
-               const bool                                          is_threshold)
+    bond_value(const typename BondField<dim>::Bonds &bonds,
+               const double                          everywhere,
+               const dealii::Point<dim>             &point,
+               const bool                            is_threshold)
     {
+      const auto &field = is_threshold ? bonds.threshold : bonds.stiffness;
       if (!field)
         return everywhere;
       try
@@ -24,7 +25,7 @@ namespace Debond
         }
       catch (const std::invalid_argument &error)
         {
-          throw BondFieldError(is_threshold, error.what());
+          throw BondFieldError(is_threshold, bonds.boundary, error.what());
         }
     }
   } // namespace
@@ -32,27 +33,31 @@ namespace Debond
 
 
   template <int dim>
-  BondField<dim>::BondField(const double a,
-                            const double M,
-                            const Field &stiffness,
-                            const Field &threshold)
+  BondField<dim>::BondField(
+    const double                                       a,
+    const double                                       M,
+    const Bonds                                       &others,
+    const std::map<dealii::types::boundary_id, Bonds> &boundaries)
     : a(a)
     , M(M)
-    , stiffness(stiffness)
-    , threshold(threshold)
+    , others(others)
+    , boundaries(boundaries)
   {}
 
 
 
   template <int dim>
   BondScale
-  BondField<dim>::at(const dealii::Point<dim> &point) const
+  BondField<dim>::at(const dealii::Point<dim>        &point,
+                     const dealii::types::boundary_id id) const
   {
-    const double a_here = bond_value(stiffness, a, point, false);
+    const auto   entry  = boundaries.find(id);
+    const Bonds &bonds  = entry == boundaries.end() ? others : entry->second;
+    const double a_here = bond_value<dim>(bonds, a, point, false);
     // What has no bonds breaks nowhere.
     if (a_here == 0.)
       return {0., 1.};
-    const double stretch = bond_value(threshold, M, point, true) / M;
+    const double stretch = bond_value<dim>(bonds, M, point, true) / M;
     return {a_here / a * stretch * stretch, stretch};
   }
 

@@ -170,6 +170,7 @@ namespace Debond
     : degree(degree)
     , split_at_kinks(parameters.rule ==
                      ContactQuadratureParameters::Rule::exact)
+    , nodal(parameters.rule == ContactQuadratureParameters::Rule::nodal)
     , kinks(law_kinks)
     , fixed(rule_on_face<dim>(parameters, degree))
   {}
@@ -181,6 +182,15 @@ namespace Debond
   ContactQuadrature<dim>::depends_on_trace() const
   {
     return split_at_kinks;
+  }
+
+
+
+  template <int dim>
+  bool
+  ContactQuadrature<dim>::is_nodal() const
+  {
+    return nodal;
   }
 
 

@@ -138,7 +138,7 @@ namespace Debond
     , materials(materials)
     , thermal_stresses(thermal_stresses)
   {
-    if (supports.gap)
+    if (!supports.gaps.empty())
       throw EquilibriumError("an initial gap is not done");
     find_elements();
     make_elements(loads);
@@ -353,7 +353,7 @@ namespace Debond
                 throw EquilibriumError(
                   "a contact boundary with supports is not done");
               use_normal();
-              if (conditions.tangential_displacement_fixed)
+              if (conditions.fixes_tangential(id))
                 fix(1);
               sides_in_contact.push_back(
                 {{{points[side.vertices[0]], points[side.vertices[1]]}},

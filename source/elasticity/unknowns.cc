@@ -144,7 +144,12 @@ namespace Debond
       dealii::Point<dim>                               position;
       VertexNormals<dim>                               normals;
 
-      /// For each group of normals the node or the held vertex.
+      /// On one of its faces.
+      bool is_tangential_fixed = false;
+
+      /// For each group of normals the least gap, and the node or the held
+      /// vertex.
+      std::vector<double>       gaps;
       std::vector<unsigned int> nodes;
       std::vector<unsigned int> held;
     };
@@ -154,15 +159,22 @@ namespace Debond
     /// Of the foundation below a point of the boundary.
     template <int dim>
     double
-    gap_value(const dealii::Function<dim> &gap, const dealii::Point<dim> &point)
+    gap_value(const Supports<dim>             &supports,
+              const dealii::types::boundary_id id,
+              const dealii::Point<dim>        &point)
     {
+      const auto gap = supports.gaps.find(id);
+      if (gap == supports.gaps.end())
+        return 0.;
       try
         {
-          return nonnegative_value(gap, point);
+          return nonnegative_value(*gap->second.value, point);
         }
       catch (const std::invalid_argument &error)
         {
-          throw SupportError(SupportError::Subject::gap, "", error.what());
+          throw SupportError(SupportError::Subject::gap,
+                             gap->second.name,
+                             error.what());
         }
     }
 
@@ -223,7 +235,7 @@ namespace Debond
 
     // G of most scenes is zero, and then there is none.
     prescribed.reinit(supports.displacements.empty() ? 0 : dofs.n_dofs());
-    gap.reinit(supports.gap ? dofs.n_dofs() : 0);
+    gap.reinit(supports.gaps.empty() ? 0 : dofs.n_dofs());
 
     std::vector<Support<dim>> held;
     clamp(conditions, held);
@@ -567,11 +579,17 @@ namespace Debond
             vertex.position            = faces[f].positions[v];
             groups[f][v] =
               vertex.normals.add_face(faces[f].normal, faces[f].measure);
+            vertex.is_tangential_fixed =
+              vertex.is_tangential_fixed ||
+              conditions.fixes_tangential(faces[f].id);
+            const double gap_here =
+              gap_value(supports, faces[f].id, vertex.position);
+            if (groups[f][v] < vertex.gaps.size())
+              vertex.gaps[groups[f][v]] =
+                std::min(vertex.gaps[groups[f][v]], gap_here);
+            else
+              vertex.gaps.push_back(gap_here);
           }
-
-    const auto gap_at = [&supports](const dealii::Point<dim> &position) {
-      return supports.gap ? gap_value(*supports.gap, position) : 0.;
-    };
 
     ContactBoundary<dim> boundary;
     boundary.degree = degree();
@@ -600,7 +618,7 @@ namespace Debond
             if (rest.norm() > 1e-6)
               unknown.push_back(k);
           }
-        if (conditions.tangential_displacement_fixed &&
+        if (vertex.is_tangential_fixed &&
             (unknown.size() > 1 || unknown.empty()))
           {
             // Where normals differ, all displacements are tangential to one.
@@ -616,7 +634,7 @@ namespace Debond
           {
             vertex.nodes[k] = static_cast<unsigned int>(nodes.size());
             normal_dofs.push_back(vertex.dofs[directions.size()]);
-            const double gap_here = gap_at(vertex.position);
+            const double gap_here = vertex.gaps[k];
             if (gap_here > 0.)
               gap(normal_dofs.back()) = gap_here;
             directions.push_back(normals[k]);
@@ -632,7 +650,7 @@ namespace Debond
                 static_cast<unsigned int>(boundary.held_vertices.size());
               boundary.held_vertices.push_back(
                 {displacement_of(at_supports) * normals[k],
-                 gap_at(vertex.position),
+                 vertex.gaps[k],
                  rows.empty() ? none : rows[0].support,
                  normals[k],
                  vertex.position});
@@ -656,7 +674,7 @@ namespace Debond
                       rows[k].support);
             held.push_back({vertex.position, rows[k].direction});
           }
-        if (conditions.tangential_displacement_fixed)
+        if (vertex.is_tangential_fixed)
           for (unsigned int d = static_cast<unsigned int>(directions.size());
                d < dim;
                ++d)
@@ -698,7 +716,7 @@ namespace Debond
       }
 
     std::map<dealii::types::global_dof_index, unsigned int> supports_of_dofs;
-    if (supports.gap)
+    if (!supports.gaps.empty())
       for (const Supported &supported : supported_dofs)
         supports_of_dofs.emplace(supported.dof, supported.support);
     const auto support_of = [&](const dealii::types::global_dof_index dof) {
@@ -711,6 +729,7 @@ namespace Debond
         std::copy_n(faces[f].positions.begin(), dim, face.vertices.begin());
         face.normal  = faces[f].normal;
         face.measure = faces[f].measure;
+        face.id      = faces[f].id;
         for (unsigned int v = 0; v < faces[f].n_nodes; ++v)
           {
             unsigned int &face_node =
@@ -726,7 +745,7 @@ namespace Debond
                   static_cast<unsigned int>(boundary.held_vertices.size());
                 boundary.held_vertices.push_back(
                   {0.,
-                   gap_at(faces[f].positions[v]),
+                   gap_value(supports, faces[f].id, faces[f].positions[v]),
                    support_of(faces[f].dofs[v][0]),
                    faces[f].normal,
                    faces[f].positions[v]});

@@ -163,8 +163,9 @@ namespace Debond
           }
         body.file = beside(scene, body.file);
         // The effective scene lies in another folder.
-        table.assign("Mesh/File=" +
-                     std::filesystem::absolute(body.file).string());
+        table.derive(entry,
+                     std::filesystem::absolute(body.file).string(),
+                     entry);
       }
     else if (body.source == Source::generator)
       {
@@ -204,7 +205,7 @@ namespace Debond
       }
     catch (const std::invalid_argument &error)
       {
-        table.add_error(entry, error.what(), {"Mesh/Source"});
+        table.add_error(entry, entry + ": " + error.what(), {"Mesh/Source"});
         return nullptr;
       }
   }

@@ -66,6 +66,6 @@ namespace Debond
          at != std::string::npos;
          at = output.directory.find(placeholder, at + name.size()))
       output.directory.replace(at, placeholder.size(), name);
-    table.assign("Output/Directory=" + output.directory);
+    table.derive("Output/Directory", output.directory, "Output/Directory");
   }
 } // namespace Debond

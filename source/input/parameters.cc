@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
+#include <debond/base/number_text.h>
 #include <debond/base/text.h>
 #include <debond/input/material_parameters.h>
 #include <debond/input/mesh_parameters.h>
@@ -58,6 +59,12 @@ namespace Debond
         p.tangential_displacement_fixed,
         {{"fixed", true}, {"free", false}},
         "On the contact boundary: fixed is the paper's simplification u_tau = 0, free is sigma_tau = 0");
+      table.bind_family(
+        "Contact law/Tangential displacement",
+        p.tangential_displacements,
+        one_of({"fixed", "free"}),
+        "u_tau on the contact boundary or part of this name, as above; vertices where it meets others are fixed if one of them is",
+        "none");
     }
 
 
@@ -130,6 +137,15 @@ namespace Debond
 
   namespace
   {
+    bool
+    is_number(const std::string &text)
+    {
+      double unused;
+      return read_number(text, unused);
+    }
+
+
+
     void
     check_boundaries(const Parameters &p, ParameterTable &table)
     {
@@ -155,25 +171,68 @@ namespace Debond
 
 
 
+    /// What contact boundaries have of their own.
+    void
+    check_contact_boundaries(const Parameters &p, ParameterTable &table)
+    {
+      const std::set<std::string> boundaries =
+        p.body ? p.body->boundaries() : std::set<std::string>();
+      for (const auto &[path, unused] : table.locations())
+        for (const std::string name : {"Bond stiffness",
+                                       "Bond threshold",
+                                       "Bond strength",
+                                       "Fracture energy",
+                                       "Tangential displacement"})
+          if (const std::string prefix = "Contact law/" + name + " ";
+              path.compare(0, prefix.size(), prefix) == 0 &&
+              !table.get(path).empty())
+            {
+              if (p.body)
+                check_names(path,
+                            {path.substr(prefix.size())},
+                            boundaries,
+                            table);
+              if (p.law.name != "winkler" && name != "Tangential displacement")
+                table.reject(path,
+                             "the law " + p.law.name +
+                               " is the same on all contact boundaries",
+                             {"Contact law/Law"});
+            }
+    }
+
+
+
     /// Bonds that vary.
     void
     check_bonds(const Parameters &p, ParameterTable &table)
     {
-      for (const auto &[name, expression] :
-           {std::make_pair("stiffness", p.law.stiffness),
-            std::make_pair("threshold", p.law.threshold)})
-        check_expression(std::string("Contact law/Bond ") + name,
-                         expression,
-                         p.dimension,
-                         1,
-                         p.loads.constants,
-                         table);
-      if ((!p.law.stiffness.empty() || !p.law.threshold.empty()) &&
+      const std::string stiffness = "Contact law/Bond stiffness";
+      const std::string threshold = "Contact law/Bond threshold";
+      bool              is_uniform =
+        (p.law.stiffness.empty() || is_number(p.law.stiffness)) &&
+        p.law.threshold.empty();
+      const auto check = [&](const std::string &path,
+                             const std::string &expression) {
+        check_expression(
+          path, expression, p.dimension, 1, p.loads.constants, table);
+      };
+      check(stiffness, p.law.stiffness);
+      check(threshold, p.law.threshold);
+      for (const auto &[name, bonds] : p.law.boundaries)
+        {
+          if (table.is_set(stiffness + " " + name))
+            check(stiffness + " " + name, bonds.stiffness);
+          if (table.is_set(threshold + " " + name))
+            check(threshold + " " + name, bonds.threshold);
+          is_uniform = is_uniform && is_number(bonds.stiffness) &&
+                       is_number(bonds.threshold);
+        }
+      if (!is_uniform &&
           p.quadrature.rule == ContactQuadratureParameters::Rule::exact)
         table.reject("Contact law/Quadrature",
-                     "is for bonds that are the same everywhere",
-                     {"Contact law/Bond stiffness",
-                      "Contact law/Bond threshold"});
+                     "is for bonds that are the same on the whole of each "
+                     "contact boundary",
+                     {stiffness, threshold});
       if (!p.load_path.bonds_heal &&
           p.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
         table.reject("Load path/Bonds heal",
@@ -206,6 +265,12 @@ namespace Debond
                  const std::map<std::string, std::string> &parts)
     {
       std::set<std::string> used = p.clamped_boundaries;
+      for (const auto &[name, unused] : p.law.boundaries)
+        used.insert(name);
+      for (const auto &[name, unused] : p.supports.gaps)
+        used.insert(name);
+      for (const auto &[name, unused] : p.tangential_displacements)
+        used.insert(name);
       used.insert(p.contact_boundaries.begin(), p.contact_boundaries.end());
       for (const std::string &name : p.supports.all_rollers())
         used.insert(name);
@@ -257,7 +322,7 @@ namespace Debond
              "Contact law/Quadrature",
              "Mesh/Degree = 2 needs gauss N, N from 1 to " +
                std::string(p.dimension == 2 ? "99, or exact" : "7"));
-      refuse(!p.supports.gap.empty(),
+      refuse(!p.supports.gap.empty() || !p.supports.gaps.empty(),
              "Contact law/Initial gap",
              "there is none with Mesh/Degree = 2");
       refuse(p.solver.linear_solver == "multigrid",
@@ -360,6 +425,7 @@ namespace Debond
                      p.body->regions(),
                      *this);
       }
+    check_contact_boundaries(p, *this);
     check_bonds(p, *this);
     check_certificate(p, *this);
     check_degree(p, *this);

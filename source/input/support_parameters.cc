@@ -27,13 +27,18 @@ namespace Debond
         [](const std::string & /*value*/) { return true; }),
       "The displacement of the boundary of this name in global coordinates, such as 'free; 0.001'; expressions as in Loads. A load path's factors multiply it",
       "length");
+    const Pattern     gap("nothing, or an expression",
+                      [](const std::string     &/*value*/) { return true; });
+    const std::string documentation =
+      "The distance g >= 0 between the body at rest and the foundation, an expression as in Loads: u_nu <= g, and bonds are stretched by g - u_nu";
     table.bind(
-      "Contact law/Initial gap",
-      supports.gap,
-      Pattern("nothing, or an expression",
-              [](const std::string & /*value*/) { return true; }),
-      "The distance g >= 0 between the body at rest and the foundation, an expression as in Loads: u_nu <= g, and bonds are stretched by g - u_nu",
-      "length");
+      "Contact law/Initial gap", supports.gap, gap, documentation, "length");
+    table.bind_family("Contact law/Initial gap",
+                      supports.gaps,
+                      gap,
+                      documentation +
+                        "; of the contact boundary or part of this name",
+                      "length");
   }
 
 
@@ -92,5 +97,11 @@ namespace Debond
       }
     check_expression(
       "Contact law/Initial gap", supports.gap, dimension, 1, constants, table);
+    for (const auto &[name, gap] : supports.gaps)
+      {
+        const std::string path = "Contact law/Initial gap " + name;
+        check_names(path, {name}, boundaries, table);
+        check_expression(path, gap, dimension, 1, constants, table);
+      }
   }
 } // namespace Debond

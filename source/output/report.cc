@@ -73,25 +73,30 @@ namespace Debond
       record.add(pointer,
                  {{"step", change->step},
                   {"factor", change->factor},
+                  {"displacement_factor", change->displacement_factor},
                   {"change_factor",
                    change->change_factor ? Json(*change->change_factor) :
                                            Json(nullptr)},
                   {"broken_before", change->broken_before},
                   {"broken_after", change->broken_after}});
-      record.line(label,
-                  words("at factor ",
-                        change->factor,
-                        ", step ",
-                        change->step,
-                        ", broken part ",
-                        change->broken_before,
-                        " to ",
-                        change->broken_after) +
-                    (change->change_factor ? words(", from ",
-                                                   std::setprecision(10),
-                                                   *change->change_factor,
-                                                   " on") :
-                                             ""));
+      record.line(
+        label,
+        words("at factor ",
+              change->factor,
+              change->displacement_factor == change->factor ?
+                "" :
+                words(" (of displacements ", change->displacement_factor, ")"),
+              ", step ",
+              change->step,
+              ", broken part ",
+              change->broken_before,
+              " to ",
+              change->broken_after) +
+          (change->change_factor ? words(", from ",
+                                         std::setprecision(10),
+                                         *change->change_factor,
+                                         " on") :
+                                   ""));
     }
 
 
@@ -469,7 +474,8 @@ namespace Debond
       report_force("tangential_reaction",
                    "  tangential part",
                    verification.tangential_reaction,
-                   details && parameters.tangential_displacement_fixed,
+                   details && (parameters.tangential_displacement_fixed ||
+                               !parameters.tangential_displacements.empty()),
                    record);
     }
 
@@ -526,6 +532,8 @@ namespace Debond
         record.line("displacement " + side, displacement);
       if (!parameters.supports.gap.empty())
         record.line("initial gap", parameters.supports.gap);
+      for (const auto &[side, gap] : parameters.supports.gaps)
+        record.line("initial gap " + side, gap);
       if (!parameters.loads.body_force.empty())
         record.line("body force", parameters.loads.body_force);
       for (const auto &[side, traction] : parameters.loads.tractions)
@@ -544,6 +552,11 @@ namespace Debond
                        "" :
                        ", " + parameters.law.data + ", " +
                          parameters.quadrature_name + " quadrature"));
+      for (const auto &[side, bonds] : parameters.law.boundaries)
+        record.line("bonds " + side,
+                    "a = " + bonds.stiffness + ", M = " + bonds.threshold);
+      for (const auto &[side, text] : parameters.tangential_displacements)
+        record.line("tangential " + side, text);
     }
   } // namespace
 
@@ -575,14 +588,15 @@ namespace Debond
     const unsigned int          n_nodes  = unknowns.contact().size();
     // The paper counts the tangential displacements of the contact nodes,
     // although they are fixed: 710 on its mesh 40x4.
+    const bool is_fixed = parameters.tangential_displacement_fixed &&
+                          parameters.tangential_displacements.empty();
     const unsigned int n_dofs_paper =
-      n_dofs +
-      (parameters.tangential_displacement_fixed ? (dim - 1) * n_nodes : 0);
+      n_dofs + (is_fixed ? (dim - 1) * n_nodes : 0);
     record.add("/degrees_of_freedom", n_dofs);
     record.add("/degrees_of_freedom_paper", n_dofs_paper);
     record.line("unknowns",
                 words(n_dofs) +
-                  (parameters.tangential_displacement_fixed ?
+                  (is_fixed ?
                      words(", with fixed tangential ones ", n_dofs_paper) :
                      ""));
     report_data(parameters, n_nodes, record);

@@ -437,8 +437,21 @@ namespace Debond
           record.print(out);
           result.levels.push_back(level);
         };
-        AdaptiveResult adaptive =
-          solve_adaptively(choice, parameters, report, scene);
+        AdaptiveResult adaptive;
+        try
+          {
+            adaptive = solve_adaptively(choice, parameters, report, scene);
+          }
+        catch (const BadInput &)
+          {
+            // A load that only the finer mesh shows to have no integral.
+            std::error_code not_empty;
+            for (const std::string &file : written)
+              std::filesystem::remove(file);
+            lock.reset();
+            std::filesystem::remove(parameters.output.directory, not_empty);
+            throw;
+          }
         result.solve = std::move(adaptive.solve);
         shortfall    = adaptive.shortfall;
         // On the last mesh.

@@ -307,6 +307,10 @@ namespace Debond
     check_normals(scene->problem().unknowns().contact().boundary());
     if (scene->adhesion().has_field())
       throw EquilibriumError("bonds that vary are not done");
+    if (!scene->conditions().tangential_exceptions.empty())
+      throw EquilibriumError(
+        "contact boundaries with different tangential displacements are not "
+        "done");
     if (minimum == CertifiedMinimum::global &&
         scene->law().branches().size() > 1)
       trace_constants =

@@ -162,7 +162,8 @@ namespace Debond
                                  condensed.load(),
                                  adhesion,
                                  s,
-                                 free_motions);
+                                 free_motions,
+                                 stiffness_at_contact(scene.problem()));
         const MajoriseMinimiseResult minimum =
           MajoriseMinimise(solver_parameters.majorise_minimise)
             .minimize(problem);

@@ -24,6 +24,7 @@ namespace Debond
       {
         const BondChange change = {step.step,
                                    step.factor,
+                                   step.displacement_factor,
                                    step.change_factor,
                                    broken,
                                    step.state.broken_part};

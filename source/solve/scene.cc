@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/function.h>
 #include <deal.II/base/timer.h>
 
+#include <debond/base/number_text.h>
+#include <debond/base/text.h>
 #include <debond/contact/field_value.h>
 #include <debond/elasticity/temperature_load.h>
 #include <debond/input/expression.h>
@@ -52,6 +55,63 @@ namespace Debond
 
 
 
+    /// A piece of the body that cannot have what an entry says of it.
+    class PieceError : public std::invalid_argument
+    {
+    public:
+      PieceError(const std::string &entry, const std::string &message)
+        : std::invalid_argument(message)
+        , entry(entry)
+      {}
+
+      const std::string entry;
+    };
+
+
+
+    /// Calls @p function(name, id) for the faces of contact boundaries for
+    /// which something is set by entries, @p entries by their names.
+    template <typename Function>
+    void
+    for_contact_boundaries(const Parameters                         &parameters,
+                           const std::map<std::string, std::string> &entries,
+                           const BoundaryConditions                 &conditions,
+                           const Function                           &function)
+    {
+      const std::set<std::string> &in_contact = parameters.contact_boundaries;
+      std::map<dealii::types::boundary_id, std::string> taken;
+      for (const auto &[name, entry] : entries)
+        for (const dealii::types::boundary_id id : conditions.names.at(name))
+          {
+            if (conditions.contact.count(id) == 0)
+              throw PieceError(entry,
+                               name + " is not in contact, but " +
+                                 join({in_contact.begin(), in_contact.end()},
+                                      ", "));
+            const auto [other, is_first] = taken.emplace(id, name);
+            if (!is_first)
+              throw PieceError(entry,
+                               name + " overlaps " + other->second +
+                                 ", for which it is set as well");
+            function(name, id);
+          }
+    }
+
+
+
+    /// The entries of a family, by the names of boundaries.
+    std::map<std::string, std::string>
+    entries_of(const std::string                        &family,
+               const std::map<std::string, std::string> &texts)
+    {
+      std::map<std::string, std::string> entries;
+      for (const auto &[name, unused] : texts)
+        entries[name] = family + ' ' + name;
+      return entries;
+    }
+
+
+
     BoundaryConditions
     make_conditions(const Parameters    &parameters,
                     const BoundaryNames &boundaries)
@@ -64,22 +124,18 @@ namespace Debond
       conditions.names = boundaries;
       conditions.tangential_displacement_fixed =
         parameters.tangential_displacement_fixed;
+      const auto &own = parameters.tangential_displacements;
+      for_contact_boundaries(
+        parameters,
+        entries_of("Contact law/Tangential displacement", own),
+        conditions,
+        [&](const std::string &name, const dealii::types::boundary_id id) {
+          if ((own.at(name) == "fixed") !=
+              conditions.tangential_displacement_fixed)
+            conditions.tangential_exceptions.insert(id);
+        });
       return conditions;
     }
-
-
-
-    /// Regions that overlap and have materials of their own.
-    class RegionError : public std::invalid_argument
-    {
-    public:
-      RegionError(const std::string &entry, const std::string &message)
-        : std::invalid_argument(message)
-        , entry(entry)
-      {}
-
-      const std::string entry;
-    };
 
 
 
@@ -94,9 +150,9 @@ namespace Debond
           {
             const auto [other, is_first] = taken.emplace(id, name);
             if (!is_first)
-              throw RegionError(parameters.entry_of(name),
-                                "the region overlaps " + other->second +
-                                  ", which has a material of its own as well");
+              throw PieceError(parameters.entry_of(name),
+                               "the region overlaps " + other->second +
+                                 ", which has a material of its own as well");
             materials.set(id, material);
           }
       return materials;
@@ -176,8 +232,10 @@ namespace Debond
 
     template <int dim>
     Supports<dim>
-    make_supports(const Parameters &parameters, const BoundaryNames &boundaries)
+    make_supports(const Parameters         &parameters,
+                  const BoundaryConditions &conditions)
     {
+      const BoundaryNames                 &boundaries = conditions.names;
       const std::map<std::string, double> &constants =
         parameters.loads.constants;
       Supports<dim> supports;
@@ -190,9 +248,64 @@ namespace Debond
       for (const std::string &name : parameters.supports.all_rollers())
         supports.displacements.push_back({name, boundaries.at(name), true});
       if (!parameters.supports.gap.empty())
-        supports.gap =
-          make_function<dim>(parameters.supports.gap, constants, 1);
+        for (const dealii::types::boundary_id id : conditions.contact)
+          supports.gaps[id] = {
+            "", make_function<dim>(parameters.supports.gap, constants, 1)};
+      const auto &own = parameters.supports.gaps;
+      for_contact_boundaries(
+        parameters,
+        entries_of("Contact law/Initial gap", own),
+        conditions,
+        [&](const std::string &name, const dealii::types::boundary_id id) {
+          supports.gaps[id] = {name,
+                               make_function<dim>(own.at(name), constants, 1)};
+        });
       return supports;
+    }
+
+
+
+    template <int dim>
+    std::unique_ptr<BondField<dim>>
+    make_bond_field(const Parameters         &parameters,
+                    const AdhesiveLaw        &law,
+                    const BoundaryConditions &conditions)
+    {
+      using Field      = typename BondField<dim>::Field;
+      using Bonds      = typename BondField<dim>::Bonds;
+      const auto field = [&](const std::string &text) -> Field {
+        if (text.empty())
+          return nullptr;
+        if (double number; read_number(text, number))
+          return std::make_shared<
+            const dealii::Functions::ConstantFunction<dim>>(number);
+        return make_function<dim>(text, parameters.loads.constants, 1);
+      };
+      std::map<std::string, std::string> entries;
+      std::map<std::string, Bonds>       bonds;
+      for (const auto &[name, texts] : parameters.law.boundaries)
+        {
+          bonds[name] = {name, field(texts.stiffness), field(texts.threshold)};
+          for (const std::string entry : {"Bond stiffness", "Bond threshold"})
+            if (const std::string path = "Contact law/" + entry + ' ' + name;
+                parameters.locations.count(path) > 0)
+              entries.emplace(name, path);
+        }
+      std::map<dealii::types::boundary_id, Bonds> boundaries;
+      for_contact_boundaries(parameters,
+                             entries,
+                             conditions,
+                             [&](const std::string               &name,
+                                 const dealii::types::boundary_id id) {
+                               boundaries[id] = bonds[name];
+                             });
+      return std::make_unique<BondField<dim>>(
+        law.curvature(0.),
+        law.bond_threshold(),
+        Bonds{"",
+              field(parameters.law.stiffness),
+              field(parameters.law.threshold)},
+        boundaries);
     }
 
 
@@ -261,7 +374,8 @@ namespace Debond
                      "Boundary conditions/Roller boundaries" :
                      "Boundary conditions/Symmetry boundaries";
           case SupportError::Subject::gap:
-            return "Contact law/Initial gap";
+            return error.name.empty() ? "Contact law/Initial gap" :
+                                        "Contact law/Initial gap " + error.name;
           default:
             return "Boundary conditions/Displacement " + error.name;
         }
@@ -299,8 +413,8 @@ namespace Debond
         timer.restart();
         entry               = "Boundary conditions/Clamped boundaries";
         boundary_conditions = make_conditions(parameters, boundaries);
-        body_supports       = make_supports<dim>(parameters, boundaries);
-        elastic_problem     = std::make_unique<ElasticProblem<dim>>(
+        body_supports   = make_supports<dim>(parameters, boundary_conditions);
+        elastic_problem = std::make_unique<ElasticProblem<dim>>(
           triangulation, boundary_conditions, body_supports, parameters.degree);
         check_held_vertices(elastic_problem->unknowns(),
                             displacement_factors(parameters.load_path));
@@ -345,8 +459,8 @@ namespace Debond
               "Loads/Body force";
         if (dynamic_cast<const TemperatureError *>(&error) != nullptr)
           entry = "Loads/Temperature change";
-        if (const auto *region = dynamic_cast<const RegionError *>(&error))
-          entry = region->entry;
+        if (const auto *piece = dynamic_cast<const PieceError *>(&error))
+          entry = piece->entry;
         if (const auto *part = dynamic_cast<const PartError *>(&error))
           entry = "Parts/" + part->part;
         if (const auto *support = dynamic_cast<const SupportError *>(&error))
@@ -354,8 +468,14 @@ namespace Debond
         if (const auto *probe = dynamic_cast<const ProbeError *>(&error))
           entry = "Probes/" + probe->probe;
         if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))
-          entry = bonds->is_threshold ? "Contact law/Bond threshold" :
-                                        "Contact law/Bond stiffness";
+          {
+            const std::string everywhere = bonds->is_threshold ?
+                                             "Contact law/Bond threshold" :
+                                             "Contact law/Bond stiffness";
+            entry                        = everywhere + ' ' + bonds->boundary;
+            if (parameters.locations.count(entry) == 0)
+              entry = everywhere;
+          }
         throw BadInput({parameters.locations.at(entry) + ": " + entry + ": " +
                         error.what()});
       }
@@ -373,17 +493,9 @@ namespace Debond
     quadrature = std::make_unique<ContactQuadrature<dim>>(parameters.quadrature,
                                                           adhesive_law->kinks(),
                                                           parameters.degree);
-    const auto field = [&](const std::string &expression) {
-      return expression.empty() ?
-               nullptr :
-               make_function<dim>(expression, parameters.loads.constants, 1);
-    };
-    if (!parameters.law.stiffness.empty() || !parameters.law.threshold.empty())
+    if (parameters.law.has_field())
       bond_field =
-        std::make_unique<BondField<dim>>(adhesive_law->curvature(0.),
-                                         adhesive_law->bond_threshold(),
-                                         field(parameters.law.stiffness),
-                                         field(parameters.law.threshold));
+        make_bond_field<dim>(parameters, *adhesive_law, boundary_conditions);
     adhesion_integral = std::make_unique<AdhesionIntegral<dim>>(
       elastic_problem->unknowns().contact().boundary(),
       *adhesive_law,

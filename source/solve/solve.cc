@@ -259,7 +259,8 @@ namespace Debond
                                condensed.load(),
                                scene.adhesion(),
                                s,
-                               free_motions_of_contact(unknowns));
+                               free_motions_of_contact(unknowns),
+                               stiffness_at_contact(scene.problem()));
       add_majorise_result(method.minimize(problem, std::ref(watch)), result);
       for (MajoriseMinimiseIteration &iteration : result.majorise_history)
         iteration.functional += condensed.energy_at_zero();

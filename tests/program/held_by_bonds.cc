@@ -263,6 +263,32 @@ namespace
 
 
 
+  /// Two contact nodes have nothing but rigid motions: S is rounding.
+  void
+  test_two_nodes(const Units &units)
+  {
+    std::cout << "== Two nodes, " << units.name << std::endl;
+    const double L = units.length, E = 70. * units.modulus, H = 0.1 * L,
+                 a = 100. * units.modulus / L, M = 1e-3 * L, p = 0.9 * a * M;
+    const Values pad_of_one_cell =
+      pad(2, units, false) + Values{"Mesh/Cells=1, 8"};
+    const Values from_the_side = {
+      "Loads/Traction right=" + text(1e-5 * units.modulus) + "; 0"};
+    const Json held = solve_scene(pad_of_one_cell + pulled(2, text(p)));
+    check("bonds hold it", held["status"] == "success");
+    check("J",
+          relative(held["functional"],
+                   -0.5 * p * p * 0.2 * L * (H / E + 1. / a)),
+          1e-12);
+    check("and from the side",
+          solve_scene(pad_of_one_cell + from_the_side)["status"] == "success");
+    check("without them it falls over",
+          solve_scene(pad_of_one_cell + from_the_side +
+                      Values{"Contact law/Law=none"})["status"] == "comes off");
+  }
+
+
+
   void
   test_refusals()
   {
@@ -299,6 +325,7 @@ main(int argc, char *[])
           test_tilting(dim, units);
         }
       test_crack(units);
+      test_two_nodes(units);
     }
   test_refusals();
 }

@@ -99,6 +99,12 @@ namespace Fuzz
       return std::uniform_int_distribution<unsigned int>(0, n - 1)(engine);
     }
 
+    std::string
+    value()
+    {
+      return values[below(values.size())];
+    }
+
   private:
     void
     mutate(std::vector<std::string> &lines)
@@ -133,12 +139,6 @@ namespace Fuzz
             if (equals != std::string::npos)
               line = line.substr(0, equals + 2) + value();
         }
-    }
-
-    std::string
-    value()
-    {
-      return values[below(values.size())];
     }
 
     std::vector<std::string> values;

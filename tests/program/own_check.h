@@ -11,10 +11,12 @@
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 #include <random>
 #include <set>
 #include <string>
@@ -65,22 +67,57 @@ namespace OwnCheck
     Field gap       = {};                 ///< empty for none
     Field stiffness = {}, threshold = {}; ///< in place of a, M
 
-    Real
-    gap_at(const std::array<Real, dim> &point) const
+    /// What a contact side has of its own: empty where it is as all others.
+    struct Own
     {
-      return gap ? gap(point) : Real(0);
+      Field               gap = {}, stiffness = {}, threshold = {};
+      std::optional<bool> tangential_fixed = {};
+    };
+    std::map<std::string, Own> own = {};
+
+    /// Whether supports alone may leave rigid motions free.
+    bool held_by_bonds = false;
+
+    Real
+    gap_at(const std::string &side, const std::array<Real, dim> &point) const
+    {
+      const Field &field = choose(side, &Own::gap, gap);
+      return field ? field(point) : Real(0);
     }
 
     Real
-    a_at(const std::array<Real, dim> &point) const
+    a_at(const std::string &side, const std::array<Real, dim> &point) const
     {
-      return stiffness ? stiffness(point) : Real(a);
+      const Field &field = choose(side, &Own::stiffness, stiffness);
+      return field ? field(point) : Real(a);
     }
 
     Real
-    M_at(const std::array<Real, dim> &point) const
+    M_at(const std::string &side, const std::array<Real, dim> &point) const
     {
-      return threshold ? threshold(point) : Real(M);
+      const Field &field = choose(side, &Own::threshold, threshold);
+      return field ? field(point) : Real(M);
+    }
+
+    bool
+    fixes_tangential(const std::string &side) const
+    {
+      const auto entry = own.find(side);
+      return entry == own.end() ?
+               tangential_fixed :
+               entry->second.tangential_fixed.value_or(tangential_fixed);
+    }
+
+  private:
+    const Field &
+    choose(const std::string &side,
+           Field Own::*const member,
+           const Field      &others) const
+    {
+      const auto entry = own.find(side);
+      return entry != own.end() && entry->second.*member ?
+               entry->second.*member :
+               others;
     }
   };
 
@@ -290,7 +327,8 @@ namespace OwnCheck
       return n_contact() > 0 ? measure.maxCoeff() : 0;
     }
 
-    /// Majorise-minimise from the state of the bonds at s.
+    /// Majorise-minimise from the state of the bonds at s. Of a body that
+    /// comes off, a displacement far away.
     VectorX
     descend(VectorX s) const
     {
@@ -298,7 +336,9 @@ namespace OwnCheck
       VectorX b = forces_of_prescribed(s);
       for (unsigned int k = 0; k < 200; ++k)
         {
-          s                  = minimise_convex(S + B, g - b);
+          s = minimise_convex(S + B + held_weakly(), g - b);
+          if (is_off(s))
+            break;
           const MatrixX next = bonds(s);
           b                  = forces_of_prescribed(s);
           if (next == B)
@@ -306,6 +346,24 @@ namespace OwnCheck
           B = next;
         }
       return s;
+    }
+
+    /// The contact nodes of the body at rest.
+    VectorX
+    at_rest() const
+    {
+      return -gap;
+    }
+
+    /// Whether a result of descend() is far away: the weak springs bear the
+    /// loads.
+    bool
+    is_off(const VectorX &s) const
+    {
+      return scene.held_by_bonds && s.size() > 0 &&
+             held_weakly().diagonal().maxCoeff() *
+                 s.template lpNorm<Eigen::Infinity>() >
+               1e-3 * g.template lpNorm<Eigen::Infinity>();
     }
 
     /// All unknowns, at the minimum for the given normal displacements.
@@ -476,20 +534,26 @@ namespace OwnCheck
     make_unknowns()
     {
       kind.assign(n_dofs(), Kind::free);
-      std::map<unsigned int, int> senses;
+      std::map<unsigned int, int>                   senses;
+      std::map<unsigned int, std::set<std::string>> sides_at;
+      std::map<unsigned int, std::string>           sides_of;
       for (const Face &face : faces)
         if (scene.contact.count(face.side) > 0)
           for (const unsigned int v : face.vertices)
             {
-              const auto [d, s] = direction(face.side);
-              if (kind[dim * v + d] == Kind::free)
-                kind[dim * v + d] = Kind::contact;
-              senses[dim * v + d] = s;
-              if (scene.tangential_fixed)
-                for (unsigned int e = 0; e < dim; ++e)
-                  if (e != d)
-                    kind[dim * v + e] = Kind::fixed;
+              const auto [d, s]     = direction(face.side);
+              kind[dim * v + d]     = Kind::contact;
+              senses[dim * v + d]   = s;
+              sides_of[dim * v + d] = face.side;
+              sides_at[v].insert(face.side);
             }
+      // Where one side fixes what is tangential, all is tangential to one.
+      for (const auto &[v, sides] : sides_at)
+        for (const std::string &side : sides)
+          if (scene.fixes_tangential(side))
+            for (unsigned int e = 0; e < dim; ++e)
+              if (sides.size() > 1 || e != direction(side).first)
+                kind[dim * v + e] = Kind::fixed;
       for (const Face &face : faces)
         if (scene.clamped.count(face.side) > 0)
           for (const unsigned int v : face.vertices)
@@ -523,7 +587,8 @@ namespace OwnCheck
           }
       gap = VectorX::Zero(n_contact());
       for (unsigned int i = 0; i < n_contact(); ++i)
-        gap(i) = scene.gap_at(points[contact_dofs[i] / dim]);
+        gap(i) = scene.gap_at(sides_of.at(contact_dofs[i]),
+                              points[contact_dofs[i] / dim]);
 
       std::vector<Face> in_contact;
       for (Face face : faces)
@@ -534,8 +599,9 @@ namespace OwnCheck
               if (kind[dim * face.vertices[v] + d] == Kind::contact)
                 face.contact[v] = number[dim * face.vertices[v] + d];
               else
-                face.held[v] = s * fixed_values(dim * face.vertices[v] + d) -
-                               scene.gap_at(points[face.vertices[v]]);
+                face.held[v] =
+                  s * fixed_values(dim * face.vertices[v] + d) -
+                  scene.gap_at(face.side, points[face.vertices[v]]);
             in_contact.push_back(face);
           }
       all_faces.swap(faces);
@@ -644,6 +710,56 @@ namespace OwnCheck
       S   = MatrixX(A_cc) - A_ic.transpose() * X;
       S   = ((S + S.transpose()) / 2).eval();
       g   = f_c - A_ic.transpose() * X_f;
+      if (scene.held_by_bonds)
+        remove_rigid_motions();
+    }
+
+    /// What rounding leaves of S along motions that nothing resists.
+    void
+    remove_rigid_motions()
+    {
+      constexpr int n_motions = dim * (dim + 1) / 2;
+      MatrixX       motions   = MatrixX::Zero(n_dofs(), n_motions);
+      Real          size      = 0;
+      for (const double length : scene.lengths)
+        size = std::max(size, Real(length));
+      for (unsigned int v = 0; v < points.size(); ++v)
+        {
+          int column = 0;
+          for (unsigned int k = 0; k < dim; ++k)
+            motions(dim * v + k, column++) = 1;
+          for (unsigned int k = 0; k < dim; ++k)
+            for (unsigned int l = k + 1; l < dim; ++l, ++column)
+              {
+                const Point &x = points[v];
+                motions(dim * v + k, column) =
+                  -(x[l] - Real(scene.lengths[l]) / 2) / size;
+                motions(dim * v + l, column) =
+                  (x[k] - Real(scene.lengths[k]) / 2) / size;
+              }
+        }
+      MatrixX gram = MatrixX::Zero(n_motions, n_motions);
+      for (unsigned int i = 0; i < n_dofs(); ++i)
+        if (is_fixed(i))
+          gram += motions.row(i).transpose() * motions.row(i);
+      const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(gram);
+      MatrixX                                      free(n_contact(), 0);
+      for (int k = 0; k < n_motions; ++k)
+        if (eigen.eigenvalues()(k) <= Real(1e-15) * n_dofs())
+          {
+            const VectorX motion = motions * eigen.eigenvectors().col(k);
+            VectorX       normal(n_contact());
+            for (unsigned int i = 0; i < n_contact(); ++i)
+              normal(i) = sense[i] * motion(contact_dofs[i]);
+            for (int l = 0; l < free.cols(); ++l)
+              normal -= free.col(l) * free.col(l).dot(normal);
+            if (normal.norm() == 0)
+              continue;
+            free.conservativeResize(Eigen::NoChange, free.cols() + 1);
+            free.col(free.cols() - 1) = normal / normal.norm();
+          }
+      S -= (free * (free.transpose() * S)).eval();
+      S -= ((S * free) * free.transpose()).eval();
     }
 
     using Integrand = std::function<void(const Face &,
@@ -672,8 +788,8 @@ namespace OwnCheck
                 weight * face.measure,
                 trace,
                 phi,
-                scene.a_at(point),
-                scene.M_at(point));
+                scene.a_at(face.side, point),
+                scene.M_at(face.side, point));
     }
 
     /// Calls the integrand at the points of the rule of the scene.
@@ -731,15 +847,18 @@ namespace OwnCheck
                       const std::array<Real, dim> &t,
                       const Integrand             &integrand) const
     {
-      using Barycentric = std::array<Real, dim>;
+      // The same all over a side.
+      const Point origin = points[face.vertices[0]];
+      const Real  a      = scene.a_at(face.side, origin),
+                 M       = scene.M_at(face.side, origin);
+      using Barycentric  = std::array<Real, dim>;
       for (const int side : {1, -1})
         {
           std::vector<Barycentric> polygon;
           for (unsigned int v = 0; v < dim; ++v)
             {
-              const unsigned int w    = (v + 1) % dim;
-              const Real         at_v = side * (t[v] + scene.M),
-                         at_w         = side * (t[w] + scene.M);
+              const unsigned int w = (v + 1) % dim;
+              const Real at_v = side * (t[v] + M), at_w = side * (t[w] + M);
               if (at_v >= 0)
                 {
                   Barycentric corner = {};
@@ -760,10 +879,9 @@ namespace OwnCheck
             for (unsigned int v = 0; v < dim; ++v)
               trace += phi[v] * t[v];
             // On the cut the piece decides.
-            trace = side > 0 ? std::max(trace, -scene.M * (1 - Real(1e-18))) :
-                               std::min(trace, -Real(scene.M));
-            integrand(
-              face, weight * face.measure, trace, phi, scene.a, scene.M);
+            trace = side > 0 ? std::max(trace, -M * (1 - Real(1e-18))) :
+                               std::min(trace, -M);
+            integrand(face, weight * face.measure, trace, phi, a, M);
           };
           const auto middle = [](const Barycentric &p, const Barycentric &q) {
             Barycentric m;
@@ -792,6 +910,20 @@ namespace OwnCheck
                 visit(part / 3, middle(r, p));
               }
         }
+    }
+
+    /// Springs at the contact nodes that are lost beside whatever holds a body.
+    MatrixX
+    held_weakly() const
+    {
+      const unsigned int n = n_contact();
+      if (!scene.held_by_bonds)
+        return MatrixX::Zero(n, n);
+      return 1e-12 * scene.mu *
+             (dim == 3 ?
+                *std::max_element(scene.lengths.begin(), scene.lengths.end()) :
+                1.) *
+             MatrixX::Identity(n, n);
     }
 
     /// min 1/2 s'Qs - g's subject to s <= 0: all that is wrong is exchanged

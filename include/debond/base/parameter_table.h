@@ -135,6 +135,13 @@ namespace Debond
     void
     assign(const std::string &assignment);
 
+    /// Sets an entry to what follows from @p source, another one or its own
+    /// text, whose place it gets in messages.
+    void
+    derive(const std::string &path,
+           const std::string &value,
+           const std::string &source);
+
     /// Writes all variables, in the order in which they were bound. An entry
     /// whose value was not allowed counts as left out.
     void

@@ -132,7 +132,8 @@ namespace Debond
     bool
     has_field() const;
 
-    /// The bonds at a node.
+    /// The bonds at a node. Where boundaries with bonds of their own meet they
+    /// have the mean stiffness and fracture energy.
     BondScale
     bonds_at(const unsigned int node) const;
 
@@ -171,6 +172,15 @@ namespace Debond
     const std::vector<Point> &
     points(const dealii::Vector<double> &s) const;
 
+    /// Those of the rule on a face for the trace there.
+    const std::vector<typename ContactQuadrature<dim>::QuadraturePoint> &
+    rule_on(const typename ContactBoundary<dim>::Face &face,
+            const Trace                               &trace) const;
+
+    /// Makes bonds_of_nodes and bonds_of_held.
+    void
+    collect_bonds();
+
     /// Writes the points of all faces to point_list.
     void
     collect_points(const dealii::Vector<double> &s) const;
@@ -188,6 +198,10 @@ namespace Debond
     const AdhesiveLaw            &law;
     const ContactQuadrature<dim> &quadrature;
     const BondField<dim>         *field;
+
+    /// Empty if bonds are the same everywhere.
+    std::vector<BondScale> bonds_of_nodes;
+    std::vector<BondScale> bonds_of_held;
 
     double load_factor = 1.;
     double phi_at_zero = 0.;

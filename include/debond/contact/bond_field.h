@@ -4,7 +4,9 @@
 
 #include <deal.II/base/function.h>
 #include <deal.II/base/point.h>
+#include <deal.II/base/types.h>
 
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -25,12 +27,16 @@ namespace Debond
   class BondFieldError : public std::invalid_argument
   {
   public:
-    BondFieldError(const bool is_threshold, const std::string &message)
+    BondFieldError(const bool         is_threshold,
+                   const std::string &boundary,
+                   const std::string &message)
       : std::invalid_argument(message)
       , is_threshold(is_threshold)
+      , boundary(boundary)
     {}
 
-    const bool is_threshold; ///< or a stiffness
+    const bool        is_threshold; ///< or a stiffness
+    const std::string boundary;     ///< Bonds::boundary
   };
 
 
@@ -43,21 +49,32 @@ namespace Debond
   public:
     using Field = std::shared_ptr<const dealii::Function<dim>>;
 
-    /// Relative to bonds of stiffness @p a and threshold @p M, which hold where
-    /// a field is null.
-    BondField(const double a,
-              const double M,
-              const Field &stiffness,
-              const Field &threshold);
+    /// The bonds of a boundary. A null field stands for the a or M of
+    /// BondField().
+    struct Bonds
+    {
+      std::string boundary; ///< its name; empty for those of all others
+      Field       stiffness;
+      Field       threshold;
+    };
 
-    /// Throws BondFieldError with the place if the stiffness is negative or not
-    /// finite, or the threshold of bonds not positive.
+    /// Relative to bonds of stiffness @p a and threshold @p M.
+    BondField(const double                                       a,
+              const double                                       M,
+              const Bonds                                       &others,
+              const std::map<dealii::types::boundary_id, Bonds> &boundaries);
+
+    /// At a point of the boundary @p id. Throws BondFieldError with the place
+    /// if the stiffness is negative or not finite, or the threshold of bonds
+    /// not positive.
     BondScale
-    at(const dealii::Point<dim> &point) const;
+    at(const dealii::Point<dim>        &point,
+       const dealii::types::boundary_id id) const;
 
   private:
-    double a, M;
-    Field  stiffness, threshold;
+    double                                      a, M;
+    Bonds                                       others;
+    std::map<dealii::types::boundary_id, Bonds> boundaries;
   };
 } // namespace Debond
 

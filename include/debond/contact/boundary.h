@@ -75,6 +75,9 @@ namespace Debond
       /// Length or area.
       double measure;
 
+      /// The piece of the body's boundary that it belongs to.
+      dealii::types::boundary_id id = 0;
+
       /// Of the k-th coefficient, see `nodes`.
       unsigned int
       node(const unsigned int k) const

@@ -118,6 +118,22 @@ namespace Debond
     /// Expressions for bonds whose stiffness or threshold vary, empty where it
     /// does not: `branches` have 1 in their place.
     std::string stiffness = {}, threshold = {};
+
+    /// Of the bonds of one boundary, numbers or expressions.
+    struct Bonds
+    {
+      std::string stiffness, threshold;
+    };
+
+    /// By the names of the boundaries.
+    std::map<std::string, Bonds> boundaries = {};
+
+    /// Whether bonds are not the same everywhere.
+    bool
+    has_field() const
+    {
+      return !stiffness.empty() || !threshold.empty() || !boundaries.empty();
+    }
   };
 
   /// Makes a law of entries that have been read. What is wrong with them is

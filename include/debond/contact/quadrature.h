@@ -66,6 +66,10 @@ namespace Debond
     bool
     depends_on_trace() const;
 
+    /// Whether all points are vertices.
+    bool
+    is_nodal() const;
+
     /// The points on a face on which the trace has the given nodal values.
     /// The reference is valid until the next call (one thread at a time).
     const std::vector<QuadraturePoint> &
@@ -96,6 +100,7 @@ namespace Debond
 
     unsigned int        degree;
     bool                split_at_kinks;
+    bool                nodal;
     std::vector<double> kinks;
 
     /// The rule on a face, or on each piece of it if split_at_kinks.

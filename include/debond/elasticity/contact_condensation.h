@@ -67,6 +67,21 @@ namespace Debond
         result(i, k) = motions[k](nodes[i].position) * nodes[i].normal;
     return result;
   }
+
+
+
+  /// The mean stiffness of the body at its contact normals while all else is
+  /// held.
+  template <int dim>
+  double
+  stiffness_at_contact(const ElasticProblem<dim> &problem)
+  {
+    const auto &normals = problem.unknowns().contact().normals();
+    double      sum     = 0.;
+    for (const dealii::types::global_dof_index normal : normals)
+      sum += problem.matrix().diag_element(normal);
+    return normals.empty() ? 0. : sum / static_cast<double>(normals.size());
+  }
 } // namespace Debond
 
 #endif

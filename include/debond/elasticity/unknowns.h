@@ -38,6 +38,17 @@ namespace Debond
 
     /// For messages and reactions.
     BoundaryNames names = {};
+
+    /// The contact boundaries for which the other one of the two holds.
+    std::set<dealii::types::boundary_id> tangential_exceptions = {};
+
+    /// Whether it is fixed on this contact boundary.
+    bool
+    fixes_tangential(const dealii::types::boundary_id id) const
+    {
+      return tangential_displacement_fixed !=
+             (tangential_exceptions.count(id) > 0);
+    }
   };
 
 
@@ -58,14 +69,24 @@ namespace Debond
 
 
 
+  /// The distance g >= 0 between the body at rest and the foundation.
+  template <int dim>
+  struct InitialGap
+  {
+    std::string name; ///< of the boundary; empty if it is that of all others
+    std::shared_ptr<const dealii::Function<dim>> value;
+  };
+
+
+
   template <int dim>
   struct Supports
   {
     std::vector<PrescribedDisplacement<dim>> displacements = {};
 
-    /// The gap g >= 0 between the body at rest and the foundation; none if
-    /// null.
-    std::shared_ptr<const dealii::Function<dim>> gap = {};
+    /// Of the contact boundaries that have one. Where they meet the least
+    /// holds.
+    std::map<dealii::types::boundary_id, InitialGap<dim>> gaps = {};
   };
 
 

@@ -54,9 +54,12 @@ namespace Debond
     std::shared_ptr<const BodyDescription> body;
     unsigned int                           degree = 1; ///< of displacements
     MaterialParameters                     materials;
-    std::set<std::string>              clamped_boundaries = {"left", "right"};
-    std::set<std::string>              contact_boundaries = {"bottom"};
-    bool                               tangential_displacement_fixed = true;
+    std::set<std::string> clamped_boundaries            = {"left", "right"};
+    std::set<std::string> contact_boundaries            = {"bottom"};
+    bool                  tangential_displacement_fixed = true;
+
+    /// By the names of contact boundaries: "fixed" or "free".
+    std::map<std::string, std::string> tangential_displacements;
     SupportParameters                  supports;
     LoadParameters                     loads;
     LoadPathParameters                 load_path;

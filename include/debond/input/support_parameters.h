@@ -28,8 +28,10 @@ namespace Debond
     /// expression.
     std::map<std::string, std::string> displacements;
 
-    /// Between body and foundation; empty for none.
-    std::string gap;
+    /// Between body and foundation; empty for none. By the name of the
+    /// boundary those that are not that of all others.
+    std::string                        gap;
+    std::map<std::string, std::string> gaps;
   };
 
   /// Roller boundaries, prescribed displacements and the gap.

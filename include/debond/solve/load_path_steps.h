@@ -47,6 +47,7 @@ namespace Debond
   {
     unsigned int          step;
     double                factor;
+    double                displacement_factor;
     std::optional<double> change_factor; ///< see LoadPathStep
     double                broken_before;
     double                broken_after;

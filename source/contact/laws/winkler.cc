@@ -60,10 +60,22 @@ namespace Debond
 
 
 
-    /// Of Gamma_C, numbers or expressions.
+    /// Numbers or expressions.
     struct BondTexts
     {
-      std::string stiffness = "69", threshold = "0.002", strength, energy;
+      std::string stiffness, threshold, strength, energy;
+    };
+
+
+
+    /// As a scene has them.
+    struct BondEntries
+    {
+      BondTexts everywhere = {"69", "0.002", "", ""};
+
+      /// By the names of boundaries.
+      std::map<std::string, std::string> stiffnesses, thresholds, strengths,
+        energies;
     };
 
 
@@ -82,27 +94,36 @@ namespace Debond
 
 
 
-    /// Stiffness and threshold from the two that are given.
+    /// Stiffness and threshold from the two that are given, of entries with @p
+    /// suffix behind their names.
     void
-    complete(BondTexts &bonds, ParameterTable &table)
+    complete(const std::string &suffix, BondTexts &bonds, ParameterTable &table)
     {
       std::string &a = bonds.stiffness, &M = bonds.threshold,
                   &t = bonds.strength, &G = bonds.energy;
       if (t.empty() && G.empty())
         {
           if (a.empty() || M.empty())
-            table.reject(a.empty() ? stiffness_path : threshold_path,
+            table.reject((a.empty() ? stiffness_path : threshold_path) + suffix,
                          "bonds need a stiffness and a threshold, or two of "
                          "these, Bond strength and Fracture energy");
           return;
         }
-      const bool has_a = !a.empty() && table.is_set(stiffness_path);
-      const bool has_M = !M.empty() && table.is_set(threshold_path);
+      const std::string source =
+        (t.empty() ? energy_path : strength_path) + suffix;
+      const bool has_a = !a.empty() && table.is_set(stiffness_path + suffix);
+      const bool has_M = !M.empty() && table.is_set(threshold_path + suffix);
       if (has_a + has_M + !t.empty() + !G.empty() != 2)
         {
-          table.reject(t.empty() ? energy_path : strength_path,
+          table.reject(source,
                        "two of Bond stiffness, Bond threshold, Bond strength "
-                       "and Fracture energy are given, no more and no fewer");
+                       "and Fracture energy are given" +
+                         (suffix.empty() ? "" : " for" + suffix) +
+                         ", no more and no fewer",
+                       {stiffness_path + suffix,
+                        threshold_path + suffix,
+                        strength_path + suffix,
+                        energy_path + suffix});
           return;
         }
       const auto is_number = [](const std::string &text) {
@@ -165,7 +186,7 @@ namespace Debond
             std::make_tuple("threshold", new_M, false)})
         if (is_impossible(text, may_be_zero))
           {
-            table.reject(t.empty() ? energy_path : strength_path,
+            table.reject(source,
                          std::string("the ") + name + " would be " + text);
             return;
           }
@@ -174,29 +195,87 @@ namespace Debond
       t.clear();
       G.clear();
       // The effective scene has one pair only.
-      table.assign(stiffness_path + '=' + a);
-      table.assign(threshold_path + '=' + M);
-      table.assign(strength_path + '=');
-      table.assign(energy_path + '=');
+      table.derive(stiffness_path + suffix, a, source);
+      table.derive(threshold_path + suffix, M, source);
+      for (const std::string &path : {strength_path, energy_path})
+        if (table.is_set(path + suffix))
+          table.derive(path + suffix, "", path + suffix);
+    }
+
+
+
+    /// What a boundary does not say of its bonds is as everywhere.
+    std::map<std::string, ContactLawParameters::Bonds>
+    bonds_of_boundaries(const BondEntries &entries, ParameterTable &table)
+    {
+      std::map<std::string, BondTexts> texts;
+      for (const auto &[name, text] : entries.stiffnesses)
+        texts[name].stiffness = text;
+      for (const auto &[name, text] : entries.thresholds)
+        texts[name].threshold = text;
+      for (const auto &[name, text] : entries.strengths)
+        texts[name].strength = text;
+      for (const auto &[name, text] : entries.energies)
+        texts[name].energy = text;
+
+      std::map<std::string, ContactLawParameters::Bonds> result;
+      for (auto &[name, bonds] : texts)
+        {
+          if (bonds.strength.empty() && bonds.energy.empty())
+            {
+              if (bonds.stiffness.empty())
+                bonds.stiffness = entries.everywhere.stiffness;
+              if (bonds.threshold.empty())
+                bonds.threshold = entries.everywhere.threshold;
+            }
+          complete(' ' + name, bonds, table);
+          result[name] = {bonds.stiffness, bonds.threshold};
+        }
+      return result;
+    }
+
+
+
+    /// The number that fields are relative to: that of the first text that is
+    /// a positive number.
+    double
+    reference_value(const std::vector<std::string> &texts)
+    {
+      double value;
+      for (const std::string &text : texts)
+        if (read_number(text, value) && value > 0.)
+          return value;
+      return 1.;
     }
 
 
 
     ContactLawParameters
-    law_of(const BondTexts &bonds)
+    law_of(const BondTexts                                          &everywhere,
+           const std::map<std::string, ContactLawParameters::Bonds> &boundaries)
     {
       double     a = 1., M = 1.;
-      const bool a_is_number = read_number(bonds.stiffness, a);
-      const bool M_is_number = read_number(bonds.threshold, M);
-      if (a_is_number && (M_is_number || a == 0.))
+      const bool a_is_number = read_number(everywhere.stiffness, a);
+      const bool M_is_number = read_number(everywhere.threshold, M);
+      if (boundaries.empty() && a_is_number && (M_is_number || a == 0.))
         return winkler_law(a, M);
+
+      std::vector<std::string> stiffnesses = {everywhere.stiffness};
+      std::vector<std::string> thresholds  = {everywhere.threshold};
+      for (const auto &[name, bonds] : boundaries)
+        {
+          stiffnesses.push_back(bonds.stiffness);
+          thresholds.push_back(bonds.threshold);
+        }
       ContactLawParameters law =
-        winkler_law(a_is_number ? a : 1., M_is_number ? M : 1.);
-      law.data = "a = " + bonds.stiffness + ", M = " + bonds.threshold;
-      if (!a_is_number)
-        law.stiffness = bonds.stiffness;
+        winkler_law(reference_value(stiffnesses), reference_value(thresholds));
+      law.data =
+        "a = " + everywhere.stiffness + ", M = " + everywhere.threshold;
+      if (!a_is_number || a == 0.)
+        law.stiffness = everywhere.stiffness;
       if (!M_is_number)
-        law.threshold = bonds.threshold;
+        law.threshold = everywhere.threshold;
+      law.boundaries = boundaries;
       return law;
     }
   } // namespace
@@ -211,33 +290,55 @@ namespace Debond
       "is the paper's, with bonds that pull in proportion to the "
       "displacement and break at the threshold",
       [](ParameterTable &table) -> LawMaker {
-        const auto        bonds = std::make_shared<BondTexts>();
+        const auto        entries = std::make_shared<BondEntries>();
         const std::string expression =
           ", a number or an expression in x, y (and z) as in Loads";
-        table.bind(stiffness_path,
-                   bonds->stiffness,
-                   quantity_or_expression(true),
-                   "a" + expression + ": zero where there are no bonds",
-                   "force per volume");
-        table.bind(threshold_path,
-                   bonds->threshold,
-                   quantity_or_expression(false),
-                   "M, the displacement at which bonds break" + expression,
-                   "length");
-        table.bind(
+        const auto bind = [&](const std::string                  &path,
+                              std::string                        &everywhere,
+                              std::map<std::string, std::string> &boundaries,
+                              const bool                          may_be_zero,
+                              const std::string                  &documentation,
+                              const std::string                  &units) {
+          const Pattern pattern = quantity_or_expression(may_be_zero);
+          table.bind(path, everywhere, pattern, documentation, units);
+          table.bind_family(
+            path,
+            boundaries,
+            pattern,
+            documentation +
+              ", on the contact boundary or part of this name. Of stiffness "
+              "and threshold, the one that is not given for it is that of all",
+            units);
+        };
+        bind(stiffness_path,
+             entries->everywhere.stiffness,
+             entries->stiffnesses,
+             true,
+             "a" + expression + ": zero where there are no bonds",
+             "force per volume");
+        bind(threshold_path,
+             entries->everywhere.threshold,
+             entries->thresholds,
+             false,
+             "M, the displacement at which bonds break" + expression,
+             "length");
+        bind(
           strength_path,
-          bonds->strength,
-          quantity_or_expression(true),
+          entries->everywhere.strength,
+          entries->strengths,
+          true,
           "a M, the traction at which bonds break, likewise. Two of stiffness, threshold, strength and fracture energy are given, the other two follow",
           "force per area");
-        table.bind(energy_path,
-                   bonds->energy,
-                   quantity_or_expression(true),
-                   "a M^2/2, what it takes to break bonds, likewise",
-                   "energy per area");
-        return [bonds](ParameterTable &entries) {
-          complete(*bonds, entries);
-          return law_of(*bonds);
+        bind(energy_path,
+             entries->everywhere.energy,
+             entries->energies,
+             true,
+             "a M^2/2, what it takes to break bonds, likewise",
+             "energy per area");
+        return [entries](ParameterTable &all) {
+          complete("", entries->everywhere, all);
+          const auto boundaries = bonds_of_boundaries(*entries, all);
+          return law_of(entries->everywhere, boundaries);
         };
       }};
   }

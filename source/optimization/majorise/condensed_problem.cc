@@ -19,8 +19,7 @@ namespace Debond
     /// the terms in a row of S s.
     constexpr double rounding_factor = 4.;
 
-    /// A stiffness of less than this part of the mean diagonal entry of S is
-    /// none.
+    /// A stiffness of less than this part of that of the body is none.
     constexpr double least_stiffness = 1e-12;
 
     /// Of the proximal terms, in the same units: small, so that few steps do,
@@ -35,6 +34,39 @@ namespace Debond
 
     /// Repeated steps differ by less, relatively.
     constexpr double same_step = 1e-3;
+
+
+
+    Eigen::MatrixXd
+    orthonormal(const Eigen::MatrixXd &motions)
+    {
+      if (motions.cols() == 0)
+        return {};
+      // Translations and rotations differ by a length.
+      const Eigen::MatrixXd columns = motions.colwise().normalized();
+      return Eigen::HouseholderQR<Eigen::MatrixXd>(columns).householderQ() *
+             Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
+    }
+
+
+
+    /// (I - N N')S(I - N N'), nothing without N.
+    dealii::FullMatrix<double>
+    without_motions(const dealii::FullMatrix<double> &S,
+                    const Eigen::MatrixXd            &N)
+    {
+      dealii::FullMatrix<double> result;
+      if (N.cols() == 0)
+        return result;
+      Eigen::MatrixXd rest = eigen_view(S);
+      rest -= N * (N.transpose() * rest).eval();
+      rest -= (rest * N).eval() * N.transpose();
+      result.reinit(S.m(), S.n());
+      for (unsigned int i = 0; i < S.m(); ++i)
+        for (unsigned int j = 0; j < S.n(); ++j)
+          result(i, j) = 0.5 * (rest(i, j) + rest(j, i));
+      return result;
+    }
   } // namespace
 
 
@@ -43,20 +75,17 @@ namespace Debond
                                      const dealii::Vector<double>     &load,
                                      const PiecewiseQuadratic &nonsmooth,
                                      dealii::Vector<double>   &start,
-                                     const Eigen::MatrixXd    &free_motions)
-    : S(matrix)
+                                     const Eigen::MatrixXd    &free_motions,
+                                     const double              stiffness)
+    : N(orthonormal(free_motions))
+    , S_of_loose(without_motions(matrix, N))
+    , S(N.cols() > 0 ? S_of_loose : matrix)
+    , stiffness(stiffness)
     , g(load)
     , phi(nonsmooth)
     , s(start)
     , active(start.size())
   {
-    if (free_motions.cols() > 0)
-      {
-        // Translations and rotations differ by a length.
-        const Eigen::MatrixXd columns = free_motions.colwise().normalized();
-        N = Eigen::HouseholderQR<Eigen::MatrixXd>(columns).householderQ() *
-            Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
-      }
     for (unsigned int i = 0; i < s.size(); ++i)
       active[i] = s(i) == 0.;
   }
@@ -163,7 +192,7 @@ namespace Debond
       return N;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(N.transpose() *
                                                                (E * N));
-    const double least = least_stiffness * eigen_view(S).diagonal().mean();
+    const double least = least_stiffness * stiffness;
     return N * eigen.eigenvectors().leftCols(
                  (eigen.eigenvalues().array() <= least).count());
   }
@@ -173,7 +202,7 @@ namespace Debond
   MajorantProblem::Minimisation
   CondensedProblem::minimise_along(const Eigen::MatrixXd &Z)
   {
-    const double delta = proximal_stiffness * eigen_view(S).diagonal().mean();
+    const double          delta    = proximal_stiffness * stiffness;
     const Eigen::MatrixXd proximal = M + delta * Z * Z.transpose();
     const double          forces   = r.norm();
 

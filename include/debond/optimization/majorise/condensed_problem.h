@@ -23,12 +23,15 @@ namespace Debond
   public:
     /// Keeps references; @p s is the current point and has to be <= 0. The
     /// active set of the first majorant starts where it is zero. The columns
-    /// of @p free_motions span the null space of S.
+    /// of @p free_motions span the null space of S, of which rounding may have
+    /// left anything up to all of S; @p stiffness is what S is made of there,
+    /// in its units.
     CondensedProblem(const dealii::FullMatrix<double> &S,
                      const dealii::Vector<double>     &g,
                      const PiecewiseQuadratic         &phi,
                      dealii::Vector<double>           &s,
-                     const Eigen::MatrixXd            &free_motions = {});
+                     const Eigen::MatrixXd            &free_motions = {},
+                     const double                      stiffness    = 0.);
 
     State
     evaluate() override;
@@ -40,11 +43,15 @@ namespace Debond
     minimise(const double tolerance) override;
 
   private:
+    Eigen::MatrixXd N; ///< an orthonormal basis of S's null space
+
+    /// S without what rounding leaves along N, if there is N.
+    const dealii::FullMatrix<double>  S_of_loose;
     const dealii::FullMatrix<double> &S;
+    const double                      stiffness;
     const dealii::Vector<double>     &g;
     const PiecewiseQuadratic         &phi;
     dealii::Vector<double>           &s;
-    Eigen::MatrixXd N; ///< an orthonormal basis of S's null space
 
     /// Orthonormal motions of N that the majorant leaves without stiffness.
     Eigen::MatrixXd

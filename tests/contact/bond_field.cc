@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Two faces that meet in a node, each with bonds of its own, against the sum of
+// the faces' energies.
+
+#include <debond/contact/adhesion_integral.h>
+#include <debond/contact/laws/winkler.h>
+
+#include <cmath>
+
+#include "../check.h"
+
+using namespace Debond;
+
+namespace
+{
+  constexpr double a_1 = 2., M_1 = 0.5, a_2 = 3., M_2 = 0.2;
+  constexpr double length_1 = 1., length_2 = 0.5;
+
+
+
+  /// Faces from 0 to length_1 to length_1 + length_2 with ids 1 and 2.
+  ContactBoundary<2>
+  two_faces()
+  {
+    ContactBoundary<2> boundary;
+    for (const double x : {0., length_1, length_1 + length_2})
+      {
+        ContactBoundary<2>::Node node = {};
+        node.position                 = dealii::Point<2>(x, 0.);
+        boundary.nodes.push_back(node);
+      }
+    for (unsigned int f = 0; f < 2; ++f)
+      {
+        ContactBoundary<2>::Face face = {};
+        face.nodes                    = {{f, f + 1}};
+        face.vertices                 = {
+                          {boundary.nodes[f].position, boundary.nodes[f + 1].position}};
+        face.measure = f == 0 ? length_1 : length_2;
+        face.id      = f + 1;
+        boundary.faces.push_back(face);
+      }
+    return boundary;
+  }
+
+
+
+  BondField<2>
+  field(const double a, const double M)
+  {
+    const auto constant = [](const double value) {
+      return std::make_shared<const dealii::Functions::ConstantFunction<2>>(
+        value);
+    };
+    return {a_1,
+            M_1,
+            {"", nullptr, nullptr},
+            {{2, {"second", constant(a), constant(M)}}}};
+  }
+
+
+
+  double
+  j(const double a, const double M, const double s)
+  {
+    return 0.5 * a * std::min(s * s, M * M);
+  }
+} // namespace
+
+
+
+int
+main(int argc, char **)
+{
+  print_figures                     = argc > 1;
+  const ContactBoundary<2> boundary = two_faces();
+  const AdhesiveLaw        law(winkler_law(a_1, M_1).branches);
+  const BondField<2>       two = field(a_2, M_2), equal = field(a_1, M_1);
+  const auto               rule = [&](const std::string &name) {
+    return ContactQuadrature<2>(ContactQuadratureParameters::parse(name),
+                                law.kinks());
+  };
+  const ContactQuadrature<2> nodal = rule("nodal"), exact = rule("exact");
+
+  dealii::Vector<double> s(3);
+  const auto             traces = [&](const double scale) {
+    for (unsigned int i = 0; i < 3; ++i)
+      s(i) = -scale * (1. + 0.3 * i);
+  };
+  const auto by_vertices = [&] {
+    return length_1 / 2. * (j(a_1, M_1, s(0)) + j(a_1, M_1, s(1))) +
+           length_2 / 2. * (j(a_2, M_2, s(1)) + j(a_2, M_2, s(2)));
+  };
+  const auto relative = [](const double value, const double expected) {
+    return std::abs(value / expected - 1.);
+  };
+
+  {
+    const AdhesionIntegral<2> phi(boundary, law, nodal, &two);
+    check("nodes have a law each", phi.is_separable());
+    traces(0.01);
+    check("nodal energy of bonds that hold",
+          relative(phi.value(s), by_vertices()),
+          1e-14);
+    traces(10.);
+    check("of broken ones", relative(phi.value(s), by_vertices()), 1e-14);
+    const BondScale bonds = phi.bonds_at(1);
+    const double    a     = (length_1 * a_1 + length_2 * a_2) / 1.5,
+                 G = (length_1 * a_1 * M_1 * M_1 + length_2 * a_2 * M_2 * M_2) /
+                     3.;
+    check("threshold where they meet",
+          relative(bonds.stretch * M_1, std::sqrt(2. * G / a)),
+          1e-14);
+    check("which is the faces'",
+          phi.bonds_at(boundary.faces[1], 0).stretch == bonds.stretch &&
+            phi.bonds_at(boundary.faces[0], 1).stretch == bonds.stretch);
+    check("the second one's alone",
+          relative(phi.bonds_at(2).stretch * M_1, M_2),
+          1e-14);
+  }
+  {
+    const AdhesionIntegral<2> phi(boundary, law, nodal, &equal);
+    const AdhesionIntegral<2> one(boundary, law, nodal);
+    traces(0.3);
+    check("equal bonds, to the last bit", phi.value(s) == one.value(s));
+  }
+  {
+    // From below to above both thresholds.
+    s(0) = -0.05;
+    s(1) = -0.7;
+    s(2) = -0.1;
+    const AdhesionIntegral<2> phi(boundary, law, exact, &two);
+    const unsigned int        n   = 200000;
+    double                    sum = 0.;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const double t = (i + 0.5) / n;
+        sum += (length_1 * j(a_1, M_1, (1. - t) * s(0) + t * s(1)) +
+                length_2 * j(a_2, M_2, (1. - t) * s(1) + t * s(2))) /
+               n;
+      }
+    check("exact quadrature beside sampling",
+          relative(phi.value(s), sum),
+          1e-9);
+    dealii::Vector<double> xi(3);
+    phi.subgradient(s, xi);
+    double error = 0.;
+    for (unsigned int i = 0; i < 3; ++i)
+      {
+        constexpr double       step  = 1e-6;
+        dealii::Vector<double> above = s, below = s;
+        above(i) += step;
+        below(i) -= step;
+        error = std::max(error,
+                         std::abs((phi.value(above) - phi.value(below)) /
+                                    (2. * step) -
+                                  xi(i)));
+      }
+    check("its derivative beside differences", error, 1e-8);
+  }
+}
