@@ -827,7 +827,9 @@ namespace
     else if (print_figures)
       std::cout << number << ": " << outcome.kind << ": " << outcome.detail
                 << '\n'
-                << (outcome.kind == "rejected" ? scene_text(scene) : "")
+                << (outcome.kind == "rejected" || outcome.kind == "not solved" ?
+                      scene_text(scene) :
+                      "")
                 << std::flush;
   }
 } // namespace
