@@ -351,7 +351,8 @@ namespace
   {
     Bar         bar(10, 2);
     Supports<2> gap, moved;
-    gap.gap = std::make_shared<dealii::Functions::ConstantFunction<2>>(1., 1);
+    gap.gaps[*bar.conditions.contact.begin()] = {
+      "", std::make_shared<dealii::Functions::ConstantFunction<2>>(1., 1)};
     print_error([&]() {
       EquilibriumProblem(
         bar.mesh, bar.conditions, gap, bar.material, bar.loads);
