@@ -25,6 +25,15 @@ namespace Debond
 
 
   template <int dim>
+  unsigned int
+  AdhesionIntegral<dim>::n_nodes() const
+  {
+    return static_cast<unsigned int>(boundary.nodes.size());
+  }
+
+
+
+  template <int dim>
   void
   AdhesionIntegral<dim>::collect_bonds()
   {

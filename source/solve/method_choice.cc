@@ -12,8 +12,12 @@ namespace Debond
 {
   namespace
   {
-    /// Below, the choice hardly matters, and a factorisation is exact.
-    constexpr double seconds_that_matter = 10.;
+    /// Below, the choice hardly matters, and with a factorisation the search is
+    /// on all contact nodes.
+    constexpr double seconds_that_matter = 3.;
+
+    /// The estimates are not better than that.
+    constexpr double factor_that_matters = 2.;
 
 
 
@@ -146,7 +150,7 @@ namespace Debond
               reason = "a factorisation would take about " +
                        in_gib(direct_memory) + ", there are " + in_gib(limit);
             else if (direct_seconds > seconds_that_matter &&
-                     direct_seconds > multigrid_seconds)
+                     direct_seconds > factor_that_matters * multigrid_seconds)
               reason = "it takes less time";
             if (!reason.empty())
               {

@@ -15,6 +15,7 @@
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/majorise/restricted_function.h>
+#include <debond/solve/front_search.h>
 #include <debond/solve/progress.h>
 #include <debond/solve/scene_size.h>
 #include <debond/solve/solve.h>
@@ -212,17 +213,23 @@ namespace Debond
 
 
 
+    /// @p energy is what J is more than the functional that the method saw. The
+    /// iterations follow those that the result has.
     void
     add_majorise_result(const MajoriseMinimiseResult &minimum,
+                        const double                  energy,
                         SolveResult                  &result)
     {
-      result.status     = minimum.status;
-      result.message    = minimum.message;
-      result.iterations = static_cast<unsigned int>(minimum.history.size());
-      result.criterion  = minimum.residual;
-      result.majorise_history = minimum.history;
-      for (const MajoriseMinimiseIteration &iteration : minimum.history)
-        result.linear_iterations += iteration.linear_iterations;
+      result.status    = minimum.status;
+      result.message   = minimum.message;
+      result.criterion = minimum.residual;
+      for (MajoriseMinimiseIteration iteration : minimum.history)
+        {
+          iteration.iteration = ++result.iterations;
+          iteration.functional += energy;
+          result.linear_iterations += iteration.linear_iterations;
+          result.majorise_history.push_back(iteration);
+        }
     }
 
 
@@ -261,9 +268,9 @@ namespace Debond
                                s,
                                free_motions_of_contact(unknowns),
                                stiffness_at_contact(scene.problem()));
-      add_majorise_result(method.minimize(problem, std::ref(watch)), result);
-      for (MajoriseMinimiseIteration &iteration : result.majorise_history)
-        iteration.functional += condensed.energy_at_zero();
+      add_majorise_result(method.minimize(problem, std::ref(watch)),
+                          condensed.energy_at_zero(),
+                          result);
     }
 
 
@@ -469,27 +476,22 @@ namespace Debond
 
 
 
-    /// Majorise-minimise from result.u, which @p problem refers to, and what
-    /// rounding spoils of that by @p solver. @p energy is that of what is
-    /// prescribed, which the problem does not know.
-    template <int dim>
+    /// Majorise-minimise on all unknowns from result.u, which @p problem refers
+    /// to. @p energy is that of what is prescribed, which the problem does not
+    /// know.
     void
-    minimise_and_refine(const Parameters &parameters,
-                        const Scene<dim> &scene,
-                        const double      energy,
-                        MajorantProblem  &problem,
-                        CorrectionSolver &solver,
-                        Watch            &watch,
-                        SolveResult      &result)
+    minimise_on_all_unknowns(const Parameters &parameters,
+                             const double      energy,
+                             MajorantProblem  &problem,
+                             Watch            &watch,
+                             SolveResult      &result)
     {
       const dealii::Timer timer;
       add_majorise_result(MajoriseMinimise(parameters.solver.majorise_minimise)
                             .minimize(problem, std::ref(watch)),
+                          energy,
                           result);
-      for (MajoriseMinimiseIteration &iteration : result.majorise_history)
-        iteration.functional += energy;
-      result.parts["contact"] = timer.wall_time();
-      refine_result(scene, solver, watch, result);
+      result.parts["contact"] += timer.wall_time();
     }
 
 
@@ -535,8 +537,8 @@ namespace Debond
                                     result.u,
                                     [&watch]() { return watch.may_go_on(); });
       MultigridCorrection   solver(multigrid, normals);
-      minimise_and_refine(
-        parameters, scene, energy, problem, solver, watch, result);
+      minimise_on_all_unknowns(parameters, energy, problem, watch, result);
+      refine_result(scene, solver, watch, result);
     }
 
 
@@ -650,6 +652,42 @@ namespace Debond
 
 
 
+    /// The search on coarser meshes knows fronts to the size of their elements.
+    template <int dim>
+    void
+    improve_fronts(const Parameters &parameters,
+                   const Scene<dim> &scene,
+                   const double      energy,
+                   MajorantProblem  &problem,
+                   Watch            &watch,
+                   SolveResult      &result)
+    {
+      if (scene.law().curvature(0.) == 0.)
+        return;
+      const MajoriseMinimise method(parameters.solver.majorise_minimise);
+      WhichMinimum          &minimum = result.minimum;
+      while (can_be_verified(result.status))
+        {
+          const dealii::Timer     timer;
+          const FrontSearchResult search = search_fronts(
+            scene, method, [&]() { return watch.may_go_on(); }, result.u);
+          result.parts["fronts"] += timer.wall_time();
+          minimum.front_windows += search.windows;
+          minimum.front_trials += search.trials;
+          minimum.search_improvements += search.improvements;
+          minimum.search_failures += search.failures;
+          if (!search.complete)
+            result.notes.push_back("not all fronts were searched");
+          if (search.improvements == 0)
+            return;
+          minimise_on_all_unknowns(parameters, energy, problem, watch, result);
+          if (!search.complete)
+            return;
+        }
+    }
+
+
+
     /// By the coarser levels of the body, one truncated cycle for each
     /// majorant.
     template <int dim>
@@ -685,8 +723,10 @@ namespace Debond
                                 result.u,
                                 [&watch]() { return watch.may_go_on(); });
       LevelCorrection<dim> solver(*levels);
-      minimise_and_refine(
-        parameters, scene, energy, problem, solver, watch, result);
+      minimise_on_all_unknowns(parameters, energy, problem, watch, result);
+      if (wants_search(parameters.solver))
+        improve_fronts(parameters, scene, energy, problem, watch, result);
+      refine_result(scene, solver, watch, result);
     }
   } // namespace
 

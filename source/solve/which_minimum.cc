@@ -46,16 +46,6 @@ namespace Debond
 
 
 
-    bool
-    wants_search(const SolverParameters &parameters)
-    {
-      return parameters.search == BondSearchChoice::automatic ?
-               parameters.method == SolverMethod::automatic :
-               parameters.search != BondSearchChoice::none;
-    }
-
-
-
     void
     add_search(const BranchSearchResult &search,
                const unsigned int        n_nodes,
@@ -138,11 +128,11 @@ namespace Debond
     /// Of the bonds at the nodes, empty if all are the same.
     template <int dim>
     std::vector<double>
-    stretches(const AdhesionIntegral<dim> &adhesion, const unsigned int n)
+    stretches(const AdhesionIntegral<dim> &adhesion)
     {
       std::vector<double> result;
       if (adhesion.has_field())
-        for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int i = 0; i < adhesion.n_nodes(); ++i)
           result.push_back(adhesion.bonds_at(i).stretch);
       return result;
     }
@@ -192,10 +182,7 @@ namespace Debond
         , result(result)
         , method(parameters.majorise_minimise)
         , graph(neighbours(boundary))
-        , lumped(lumped_branches(adhesion,
-                                 s.size(),
-                                 law.branches(),
-                                 stretches(adhesion, s.size())))
+        , lumped(lumped_bonds(law, adhesion))
         , energy(energy_of_bonds(condensed, lumped))
         , separable(adhesion.is_separable())
       {
@@ -301,36 +288,36 @@ namespace Debond
         bool       is_closed     = false;
 
         std::vector<std::string> failures;
-        dealii::Vector<double>   point = coarse_start(
-          condensed.schur_complement(),
-          condensed.load(),
-          adhesion,
-          prolongations,
-          method,
-          failures,
-          monitor,
-          [&](const dealii::FullMatrix<double> &S,
-              const dealii::Vector<double>     &g,
-              const PiecewiseQuadratic         &phi,
-              dealii::Vector<double>           &coarse_s) {
-            const GuidedSearchResult guided = guided_search(
-              S,
-              g,
-              phi,
-              lumped_branches(phi,
-                              coarse_s.size(),
-                              law.branches(),
-                              coarse_stretches(stretches(adhesion, s.size()),
-                                               prolongations)),
-              false,
-              coarse_neighbours(prolongations.back()),
-              method,
-              guided_search_parameters(parameters, energy),
-              coarse_s,
-              may_go_on);
-            add_search(guided.search, coarse_s.size(), result);
-            is_closed = guided.is_closed;
-          });
+        dealii::Vector<double>   point =
+          coarse_start(condensed.schur_complement(),
+                       condensed.load(),
+                       adhesion,
+                       prolongations,
+                       method,
+                       failures,
+                       monitor,
+                       [&](const dealii::FullMatrix<double> &S,
+                           const dealii::Vector<double>     &g,
+                           const PiecewiseQuadratic         &phi,
+                           dealii::Vector<double>           &coarse_s) {
+                         const GuidedSearchResult guided = guided_search(
+                           S,
+                           g,
+                           phi,
+                           lumped_branches(phi,
+                                           coarse_s.size(),
+                                           law.branches(),
+                                           coarse_stretches(stretches(adhesion),
+                                                            prolongations)),
+                           false,
+                           coarse_neighbours(prolongations.back()),
+                           method,
+                           guided_search_parameters(parameters, energy),
+                           coarse_s,
+                           may_go_on);
+                         add_search(guided.search, coarse_s.size(), result);
+                         is_closed = guided.is_closed;
+                       });
         CondensedProblem             problem(condensed.schur_complement(),
                                  condensed.load(),
                                  adhesion,
@@ -386,8 +373,7 @@ namespace Debond
           dealii::Vector<double>      &s,
           WhichMinimum                &result)
     {
-      const SeparableBranches lumped = lumped_branches(
-        adhesion, s.size(), law.branches(), stretches(adhesion, s.size()));
+      const SeparableBranches lumped = lumped_bonds(law, adhesion);
       const double functional = condensed_functional(condensed, adhesion, s);
       BranchAndBoundParameters proof_parameters = parameters.proof;
       proof_parameters.tolerance *= energy_of_bonds(condensed, lumped);
@@ -429,6 +415,28 @@ namespace Debond
           return "global";
       }
     return "unknown";
+  }
+
+
+
+  bool
+  wants_search(const SolverParameters &parameters)
+  {
+    return parameters.search == BondSearchChoice::automatic ?
+             parameters.method == SolverMethod::automatic :
+             parameters.search != BondSearchChoice::none;
+  }
+
+
+
+  template <int dim>
+  SeparableBranches
+  lumped_bonds(const AdhesiveLaw &law, const AdhesionIntegral<dim> &adhesion)
+  {
+    return lumped_branches(adhesion,
+                           adhesion.n_nodes(),
+                           law.branches(),
+                           stretches(adhesion));
   }
 
 
@@ -504,6 +512,10 @@ namespace Debond
 
 
 
+  template SeparableBranches
+  lumped_bonds(const AdhesiveLaw &, const AdhesionIntegral<2> &);
+  template SeparableBranches
+  lumped_bonds(const AdhesiveLaw &, const AdhesionIntegral<3> &);
   template MinimumKind
   kind_without_search(const AdhesiveLaw &,
                       const AdhesionIntegral<2> &,

@@ -32,6 +32,10 @@ namespace Debond
                      const ContactQuadrature<dim> &quadrature_rule,
                      const BondField<dim>         *bond_field = nullptr);
 
+    /// Of which s has a component.
+    unsigned int
+    n_nodes() const;
+
     /// From now on the prescribed displacements are @p factor times those for
     /// the whole load. Throws as BondField does, and so does the constructor.
     void

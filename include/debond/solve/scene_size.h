@@ -44,9 +44,9 @@ namespace Debond
                      const unsigned int dimension,
                      const unsigned int bundle_size);
 
-  /// Estimates of the time for the linear systems of a scene by a factorisation
-  /// and by multigrid, in seconds on one core as of 2024, from the box alone:
-  /// good for a comparison, within a factor of about 3 on the bodies measured.
+  /// Estimates of the time that the solve of a scene takes with a factorisation
+  /// and with multigrid, in seconds on one core as of 2024, from the box and
+  /// the materials alone: within a factor of about 3 on the bodies measured.
   double
   seconds_with_factorisation(const Parameters &parameters);
 

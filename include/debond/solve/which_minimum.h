@@ -6,6 +6,7 @@
 #include <debond/input/solver_parameters.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/optimization/global/branch_and_bound.h>
+#include <debond/optimization/global/separable_branches.h>
 
 #include <functional>
 #include <string>
@@ -36,6 +37,10 @@ namespace Debond
     unsigned int search_failures     = 0; ///< trials without a result
     unsigned int search_nodes = 0; ///< contact nodes of the mesh of the search
 
+    /// Of search_fronts(), on the finest mesh.
+    unsigned int front_windows = 0;
+    unsigned int front_trials  = 0;
+
     /// Contact nodes of the coarser mesh, with lumped bonds, on which the
     /// minimum is proved and leads to the result; 0 if there is none.
     unsigned int closed_nodes = 0;
@@ -56,6 +61,16 @@ namespace Debond
   };
 
 
+
+  /// Whether a search for lower minima is asked for, by a method that ends at
+  /// one of them.
+  bool
+  wants_search(const SolverParameters &parameters);
+
+  /// The bonds lumped at the contact nodes.
+  template <int dim>
+  SeparableBranches
+  lumped_bonds(const AdhesiveLaw &law, const AdhesionIntegral<dim> &adhesion);
 
   /// stationary, local minimum, or global if there is no adhesion and J is
   /// convex.
