@@ -106,6 +106,11 @@ namespace Debond
       shifts_for_ranges(const std::vector<SideRange> &ranges,
                         const double                  multiple) const;
 
+      /// The sides of which the ranges say on which piece of the law they are.
+      unsigned int
+      n_certain(const std::vector<SideRange> &ranges,
+                const std::vector<double>    &D) const;
+
       MeanProblem
       mean_problem(const std::vector<SideRange> &ranges,
                    std::vector<double>          &D) const;
@@ -172,6 +177,19 @@ namespace Debond
             D < available(i) ? D : std::min(multiple * a, available(i)));
         }
       return shifts;
+    }
+
+
+
+    unsigned int
+    Sides::n_certain(const std::vector<SideRange> &ranges,
+                     const std::vector<double>    &D) const
+    {
+      unsigned int result = 0;
+      for (unsigned int i = 0; i < n; ++i)
+        result +=
+          RoundedBranches(law, D[i]).exact_piece(ranges[i].linear) ? 1 : 0;
+      return result;
     }
 
 
@@ -484,19 +502,18 @@ namespace Debond
             best_lower = lower;
           }
       }
-    const auto n_certain = [&best]() {
-      return best->pieces.size() -
-             std::count(best->pieces.begin(), best->pieces.end(), std::nullopt);
-    };
+    unsigned int n_certain = 0;
     for (unsigned int stage = 0; stage < n_stages && may_go_on(); ++stage)
       {
-        const auto before = n_certain();
         shrink(*best, upper, may_go_on, ranges);
         std::vector<double> D = sides.shifts_for_ranges(ranges, best_shift);
-        best                  = sides.mean_problem(ranges, D);
-        add_bound(*best);
-        if (n_certain() == before)
+        const unsigned int  before = n_certain;
+        n_certain                  = sides.n_certain(ranges, D);
+        // Even if no side is certain, the first new shifts are better ones.
+        if (stage > 0 && n_certain <= before)
           break;
+        best = sides.mean_problem(ranges, D);
+        add_bound(*best);
       }
 
     for (unsigned int i = 0; i < ranges.size(); ++i)
