@@ -35,6 +35,15 @@ namespace Debond
 
 
 
+  template <int dim>
+  std::vector<unsigned int>
+  Body<dim>::slabs(const std::vector<dealii::Point<dim>> &vertices) const
+  {
+    return std::vector<unsigned int>(vertices.size(), 0);
+  }
+
+
+
   template class Body<2>;
   template class Body<3>;
 } // namespace Debond

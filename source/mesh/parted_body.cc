@@ -367,6 +367,15 @@ namespace Debond
 
 
 
+  template <int dim>
+  std::vector<unsigned int>
+  PartedBody<dim>::slabs(const std::vector<dealii::Point<dim>> &vertices) const
+  {
+    return whole->slabs(vertices);
+  }
+
+
+
   template class PartedBody<2>;
   template class PartedBody<3>;
 } // namespace Debond

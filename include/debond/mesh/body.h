@@ -144,6 +144,12 @@ namespace Debond
     /// those of the body's own mesh, in any order. Empty if there are none.
     virtual std::vector<CoarseLevel<dim>>
     coarse_levels(const std::vector<dealii::Point<dim>> &vertices) const;
+
+    /// For each of the mesh's vertices the slab of the body that it lies in:
+    /// sums are made slab by slab, so that they do not depend on where slabs
+    /// are. One for all if there is no other.
+    virtual std::vector<unsigned int>
+    slabs(const std::vector<dealii::Point<dim>> &vertices) const;
   };
 } // namespace Debond
 

@@ -85,7 +85,11 @@ namespace Debond
     coarse_levels(
       const std::vector<dealii::Point<dim>> &vertices) const override;
 
-  private:
+    /// Layers of cells along x; what lies between two belongs to the second.
+    std::vector<unsigned int>
+    slabs(const std::vector<dealii::Point<dim>> &vertices) const override;
+
+  protected:
     /// Those of coarse_levels().
     std::vector<BoxParameters>
     coarse_boxes() const;

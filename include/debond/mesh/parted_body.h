@@ -71,6 +71,9 @@ namespace Debond
     coarse_levels(
       const std::vector<dealii::Point<dim>> &vertices) const override;
 
+    std::vector<unsigned int>
+    slabs(const std::vector<dealii::Point<dim>> &vertices) const override;
+
   private:
     const std::shared_ptr<const Body<dim>> whole;
     const std::vector<Part<dim>>           parts;

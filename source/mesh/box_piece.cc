@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/mesh/box_piece.h>
+#include <debond/mesh/crossed_lattice.h>
+#include <debond/mesh/crossed_mesh.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
+
+namespace Debond
+{
+  namespace
+  {
+    /// On each side of the own slabs: a coarser vertex depends on vertices less
+    /// than two cells away, whose rows in A need the cells around them.
+    constexpr unsigned int n_ghost_slabs = 2;
+
+
+
+    /// Numbers of the vertices of a crossed mesh in the order in which its
+    /// cells, the first direction running fastest, come to them.
+    template <int dim>
+    class VertexNumbers
+    {
+    public:
+      using Coordinates = typename CrossedLattice<dim>::Coordinates;
+
+      explicit VertexNumbers(const std::array<unsigned int, 3> &cells)
+        : n(cells)
+      {
+        BoxParameters one;
+        one.lengths = {{1., 1., 1.}};
+        one.cells   = {{1, 1, 1}};
+        dealii::Triangulation<dim> mesh;
+        make_box(one, mesh);
+        const CrossedLattice<dim> lattice(one);
+        for (const auto &cell : mesh.active_cell_iterators())
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              const Coordinates offset = lattice.coordinates(cell->vertex(v));
+              if (std::find(pattern.begin(), pattern.end(), offset) ==
+                  pattern.end())
+                pattern.push_back(offset);
+            }
+        for (unsigned int at_begin = 0; at_begin < 1u << dim; ++at_begin)
+          n_new[at_begin] = static_cast<unsigned int>(std::count_if(
+            pattern.begin(), pattern.end(), [&](const Coordinates &offset) {
+              return is_new(offset, at_begin);
+            }));
+      }
+
+      unsigned int
+      operator()(const Coordinates &lattice) const
+      {
+        // The first cell that comes to the vertex.
+        unsigned int at_begin = 0, result = 0;
+        Coordinates  offset;
+        for (unsigned int d = dim; d-- > 0;)
+          {
+            const unsigned int cell =
+              lattice[d] == 0 ? 0 : (lattice[d] - 1) / 2;
+            offset[d] = lattice[d] - 2 * cell;
+            if (cell > 0)
+              result += n_new_in(d, at_begin | 1u << d) +
+                        (cell - 1) * n_new_in(d, at_begin);
+            else
+              at_begin |= 1u << d;
+          }
+        for (const Coordinates &other : pattern)
+          {
+            if (other == offset)
+              return result;
+            result += is_new(other, at_begin);
+          }
+        throw std::logic_error("This is no vertex of a crossed mesh.");
+      }
+
+    private:
+      /// Whether a cell is the first one to come to its vertex; it lies at the
+      /// beginning of the directions whose bits are set.
+      static bool
+      is_new(const Coordinates &offset, const unsigned int at_begin)
+      {
+        for (unsigned int d = 0; d < dim; ++d)
+          if (offset[d] == 0 && (at_begin & 1u << d) == 0)
+            return false;
+        return true;
+      }
+
+      /// Of all cells along the directions below @p d.
+      unsigned int
+      n_new_in(const unsigned int d, const unsigned int at_begin) const
+      {
+        return d == 0 ? n_new[at_begin] :
+                        n_new_in(d - 1, at_begin | 1u << (d - 1)) +
+                          (n[d - 1] - 1) * n_new_in(d - 1, at_begin);
+      }
+
+      const std::array<unsigned int, 3>   n;
+      std::vector<Coordinates>            pattern; ///< of a cell
+      std::array<unsigned int, 1u << dim> n_new;
+    };
+
+
+
+    /// The id of faces at which the piece ends and the box does not.
+    template <int dim>
+    constexpr dealii::types::boundary_id id_of_cuts = 2 * dim;
+  } // namespace
+
+
+
+  template <int dim>
+  BoxPiece<dim>::BoxPiece(const BoxParameters &box,
+                          const unsigned int   rank,
+                          const unsigned int   n_ranks)
+    : Box<dim>(box)
+    , first(
+        static_cast<unsigned int>(std::size_t(box.cells[0]) * rank / n_ranks))
+    , end(static_cast<unsigned int>(std::size_t(box.cells[0]) * (rank + 1) /
+                                    n_ranks))
+  {
+    if (n_ranks > n_slabs())
+      throw std::invalid_argument(
+        "a box with " + std::to_string(n_slabs()) +
+        " cells along x can be cut for at most as many ranks, not " +
+        std::to_string(n_ranks));
+    if (box.rotation != 0.)
+      throw std::invalid_argument("a turned box cannot be cut for ranks");
+  }
+
+
+
+  template <int dim>
+  PieceNames
+  BoxPiece<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
+  {
+    const BoxParameters &box   = this->parameters;
+    const unsigned int   begin = std::max(first, n_ghost_slabs) - n_ghost_slabs;
+    std::array<unsigned int, 3> n = box.cells, n_vertices = {{1, 1, 1}};
+    n[0] = std::min(end + n_ghost_slabs, n[0]) - begin;
+    if (dim == 2)
+      n[2] = 1;
+    for (unsigned int d = 0; d < dim; ++d)
+      n_vertices[d] = n[d] + 1;
+    const auto for_each = [](const std::array<unsigned int, 3> &counts,
+                             const auto                        &action) {
+      for (unsigned int k = 0; k < counts[2]; ++k)
+        for (unsigned int j = 0; j < counts[1]; ++j)
+          for (unsigned int i = 0; i < counts[0]; ++i)
+            action(std::array<unsigned int, 3>{{i, j, k}});
+    };
+
+    // As GridGenerator::subdivided_hyper_rectangle() does, to the last bit.
+    std::vector<dealii::Point<dim>>    vertices;
+    std::vector<dealii::CellData<dim>> cells;
+    for_each(n_vertices, [&](const std::array<unsigned int, 3> &i) {
+      dealii::Point<dim> point;
+      for (unsigned int d = 0; d < dim; ++d)
+        point[d] =
+          (d == 0 ? begin + i[d] : i[d]) * (box.lengths[d] / box.cells[d]);
+      vertices.push_back(point);
+    });
+    for_each(n, [&](const std::array<unsigned int, 3> &i) {
+      cells.emplace_back();
+      for (unsigned int v = 0; v < 1u << dim; ++v)
+        cells.back().vertices[v] =
+          i[0] + (v & 1) +
+          n_vertices[0] *
+            (i[1] + (v >> 1 & 1) + n_vertices[1] * (i[2] + (v >> 2 & 1)));
+    });
+    dealii::Triangulation<dim> coarse;
+    coarse.create_triangulation(vertices, cells, dealii::SubCellData());
+    for (const auto &cell : coarse.active_cell_iterators())
+      for (const unsigned int f : cell->face_indices())
+        if (cell->face(f)->at_boundary())
+          cell->face(f)->set_boundary_id(
+            (f == 0 && begin > 0) || (f == 1 && begin + n[0] < box.cells[0]) ?
+              id_of_cuts<dim> :
+              f);
+    crossed_subdivision(coarse, mesh);
+    return {box_boundaries<dim>(), {}};
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  BoxPiece<dim>::n_faces_on(const std::string &side) const
+  {
+    const unsigned int boundary = box_sides<dim>().at(side);
+    unsigned int       result   = dim == 2 ? 1 : 4;
+    for (unsigned int d = 0; d < dim; ++d)
+      if (d != boundary / 2)
+        result *= this->parameters.cells[d];
+    return result;
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  BoxPiece<dim>::n_slabs() const
+  {
+    return this->parameters.cells[0];
+  }
+
+
+
+  template <int dim>
+  std::vector<unsigned int>
+  BoxPiece<dim>::numbers(const std::vector<dealii::Point<dim>> &vertices) const
+  {
+    const CrossedLattice<dim> lattice(this->parameters);
+    const VertexNumbers<dim>  number(this->parameters.cells);
+    std::vector<unsigned int> result;
+    result.reserve(vertices.size());
+    for (const dealii::Point<dim> &vertex : vertices)
+      result.push_back(number(lattice.coordinates(vertex)));
+    return result;
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  BoxPiece<dim>::first_slab() const
+  {
+    return first;
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  BoxPiece<dim>::end_slab() const
+  {
+    return end;
+  }
+
+
+
+  template <int dim>
+  std::size_t
+  BoxPiece<dim>::cell_at(const dealii::Point<dim> &point) const
+  {
+    std::size_t result = 0;
+    for (unsigned int d = dim; d-- > 0;)
+      {
+        const unsigned int n = this->parameters.cells[d];
+        result =
+          result * n + std::min(n - 1,
+                                static_cast<unsigned int>(
+                                  point[d] * n / this->parameters.lengths[d]));
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  BoxPiece<dim>::owns_cell_at(const dealii::Point<dim> &point) const
+  {
+    const std::size_t slab = cell_at(point) % this->parameters.cells[0];
+    return first <= slab && slab < end;
+  }
+
+
+
+  template <int dim>
+  typename BoxPiece<dim>::CoarsePiece
+  BoxPiece<dim>::coarse_piece(
+    const std::vector<dealii::Point<dim>> &vertices) const
+  {
+    const BoxParameters       box = this->coarse_boxes().at(0);
+    const CrossedLattice<dim> lattice(box);
+    CoarsePiece               result;
+    result.level.to_finer =
+      lattice.interpolation(vertices, 0, [](const std::size_t i) {
+        return static_cast<unsigned int>(i);
+      });
+    std::vector<unsigned int> &nodes = result.level.to_finer.nodes;
+    std::vector<unsigned int> &ids   = result.ids;
+    ids                              = nodes;
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    ids.shrink_to_fit();
+    for (unsigned int &node : nodes)
+      node = static_cast<unsigned int>(
+        std::lower_bound(ids.begin(), ids.end(), node) - ids.begin());
+    result.level.to_finer.n_nodes = static_cast<unsigned int>(ids.size());
+
+    for (const unsigned int id : ids)
+      {
+        result.level.vertices.push_back(lattice.point(id));
+        const std::size_t x = id % (2 * box.cells[0] + 1);
+        const std::size_t slab =
+          std::min<std::size_t>(x * n_slabs() / (2 * box.cells[0]),
+                                n_slabs() - 1);
+        result.is_own.push_back(first <= slab && slab < end);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  typename BoxPiece<dim>::CoarseWhole
+  BoxPiece<dim>::coarse_whole() const
+  {
+    const BoxParameters       box = this->coarse_boxes().at(0);
+    const CrossedLattice<dim> lattice(box);
+    CoarseWhole               result;
+    for (std::size_t i = 0; i < lattice.size(); ++i)
+      if (lattice.is_vertex(i))
+        {
+          result.vertices.push_back(lattice.point(i));
+          result.ids.push_back(static_cast<unsigned int>(i));
+        }
+    result.coarser = Box<dim>(box).coarse_levels(result.vertices);
+    return result;
+  }
+
+
+
+  template class BoxPiece<2>;
+  template class BoxPiece<3>;
+} // namespace Debond
