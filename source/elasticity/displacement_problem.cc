@@ -3,6 +3,7 @@
 #include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace Debond
@@ -23,7 +24,8 @@ namespace Debond
     , active(contact_normals.size())
   {
     for (unsigned int i = 0; i < normals.size(); ++i)
-      active[i] = u(normals[i]) == 0.;
+      active[i] = normals[i] != dealii::numbers::invalid_unsigned_int &&
+                  u(normals[i]) == 0.;
   }
 
 
@@ -39,6 +41,23 @@ namespace Debond
 
 
 
+  double
+  DisplacementProblem::product(const dealii::Vector<double> &a,
+                               const dealii::Vector<double> &b) const
+  {
+    return a * b;
+  }
+
+
+
+  double
+  DisplacementProblem::norm(const dealii::Vector<double> &v) const
+  {
+    return std::sqrt(product(v, v));
+  }
+
+
+
   MajorantProblem::State
   DisplacementProblem::evaluate()
   {
@@ -49,8 +68,8 @@ namespace Debond
     phi.subgradient(s, xi);
 
     State        state;
-    const double energy   = 0.5 * (internal * u);
-    const double work     = f * u;
+    const double energy   = 0.5 * product(internal, u);
+    const double work     = product(f, u);
     const double adhesion = phi.value(s);
     state.functional      = energy - work + adhesion;
 
@@ -58,29 +77,29 @@ namespace Debond
     // and cancel.
     dealii::Vector<double> terms = diagonal;
     terms.scale(u);
-    force_rounding =
-      4. * std::numeric_limits<double>::epsilon() * terms.l2_norm();
-    state.functional_rounding = force_rounding * u.l2_norm();
+    force_rounding = 4. * std::numeric_limits<double>::epsilon() * norm(terms);
+    state.functional_rounding = force_rounding * norm(u);
 
     dealii::Vector<double> violation = f;
     violation -= internal;
     // Vectors without entries have no norm in deal.II.
     const double adhesive_force = xi.size() == 0 ? 0. : xi.l2_norm();
-    largest_force = std::max({f.l2_norm(), internal.l2_norm(), adhesive_force});
+    largest_force  = std::max({norm(f), norm(internal), adhesive_force});
     state.n_active = 0;
     for (unsigned int i = 0; i < normals.size(); ++i)
       {
+        if (s(i) == 0.)
+          ++state.n_active;
+        if (normals[i] == dealii::numbers::invalid_unsigned_int)
+          continue;
         // On a node in contact only a force that pulls violates the law.
         double &force = violation(normals[i]);
         force -= xi(i);
         if (s(i) == 0.)
-          {
-            ++state.n_active;
-            force = std::min(force, 0.);
-          }
+          force = std::min(force, 0.);
       }
     const double scale      = largest_force == 0. ? 1. : 1. / largest_force;
-    state.residual          = scale * violation.l2_norm();
+    state.residual          = scale * norm(violation);
     state.residual_rounding = scale * force_rounding;
     return state;
   }
@@ -115,8 +134,7 @@ namespace Debond
     force.sadd(-1., 1., f);
     const dealii::Vector<double> s   = trace(u);
     const Eigen::VectorXd        E_s = E * eigen_view(s);
-    for (unsigned int i = 0; i < normals.size(); ++i)
-      force(normals[i]) += b_c(i) - E_s(i);
+    add_normal(Eigen::VectorXd(b_c - E_s), force);
   }
 
 
@@ -127,10 +145,8 @@ namespace Debond
     const dealii::Vector<double> &src) const
   {
     multiply(dst, src);
-    const dealii::Vector<double> s   = trace(src);
-    const Eigen::VectorXd        E_s = E * eigen_view(s);
-    for (unsigned int i = 0; i < normals.size(); ++i)
-      dst(normals[i]) += E_s(i);
+    const dealii::Vector<double> s = trace(src);
+    add_normal(Eigen::VectorXd(E * eigen_view(s)), dst);
     restrict_to_free(dst);
   }
 
@@ -140,7 +156,7 @@ namespace Debond
   DisplacementProblem::restrict_to_free(dealii::Vector<double> &v) const
   {
     for (unsigned int i = 0; i < normals.size(); ++i)
-      if (active[i] != 0)
+      if (active[i] != 0 && normals[i] != dealii::numbers::invalid_unsigned_int)
         v(normals[i]) = 0.;
   }
 } // namespace Debond

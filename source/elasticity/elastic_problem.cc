@@ -17,8 +17,9 @@ namespace Debond
     const dealii::Triangulation<dim> &triangulation,
     const BoundaryConditions         &conditions,
     const Supports<dim>              &supports,
-    const unsigned int                degree)
-    : elastic_unknowns(triangulation, conditions, supports, degree)
+    const unsigned int                degree,
+    const std::vector<unsigned int>  &node_order)
+    : elastic_unknowns(triangulation, conditions, supports, degree, node_order)
   {}
 
 

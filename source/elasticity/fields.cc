@@ -240,9 +240,17 @@ namespace Debond
   ElasticFields<dim>::elastic_functional(const dealii::Vector<double> &u,
                                          const LoadFactors factors) const
   {
-    return energy(u,
-                  factors,
-                  unknowns.in_frames(applied_nodal_forces(factors)));
+    return elastic_terms(u, factors).sum();
+  }
+
+
+
+  template <int dim>
+  typename ElasticFields<dim>::Terms
+  ElasticFields<dim>::elastic_terms(const dealii::Vector<double> &u,
+                                    const LoadFactors             factors) const
+  {
+    return terms(u, factors, unknowns.in_frames(applied_nodal_forces(factors)));
   }
 
 
@@ -252,7 +260,7 @@ namespace Debond
   ElasticFields<dim>::strain_energy(const dealii::Vector<double> &u,
                                     const LoadFactors             factors) const
   {
-    return energy(u, factors, dealii::Vector<double>(u.size()));
+    return terms(u, factors, dealii::Vector<double>(u.size())).sum();
   }
 
 
@@ -281,17 +289,14 @@ namespace Debond
 
 
   template <int dim>
-  double
-  ElasticFields<dim>::energy(const dealii::Vector<double> &u,
-                             const LoadFactors             factors,
-                             const dealii::Vector<double> &load) const
+  typename ElasticFields<dim>::Terms
+  ElasticFields<dim>::terms(const dealii::Vector<double> &u,
+                            const LoadFactors             factors,
+                            const dealii::Vector<double> &load) const
   {
     const dealii::Vector<double> displacement =
       unknowns.cartesian_displacement(u, factors);
-    namespace accumulators = boost::accumulators;
-    accumulators::
-      accumulator_set<double, accumulators::stats<accumulators::tag::sum_kahan>>
-        sum;
+    Terms result = {{}, load, lifted(u, factors)};
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
       {
         const BernsteinSimplex<dim> simplex(cell, unknowns.degree());
@@ -300,14 +305,29 @@ namespace Debond
           {
             const dealii::SymmetricTensor<2, dim> strain = dealii::symmetrize(
               gradient(simplex, nodes, displacement, simplex.point(q)));
-            sum(0.5 * simplex.weight *
-                (strain * (stiffness(cell->material_id()) * strain)));
+            result.energies.push_back(
+              0.5 * simplex.weight *
+              (strain * (stiffness(cell->material_id()) * strain)));
           }
       }
-    const dealii::Vector<double> x = lifted(u, factors);
-    for (unsigned int i = 0; i < x.size(); ++i)
-      sum(-load(i) * x(i));
-    return accumulators::sum_kahan(sum);
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  ElasticFields<dim>::Terms::sum() const
+  {
+    namespace accumulators = boost::accumulators;
+    accumulators::
+      accumulator_set<double, accumulators::stats<accumulators::tag::sum_kahan>>
+        result;
+    for (const double energy : energies)
+      result(energy);
+    for (unsigned int i = 0; i < displacement.size(); ++i)
+      result(-load(i) * displacement(i));
+    return accumulators::sum_kahan(result);
   }
 
 

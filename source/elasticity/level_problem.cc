@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_control.h>
+#include <deal.II/lac/vector_memory.templates.h>
 
 #include <debond/elasticity/level_problem.h>
 #include <debond/linear_algebra/eigen_view.h>
@@ -31,7 +32,58 @@ namespace Debond
 
 
 
-    /// For deal.II's solvers.
+    /// Products on a level, for deal.II's solvers.
+    template <int dim>
+    class LevelVector : public dealii::Vector<double>
+    {
+    public:
+      LevelVector() = default;
+
+      LevelVector(const ElasticLevels<dim>     &elastic_levels,
+                  const unsigned int            level,
+                  const dealii::Vector<double> &values)
+        : dealii::Vector<double>(values)
+        , levels(&elastic_levels)
+        , l(level)
+      {}
+
+      void
+      reinit(const LevelVector &other, const bool omit_zeroing = false)
+      {
+        dealii::Vector<double>::reinit(other, omit_zeroing);
+        levels = other.levels;
+        l      = other.l;
+      }
+
+      double
+      operator*(const LevelVector &other) const
+      {
+        return levels->product(l, *this, other);
+      }
+
+      double
+      l2_norm() const
+      {
+        return std::sqrt(*this * *this);
+      }
+
+      double
+      add_and_dot(const double       factor,
+                  const LevelVector &added,
+                  const LevelVector &other)
+      {
+        add(factor, added);
+        return *this * other;
+      }
+
+    private:
+      const ElasticLevels<dim> *levels = nullptr;
+      unsigned int              l      = 0;
+    };
+
+
+
+    template <int dim>
     struct LinearOperator
     {
       std::function<void(dealii::Vector<double> &,
@@ -39,8 +91,7 @@ namespace Debond
         product;
 
       void
-      vmult(dealii::Vector<double>       &dst,
-            const dealii::Vector<double> &src) const
+      vmult(LevelVector<dim> &dst, const LevelVector<dim> &src) const
       {
         product(dst, src);
       }
@@ -63,6 +114,7 @@ namespace Debond
                           go_on)
     , levels(elastic_levels)
     , l(level)
+    , contact_rows(levels.contact_rows(l))
   {}
 
 
@@ -78,23 +130,63 @@ namespace Debond
 
 
   template <int dim>
+  dealii::Vector<double>
+  LevelProblem<dim>::trace(const dealii::Vector<double> &v) const
+  {
+    return levels.trace(l, v);
+  }
+
+
+
+  template <int dim>
+  double
+  LevelProblem<dim>::product(const dealii::Vector<double> &a,
+                             const dealii::Vector<double> &b) const
+  {
+    return levels.product(l, a, b);
+  }
+
+
+
+  template <int dim>
   void
   LevelProblem<dim>::smooth_contact(dealii::Vector<double> &force)
   {
+    // Each rank goes through all nodes, and then adds what that does to its
+    // unknowns.
+    using Entry                    = Eigen::SparseMatrix<double>::InnerIterator;
+    dealii::Vector<double>       s = trace(u);
+    const dealii::Vector<double> old_s   = s;
+    dealii::Vector<double>       force_s = trace(force);
     for (unsigned int i = 0; i < normals.size(); ++i)
       {
-        const unsigned int normal = normals[i];
-        const double       s      = u(normal);
-        const double       new_s =
-          std::min(0., s + force(normal) / (diagonal(normal) + E.coeff(i, i)));
-        if (new_s == s)
+        const double stiffness = contact_rows.coeff(i, i) + E.coeff(i, i);
+        s(i)                   = std::min(0., s(i) + force_s(i) / stiffness);
+        if (s(i) == old_s(i))
           continue;
-        u(normal) = new_s;
-        levels.add_column(l, normal, s - new_s, force);
-        for (Eigen::SparseMatrix<double>::InnerIterator entry(E, i); entry;
-             ++entry)
-          force(normals[entry.row()]) += (s - new_s) * entry.value();
+        for (Entry entry(contact_rows, i); entry; ++entry)
+          force_s(static_cast<unsigned int>(entry.row())) +=
+            (old_s(i) - s(i)) * entry.value();
+        for (Entry entry(E, i); entry; ++entry)
+          force_s(static_cast<unsigned int>(entry.row())) +=
+            (old_s(i) - s(i)) * entry.value();
       }
+
+    constexpr unsigned int elsewhere = dealii::numbers::invalid_unsigned_int;
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      {
+        if (s(i) == old_s(i))
+          continue;
+        if (normals[i] != elsewhere)
+          {
+            u(normals[i]) = s(i);
+            levels.add_column(l, normals[i], old_s(i) - s(i), force);
+          }
+        for (Entry entry(E, i); entry; ++entry)
+          if (normals[entry.row()] != elsewhere)
+            force(normals[entry.row()]) += (old_s(i) - s(i)) * entry.value();
+      }
+    levels.update_ghosts(l, force);
   }
 
 
@@ -107,7 +199,7 @@ namespace Debond
     const auto             previous_u = u;
     Minimisation           result     = {SolverStatus::quadratic_program, 0, 0};
     dealii::Vector<double> force(u.size()), free_force(u.size()),
-      correction(u.size()), product(u.size());
+      correction(u.size()), image(u.size());
     const auto interrupted = [&]() {
       result.status = SolverStatus::interrupted;
       u             = previous_u;
@@ -121,11 +213,13 @@ namespace Debond
           return interrupted();
         ++result.active_set_steps;
         smooth_contact(force);
+        const dealii::Vector<double> s       = trace(u);
+        const dealii::Vector<double> force_s = trace(force);
         for (unsigned int i = 0; i < normals.size(); ++i)
-          active[i] = u(normals[i]) == 0. && force(normals[i]) >= 0.;
+          active[i] = s(i) == 0. && force_s(i) >= 0.;
         free_force = force;
         restrict_to_free(free_force);
-        const double residual = free_force.l2_norm();
+        const double residual = norm(free_force);
         if (residual <= required)
           {
             result.status = SolverStatus::success;
@@ -152,23 +246,31 @@ namespace Debond
           }
         else
           {
-            correction = 0.;
-            dealii::SolverControl control(maximum_cycles, 0.9 * required);
-            dealii::SolverCG<dealii::Vector<double>> cg(control);
+            LevelVector<dim> x(levels, l, dealii::Vector<double>(u.size()));
+            const LevelVector<dim> b(levels, l, free_force);
+            dealii::SolverControl  control(maximum_cycles, 0.9 * required);
+            dealii::PrimitiveVectorMemory<LevelVector<dim>> memory;
+            dealii::SolverCG<LevelVector<dim>>              cg(control, memory);
             cg.connect([this](const unsigned int,
                               const double,
-                              const dealii::Vector<double> &) {
+                              const LevelVector<dim> &) {
               return may_go_on() ? dealii::SolverControl::success :
                                    dealii::SolverControl::failure;
             });
-            const LinearOperator majorant = {
+            const LinearOperator<dim> majorant = {
               [this](dealii::Vector<double>       &dst,
                      const dealii::Vector<double> &src) {
                 multiply_majorant(dst, src);
               }};
+            const LinearOperator<dim> preconditioner = {
+              [this](dealii::Vector<double>       &dst,
+                     const dealii::Vector<double> &src) {
+                levels.cycle().vmult(dst, src);
+              }};
             try
               {
-                cg.solve(majorant, correction, free_force, levels.cycle());
+                cg.solve(majorant, x, b, preconditioner);
+                correction = static_cast<const dealii::Vector<double> &>(x);
               }
             catch (const dealii::SolverControl::NoConvergence &)
               {
@@ -182,22 +284,20 @@ namespace Debond
           }
 
         // Onto s <= 0, and then as far as the majorant falls.
-        double longest = std::numeric_limits<double>::infinity();
+        double longest           = std::numeric_limits<double>::infinity();
+        dealii::Vector<double> c = trace(correction);
         for (unsigned int i = 0; i < normals.size(); ++i)
           {
-            double      &c = correction(normals[i]);
-            const double s = u(normals[i]);
-            c              = std::min(c, -s);
-            if (c > 0.)
-              longest = std::min(longest, -s / c);
+            c(i) = std::min(c(i), -s(i));
+            if (c(i) > 0.)
+              longest = std::min(longest, -s(i) / c(i));
+            if (normals[i] != dealii::numbers::invalid_unsigned_int)
+              correction(normals[i]) = c(i);
           }
-        multiply(product, correction);
-        const dealii::Vector<double> c   = trace(correction);
-        const Eigen::VectorXd        E_c = E * eigen_view(c);
-        for (unsigned int i = 0; i < normals.size(); ++i)
-          product(normals[i]) += E_c(i);
-        const double slope     = force * correction;
-        const double curvature = product * correction;
+        multiply(image, correction);
+        add_normal(Eigen::VectorXd(E * eigen_view(c)), image);
+        const double slope     = product(force, correction);
+        const double curvature = product(image, correction);
         if (!(slope > 0.) || !(curvature > 0.))
           {
             result.status = SolverStatus::stagnated;
@@ -205,9 +305,10 @@ namespace Debond
           }
         const double step = std::min(longest, slope / curvature);
         u.add(step, correction);
-        force.add(-step, product);
+        force.add(-step, image);
         for (const unsigned int normal : normals)
-          u(normal) = std::min(u(normal), 0.);
+          if (normal != dealii::numbers::invalid_unsigned_int)
+            u(normal) = std::min(u(normal), 0.);
       }
     return result;
   }

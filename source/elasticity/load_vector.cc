@@ -564,12 +564,14 @@ namespace Debond
                  const dealii::types::boundary_id id,
                  const std::string               &name,
                  const dealii::Function<dim>     &function,
+                 const unsigned int               n_faces_of_whole,
                  dealii::Vector<double>          &forces)
     {
-      unsigned int n_faces = 0;
+      unsigned int n_faces = n_faces_of_whole;
       for (const auto &cell : dof_handler.active_cell_iterators())
         for (const auto &face : cell->face_iterators())
-          n_faces += face->at_boundary() && face->boundary_id() == id;
+          n_faces += n_faces_of_whole == 0 && face->at_boundary() &&
+                     face->boundary_id() == id;
       if (n_faces == 0)
         throw std::invalid_argument("There is a traction on " + name +
                                     ", but the mesh has no such boundary.");
@@ -634,12 +636,17 @@ namespace Debond
           add_body_force(dof_handler, *loads.body_force, forces);
         for (const auto &[id, traction] : loads.tractions)
           {
-            boundary               = id;
-            const std::string name = boundary_name(loads.boundary_names, id);
+            boundary                 = id;
+            const std::string  name  = boundary_name(loads.boundary_names, id);
+            const auto         entry = loads.n_faces.find(id);
+            const unsigned int n_faces =
+              entry == loads.n_faces.end() ? 0 : entry->second;
             if (dof_handler.get_fe().degree == 1)
-              add_traction<dim, 1>(dof_handler, id, name, *traction, forces);
+              add_traction<dim, 1>(
+                dof_handler, id, name, *traction, n_faces, forces);
             else
-              add_traction<dim, 2>(dof_handler, id, name, *traction, forces);
+              add_traction<dim, 2>(
+                dof_handler, id, name, *traction, n_faces, forces);
           }
       }
     catch (const std::invalid_argument &error)

@@ -86,12 +86,14 @@ namespace Debond
 
 
 
-    /// All faces of the given boundaries, each of which must exist.
+    /// All faces of the given boundaries, each of which must exist unless the
+    /// mesh is a piece.
     template <int dim>
     std::vector<BoundaryFace<dim>>
     boundary_faces(const dealii::DoFHandler<dim>              &dofs,
                    const std::set<dealii::types::boundary_id> &boundaries,
-                   const BoundaryNames                        &names)
+                   const BoundaryNames                        &names,
+                   const bool                                  is_piece)
     {
       std::vector<BoundaryFace<dim>>       faces;
       std::set<dealii::types::boundary_id> missing = boundaries;
@@ -103,7 +105,7 @@ namespace Debond
               missing.erase(cell->face(f)->boundary_id());
               faces.emplace_back(cell, f);
             }
-      if (!missing.empty())
+      if (!missing.empty() && !is_piece)
         throw std::invalid_argument(
           "Boundary conditions: " + boundary_name(names, *missing.begin()) +
           " is clamped or a contact boundary, but the mesh has no such "
@@ -208,8 +210,10 @@ namespace Debond
     const dealii::Triangulation<dim> &triangulation,
     const BoundaryConditions         &conditions,
     const Supports<dim>              &supports,
-    const unsigned int                degree)
-    : mapping_p1(dealii::FE_SimplexP<dim>(1))
+    const unsigned int                degree,
+    const std::vector<unsigned int>  &node_order)
+    : is_piece(!node_order.empty())
+    , mapping_p1(dealii::FE_SimplexP<dim>(1))
     , fe(dealii::FE_SimplexP<dim>(degree), dim)
     , dofs(triangulation)
     , frame_of_node(n_nodes(triangulation, degree),
@@ -226,6 +230,16 @@ namespace Debond
           " is both clamped and a contact boundary.");
 
     dofs.distribute_dofs(fe);
+    if (is_piece)
+      {
+        std::vector<dealii::types::global_dof_index> numbers(dofs.n_dofs());
+        for (const auto &cell : dofs.active_cell_iterators())
+          for (const unsigned int v : cell->vertex_indices())
+            for (unsigned int d = 0; d < dim; ++d)
+              numbers[cell->vertex_dof_index(v, d)] =
+                node_order[cell->vertex_index(v)] * dim + d;
+        dofs.renumber_dofs(numbers);
+      }
     const double diameter = [&] {
       const auto corners =
         dealii::BoundingBox<dim>(triangulation.get_vertices())
@@ -249,7 +263,8 @@ namespace Debond
       if (part->size() > 0 && part->all_zero())
         part->reinit(0);
 
-    free_motions = free_rigid_motions(held, diameter);
+    if (!is_piece)
+      free_motions = free_rigid_motions(held, diameter);
     if (!free_motions.motions.empty())
       {
         for (const auto &node : contact_space.boundary().nodes)
@@ -274,7 +289,7 @@ namespace Debond
   {
     std::map<std::string, unsigned int> numbers;
     for (const BoundaryFace<dim> &face :
-         boundary_faces(dofs, conditions.clamped, conditions.names))
+         boundary_faces(dofs, conditions.clamped, conditions.names, is_piece))
       {
         const auto [entry, is_new] =
           numbers.emplace(clamp_name(conditions, face.id),
@@ -341,7 +356,7 @@ namespace Debond
 
     std::vector<bool>                    is_done(frame_of_node.size(), false);
     const std::vector<BoundaryFace<dim>> faces =
-      boundary_faces(dofs, condition.boundaries, conditions.names);
+      boundary_faces(dofs, condition.boundaries, conditions.names, is_piece);
     for (const BoundaryFace<dim> &face : faces)
       {
         constexpr double rounding = 1e-8;
@@ -563,7 +578,7 @@ namespace Debond
     constexpr unsigned int none = dealii::numbers::invalid_unsigned_int;
 
     const std::vector<BoundaryFace<dim>> faces =
-      boundary_faces(dofs, conditions.contact, conditions.names);
+      boundary_faces(dofs, conditions.contact, conditions.names, is_piece);
 
     // By node index; clamped vertices are left out. For each face, the group
     // of normals that it belongs to at each of its vertices.

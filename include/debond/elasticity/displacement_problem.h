@@ -46,8 +46,22 @@ namespace Debond
     multiply(dealii::Vector<double>       &dst,
              const dealii::Vector<double> &src) const = 0;
 
-    dealii::Vector<double>
+    /// The entries of all normal displacements, and <a, b>: what ranks that
+    /// share the unknowns have to do together.
+    virtual dealii::Vector<double>
     trace(const dealii::Vector<double> &v) const;
+
+    virtual double
+    product(const dealii::Vector<double> &a,
+            const dealii::Vector<double> &b) const;
+
+    double
+    norm(const dealii::Vector<double> &v) const;
+
+    /// v += the entries of all normal displacements, as far as they are here.
+    template <typename Entries>
+    void
+    add_normal(const Entries &s, dealii::Vector<double> &v) const;
 
     /// Minus the majorant's gradient at u: a force for each unknown.
     void
@@ -63,10 +77,12 @@ namespace Debond
     void
     restrict_to_free(dealii::Vector<double> &v) const;
 
-    const dealii::Vector<double>   &f;
-    const PiecewiseQuadratic       &phi;
-    dealii::Vector<double>         &u;
-    const std::vector<unsigned int> normals;  ///< the unknowns s
+    const dealii::Vector<double> &f;
+    const PiecewiseQuadratic     &phi;
+    dealii::Vector<double>       &u;
+    /// The unknowns s, dealii::numbers::invalid_unsigned_int for those that
+    /// other ranks have.
+    const std::vector<unsigned int> normals;
     const dealii::Vector<double>    diagonal; ///< of A
     const std::function<bool()>     may_go_on;
 
@@ -79,6 +95,18 @@ namespace Debond
     Eigen::VectorXd             b_c;
     ActiveSet                   active;
   };
+
+
+
+  template <typename Entries>
+  void
+  DisplacementProblem::add_normal(const Entries          &s,
+                                  dealii::Vector<double> &v) const
+  {
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      if (normals[i] != dealii::numbers::invalid_unsigned_int)
+        v(normals[i]) += s(i);
+  }
 } // namespace Debond
 
 #endif

@@ -7,11 +7,13 @@
 #include <deal.II/lac/vector.h>
 
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/elasticity/problem_piece.h>
 #include <debond/linear_algebra/multigrid/truncated_cycle.h>
 #include <debond/mesh/body.h>
 
 #include <Eigen/SparseCore>
 
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -35,6 +37,16 @@ namespace Debond
     static std::unique_ptr<ElasticLevels>
     make(const Body<dim> &body, const ElasticProblem<dim> &problem);
 
+    /// For the problem on a piece of the body. To be called by all ranks, and
+    /// so are the functions below for the level 0 and prolongate() from the
+    /// level 1; of the coarser levels only the root knows. Keeps references.
+    static std::unique_ptr<ElasticLevels<dim>>
+    make(const ProblemPiece<dim> &piece, const ElasticProblem<dim> &problem);
+
+    /// Whether the process has the coarser levels.
+    bool
+    is_root() const;
+
     unsigned int
     n_levels() const;
 
@@ -44,7 +56,8 @@ namespace Debond
     TruncatedCycle<dim> &
     cycle();
 
-    /// The unknowns s_l.
+    /// The unknowns s_l, dealii::numbers::invalid_unsigned_int for those that
+    /// other ranks have.
     const std::vector<unsigned int> &
     normals(const unsigned int l) const;
 
@@ -60,6 +73,24 @@ namespace Debond
     vmult(const unsigned int            l,
           dealii::Vector<double>       &dst,
           const dealii::Vector<double> &src) const;
+
+    /// The entries of all s_l.
+    dealii::Vector<double>
+    trace(const unsigned int l, const dealii::Vector<double> &v) const;
+
+    /// <a, b>.
+    double
+    product(const unsigned int            l,
+            const dealii::Vector<double> &a,
+            const dealii::Vector<double> &b) const;
+
+    /// The rows and columns s_l of A_l; the column j has the row's entries.
+    Eigen::SparseMatrix<double>
+    contact_rows(const unsigned int l) const;
+
+    /// Makes the entries that other ranks have the same as there.
+    void
+    update_ghosts(const unsigned int l, dealii::Vector<double> &v) const;
 
     /// v += factor times the column of A_l.
     void
@@ -86,9 +117,33 @@ namespace Debond
     prolongate(const unsigned int l, const dealii::Vector<double> &u) const;
 
   private:
+    /// @p piece and @p root are null unless ranks share the problem.
     ElasticLevels(const ElasticProblem<dim>      &problem,
-                  const NodeFrames<dim>          &frames,
+                  std::unique_ptr<SharedNodes>    whole,
+                  const ProblemPiece<dim>        *piece,
+                  std::unique_ptr<RootLevel<dim>> root,
                   std::vector<CoarseLevel<dim>> &&coarse);
+
+    /// The level 1 where ranks share the finest one.
+    void
+    add_shared_level();
+
+    /// The unknowns s_l; returns the index of each of the finer ones.
+    std::map<unsigned int, unsigned int>
+    add_normals(const unsigned int               l,
+                const std::vector<unsigned int> &fine_normals);
+
+    /// P_l, from the entries of the step from the next finer level.
+    void
+    add_trace(const unsigned int                         l,
+              const std::vector<Eigen::Triplet<double>> &entries);
+
+    /// Calls @p visit with column and entry of a row of A_l.
+    template <typename Visitor>
+    void
+    visit_row(const unsigned int l,
+              const unsigned int row,
+              const Visitor     &visit) const;
 
     struct Level
     {
@@ -98,9 +153,13 @@ namespace Debond
       dealii::Vector<double>          load;
     };
 
-    const ElasticProblem<dim>           &problem;
-    std::vector<Level>                   levels;
-    std::unique_ptr<TruncatedCycle<dim>> truncated_cycle;
+    const ElasticProblem<dim>            &problem;
+    const std::unique_ptr<SharedNodes>    whole; ///< if no ranks share it
+    const ProblemPiece<dim> *const        piece;
+    const std::unique_ptr<RootLevel<dim>> root;
+    const SharedNodes                    &nodes;
+    std::vector<Level>                    levels;
+    std::unique_ptr<TruncatedCycle<dim>>  truncated_cycle;
   };
 } // namespace Debond
 

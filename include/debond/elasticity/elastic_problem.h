@@ -14,6 +14,7 @@
 #include <debond/elasticity/unknowns.h>
 
 #include <memory>
+#include <vector>
 
 namespace Debond
 {
@@ -41,8 +42,9 @@ namespace Debond
     /// Throws as ElasticUnknowns does.
     ElasticProblem(const dealii::Triangulation<dim> &triangulation,
                    const BoundaryConditions         &conditions,
-                   const Supports<dim>              &supports = {},
-                   const unsigned int                degree   = 1);
+                   const Supports<dim>              &supports   = {},
+                   const unsigned int                degree     = 1,
+                   const std::vector<unsigned int>  &node_order = {});
 
     /// Computes A and f. Throws std::invalid_argument if a material is not
     /// valid or a load is not, see load_vector() and

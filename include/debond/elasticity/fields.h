@@ -102,6 +102,23 @@ namespace Debond
     elastic_functional(const dealii::Vector<double> &u,
                        const LoadFactors             factors = 1.) const;
 
+    /// What elastic_functional() sums up: the strain energies of the cells (of
+    /// degree 2 at each point of a cell) in their order, and the loads and the
+    /// displacements in the unknowns' frames.
+    struct Terms
+    {
+      std::vector<double>    energies;
+      dealii::Vector<double> load;
+      dealii::Vector<double> displacement;
+
+      double
+      sum() const;
+    };
+
+    Terms
+    elastic_terms(const dealii::Vector<double> &u,
+                  const LoadFactors             factors = 1.) const;
+
     /// The strain energy 1/2 <A u, u>, likewise.
     double
     strain_energy(const dealii::Vector<double> &u,
@@ -121,11 +138,11 @@ namespace Debond
     dealii::Vector<double>
     lifted(const dealii::Vector<double> &u, const LoadFactors factors) const;
 
-    /// 1/2 <A u, u> - <load, u>, the load given in the unknowns' frames.
-    double
-    energy(const dealii::Vector<double> &u,
-           const LoadFactors             factors,
-           const dealii::Vector<double> &load) const;
+    /// With a load given in the unknowns' frames.
+    Terms
+    terms(const dealii::Vector<double> &u,
+          const LoadFactors             factors,
+          const dealii::Vector<double> &load) const;
 
     /// The displacement gradient, of a cell that is known.
     static dealii::Tensor<2, dim>

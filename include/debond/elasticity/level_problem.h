@@ -10,9 +10,13 @@ namespace Debond
   /**
    * J on the unknowns of a level. Majorants are minimised by truncated
    * nonsmooth Newton multigrid (Graeser, Sack, Sander, 2009): one Gauss-Seidel
-   * step on the contact normals, one truncated V-cycle for all unknowns that
-   * are not in contact, projection onto s <= 0 and an exact line search; once
-   * the contact set stays as it is, conjugate gradients with that V-cycle.
+   * step on the contact normals (on all ranks the same), one truncated V-cycle
+   * for all unknowns that are not in contact, projection onto s <= 0 and an
+   * exact line search; once the contact set stays as it is, conjugate gradients
+   * with that V-cycle.
+   *
+   * Where ranks share the finest level, each of them has such a problem of it,
+   * and all call the same functions.
    */
   template <int dim>
   class LevelProblem : public DisplacementProblem
@@ -38,12 +42,22 @@ namespace Debond
     multiply(dealii::Vector<double>       &dst,
              const dealii::Vector<double> &src) const override;
 
+    dealii::Vector<double>
+    trace(const dealii::Vector<double> &v) const override;
+
+    double
+    product(const dealii::Vector<double> &a,
+            const dealii::Vector<double> &b) const override;
+
     /// Minimises the majorant in one normal displacement after the other.
     void
     smooth_contact(dealii::Vector<double> &force);
 
     ElasticLevels<dim> &levels;
     const unsigned int  l;
+
+    /// The rows of A of the normal displacements.
+    const Eigen::SparseMatrix<double> contact_rows;
 
     /// What the cycle is truncated for.
     bool                        is_truncated = false;

@@ -33,6 +33,10 @@ namespace Debond
 
     /// For messages.
     BoundaryNames boundary_names = {};
+
+    /// Of whole boundaries, if the mesh is a piece of a larger one, where some
+    /// have less of them or none.
+    std::map<dealii::types::boundary_id, unsigned int> n_faces = {};
   };
 
 

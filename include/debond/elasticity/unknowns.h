@@ -155,10 +155,16 @@ namespace Debond
     /// the motion ("translation in y", "rotation about z"). Throws SupportError
     /// if supports contradict each other or the foundation, are not finite
     /// somewhere, or if a roller is not flat.
+    ///
+    /// The mesh may be a piece of a larger one: then @p node_order (of degree
+    /// 1) has for each of its vertices the place in the order of the nodes,
+    /// which is that of the cells otherwise, boundaries may be missing, and
+    /// rigid motions are not looked at.
     ElasticUnknowns(const dealii::Triangulation<dim> &triangulation,
                     const BoundaryConditions         &conditions,
-                    const Supports<dim>              &supports = {},
-                    const unsigned int                degree   = 1);
+                    const Supports<dim>              &supports   = {},
+                    const unsigned int                degree     = 1,
+                    const std::vector<unsigned int>  &node_order = {});
 
     ElasticUnknowns(const ElasticUnknowns &) = delete;
 
@@ -337,6 +343,8 @@ namespace Debond
     /// The unknowns of Cartesian components.
     dealii::Vector<double>
     to_frames(const dealii::Vector<double> &cartesian) const;
+
+    const bool is_piece; ///< the mesh
 
     const dealii::MappingFE<dim> mapping_p1;
     const dealii::FESystem<dim>  fe;

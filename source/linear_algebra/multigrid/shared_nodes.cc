@@ -11,7 +11,8 @@ namespace Debond
                            std::vector<unsigned int> slabs_of_nodes)
     : dim(dimension)
     , slabs(std::move(slabs_of_nodes))
-    , sums(slabs.empty() ? 0 : *std::max_element(slabs.begin(), slabs.end()) + 1)
+    , sums(slabs.empty() ? 0 :
+                           *std::max_element(slabs.begin(), slabs.end()) + 1)
     , ranges({{0u, static_cast<unsigned int>(slabs.size())}})
   {}
 
@@ -44,8 +45,9 @@ namespace Debond
           }
       }
     exchange =
-      std::make_unique<dealii::Utilities::MPI::NoncontiguousPartitioner>(
-        own, ghosts, ranks);
+      std::make_unique<dealii::Utilities::MPI::NoncontiguousPartitioner>(own,
+                                                                         ghosts,
+                                                                         ranks);
   }
 
 
@@ -112,9 +114,9 @@ namespace Debond
     if (is_whole())
       return;
     const std::size_t n = slabs.size() * dim;
-    exchange->export_to_ghosted_array(
-      dealii::ArrayView<const Number>(values, n),
-      dealii::ArrayView<Number>(values, n));
+    exchange->export_to_ghosted_array(dealii::ArrayView<const Number>(values,
+                                                                      n),
+                                      dealii::ArrayView<Number>(values, n));
   }
 
 
@@ -137,11 +139,10 @@ namespace Debond
   {
     // Each entry is zero on all ranks but one.
     if (!is_whole())
-      dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(sums.data(),
-                                                                  sums.size()),
-                                  ranks,
-                                  dealii::ArrayView<double>(sums.data(),
-                                                            sums.size()));
+      dealii::Utilities::MPI::sum(
+        dealii::ArrayView<const double>(sums.data(), sums.size()),
+        ranks,
+        dealii::ArrayView<double>(sums.data(), sums.size()));
     return std::accumulate(sums.begin(), sums.end(), 0.);
   }
 

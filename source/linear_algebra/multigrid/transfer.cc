@@ -140,6 +140,17 @@ namespace Debond
 
 
   template <int dim>
+  void
+  Transfer<dim>::set_coarse_frames(const NodeFrames<dim>           &frames,
+                                   const std::vector<unsigned int> &origins)
+  {
+    coarse       = frames;
+    origin_nodes = origins;
+  }
+
+
+
+  template <int dim>
   template <typename Number>
   void
   Transfer<dim>::prolongate_add(Number *const fine_values,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <random>
 #include <stdexcept>
@@ -173,10 +174,14 @@ namespace Debond
   template <int dim>
   TruncatedCycle<dim>::TruncatedCycle(
     const dealii::SparseMatrix<double> &fine_matrix,
-    const NodeFrames<dim>              &frames,
-    std::vector<Interpolation>          interpolations)
+    const NodeFrames<dim>              &fine_frames,
+    std::vector<Interpolation>          interpolations,
+    const SharedNodes                  &fine_nodes,
+    const RootLevel<dim>               *root_level)
     : A(fine_matrix)
-    , levels(interpolations.size() + 1)
+    , nodes(fine_nodes)
+    , root(root_level)
+    , levels(root == nullptr || root->is_root() ? interpolations.size() + 1 : 1)
     , coarse_solver(std::make_unique<CoarseSolver>())
   {
     const BlockView<dim> blocks(A);
@@ -206,26 +211,65 @@ namespace Debond
          static_cast<std::size_t>(
            1.02 * static_cast<double>(A.n_nonzero_elements()) / (dim * dim)),
          levels[0].A);
-    for (unsigned int l = 0; l + 1 < levels.size(); ++l)
+    for (unsigned int l = 0; l < interpolations.size(); ++l)
       {
-        levels[l].transfer =
-          Transfer<dim>(std::move(interpolations[l]),
-                        l == 0 ? frames :
-                                 levels[l - 1].transfer.coarse_frames());
-        levels[l + 1].original =
-          l == 0 ? levels[l].transfer.galerkin_product(blocks) :
-                   levels[l].transfer.galerkin_product(levels[l].original);
+        Transfer<dim> &transfer = levels[l].transfer;
+        transfer                = Transfer<dim>(std::move(interpolations[l]),
+                                 l == 0 ? fine_frames : frames(l));
+        if (l == 0 && root != nullptr)
+          share_coarse_frames();
+        BlockMatrix<dim, double> product =
+          l == 0 ? transfer.galerkin_product(blocks) :
+                   transfer.galerkin_product(levels[l].original);
+        if (l == 0 && root != nullptr)
+          product = root->gather_rows(product);
+        if (l + 1 == levels.size())
+          break;
+        levels[l + 1].original = std::move(product);
         copy(levels[l + 1].original,
              levels[l + 1].original.columns.size(),
              levels[l + 1].A);
       }
-    for (Level &level : levels)
+    for (unsigned int l = 0; l < levels.size(); ++l)
       {
+        Level &level = levels[l];
         for (auto *vector : {&level.x, &level.b, &level.r, &level.p})
           vector->resize(std::size_t(level.A.n_rows()) * dim);
-        prepare_smoother(level);
+        prepare_smoother(l);
       }
-    coarse_solver->set(levels.back().original, {}, levels.back().zero);
+    if (root == nullptr || root->is_root())
+      coarse_solver->set(levels.back().original, {}, levels.back().zero);
+  }
+
+
+
+  template <int dim>
+  void
+  TruncatedCycle<dim>::share_coarse_frames()
+  {
+    using OriginatingFrame = typename RootLevel<dim>::OriginatingFrame;
+    Transfer<dim>                &transfer = levels[0].transfer;
+    std::vector<OriginatingFrame> own, local, all;
+    for (std::size_t k = 0; k < transfer.coarse_frames().size(); ++k)
+      if (root->is_own(transfer.coarse_frames()[k].node))
+        own.push_back(
+          {transfer.coarse_frames()[k], nodes.number(transfer.origins()[k])});
+    root->share(own, local, all);
+    NodeFrames<dim>           local_frames;
+    std::vector<unsigned int> local_origins;
+    for (const OriginatingFrame &frame : local)
+      {
+        local_frames.push_back(frame.frame);
+        local_origins.push_back(frame.origin);
+      }
+    transfer.set_coarse_frames(local_frames, local_origins);
+    for (const OriginatingFrame &frame : all)
+      {
+        coarse_frames.push_back(frame.frame);
+        coarse_origins.push_back(frame.origin);
+      }
+    coarse_b.resize(std::size_t(root->n_local_nodes()) * dim);
+    coarse_x.resize(coarse_b.size());
   }
 
 
@@ -249,6 +293,26 @@ namespace Debond
   TruncatedCycle<dim>::transfer(const unsigned int l) const
   {
     return levels[l].transfer;
+  }
+
+
+
+  template <int dim>
+  const NodeFrames<dim> &
+  TruncatedCycle<dim>::frames(const unsigned int l) const
+  {
+    return l == 1 && root != nullptr ? coarse_frames :
+                                       levels[l - 1].transfer.coarse_frames();
+  }
+
+
+
+  template <int dim>
+  const std::vector<unsigned int> &
+  TruncatedCycle<dim>::origins(const unsigned int l) const
+  {
+    return l == 1 && root != nullptr ? coarse_origins :
+                                       levels[l - 1].transfer.origins();
   }
 
 
@@ -284,10 +348,49 @@ namespace Debond
 
 
   template <int dim>
-  void
-  TruncatedCycle<dim>::prepare_smoother(Level &level)
+  std::vector<std::pair<unsigned int, unsigned int>>
+  TruncatedCycle<dim>::own_ranges(const unsigned int l) const
   {
-    const unsigned int n = level.A.n_rows();
+    if (l == 0)
+      return nodes.own_ranges();
+    return {{0u, levels[l].A.n_rows()}};
+  }
+
+
+
+  template <int dim>
+  double
+  TruncatedCycle<dim>::product(const unsigned int        l,
+                               const std::vector<float> &a,
+                               const std::vector<float> &b) const
+  {
+    if (l == 0)
+      return nodes.product(a.data(), b.data());
+    double result = 0.;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      result += double(a[i]) * double(b[i]);
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  TruncatedCycle<dim>::update_ghosts(const unsigned int  l,
+                                     std::vector<float> &values) const
+  {
+    if (l == 0)
+      nodes.update_ghosts(values.data());
+  }
+
+
+
+  template <int dim>
+  void
+  TruncatedCycle<dim>::prepare_smoother(const unsigned int l)
+  {
+    Level             &level = levels[l];
+    const unsigned int n     = level.A.n_rows();
     level.zero.resize(std::size_t(n) * dim);
     for (unsigned int i = 0; i < n; ++i)
       {
@@ -304,16 +407,22 @@ namespace Debond
     // Iterative Methods for Sparse Linear Systems, 2nd ed., Section 6.7.3),
     // from a force in which all frequencies are present.
     std::minstd_rand random;
-    for (float &r : level.r)
-      r =
-        static_cast<float>(random()) / static_cast<float>(random.max()) - 0.5f;
+    unsigned int     next_number = 0;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const unsigned int number = l == 0 ? nodes.number(i) : i;
+        random.discard((number - next_number) * std::size_t(dim));
+        next_number = number + 1;
+        for (int c = 0; c < dim; ++c)
+          level.r[std::size_t(i) * dim + c] =
+            static_cast<float>(random()) / static_cast<float>(random.max()) -
+            0.5f;
+      }
     std::fill(level.p.begin(), level.p.end(), 0.f);
     std::vector<double> steps, ratios;
-    double              product = 0.;
+    double              force_times_shift = 0.;
     while (steps.size() < lanczos_steps)
       {
-        const double previous = product;
-        product               = 0.;
         for (unsigned int i = 0; i < n; ++i)
           {
             std::array<float, dim> z;
@@ -321,34 +430,31 @@ namespace Debond
             z = times<dim>(level.inverse_diagonal.data() +
                              std::size_t(i) * dim * dim,
                            z);
-            for (int c = 0; c < dim; ++c)
-              {
-                level.x[std::size_t(i) * dim + c] = z[c];
-                product += double(z[c]) * level.r[std::size_t(i) * dim + c];
-              }
+            std::copy_n(z.begin(), dim, level.x.begin() + std::size_t(i) * dim);
           }
-        if (!(product > 0.))
+        const double previous = force_times_shift;
+        force_times_shift     = product(l, level.x, level.r);
+        if (!(force_times_shift > 0.))
           break;
         if (!steps.empty())
-          ratios.push_back(product / previous);
+          ratios.push_back(force_times_shift / previous);
         const float ratio =
           ratios.empty() ? 0.f : static_cast<float>(ratios.back());
         for (std::size_t i = 0; i < level.p.size(); ++i)
           level.p[i] = level.x[i] + ratio * level.p[i];
-        double curvature = 0.;
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            const auto force = level.A.times(i, level.p.data());
-            for (int c = 0; c < dim; ++c)
-              {
-                level.b[std::size_t(i) * dim + c] = force[c];
-                curvature +=
-                  double(force[c]) * level.p[std::size_t(i) * dim + c];
-              }
-          }
+        for (const auto &[begin, end] : own_ranges(l))
+          for (unsigned int i = begin; i < end; ++i)
+            {
+              const auto force = level.A.times(i, level.p.data());
+              std::copy_n(force.begin(),
+                          dim,
+                          level.b.begin() + std::size_t(i) * dim);
+            }
+        update_ghosts(l, level.b);
+        const double curvature = product(l, level.b, level.p);
         if (!(curvature > 0.))
           break;
-        steps.push_back(product / curvature);
+        steps.push_back(force_times_shift / curvature);
         for (std::size_t i = 0; i < level.r.size(); ++i)
           level.r[i] -= static_cast<float>(steps.back()) * level.b[i];
       }
@@ -416,20 +522,29 @@ namespace Debond
         level.changed.clear();
         level.changed_rows.clear();
       }
-    first         = level_index;
-    held_unknowns = held;
+    first              = level_index;
+    const auto is_here = [](const unsigned int i) {
+      return i != dealii::numbers::invalid_unsigned_int;
+    };
+    held_unknowns.clear();
+    std::copy_if(held.begin(),
+                 held.end(),
+                 std::back_inserter(held_unknowns),
+                 is_here);
 
     // Q (A + E) Q - A, Q without the held unknowns, by rows.
     Level &finest = levels[first];
     std::map<unsigned int, std::map<unsigned int, Block<dim>>> differences;
     std::map<unsigned int, std::array<bool, dim>>              held_at;
-    for (const unsigned int i : held)
+    for (const unsigned int i : held_unknowns)
       held_at.try_emplace(i / dim).first->second[i % dim] = true;
     for (int j = 0; j < E.outerSize(); ++j)
       for (Eigen::SparseMatrix<double>::InnerIterator entry(E, j); entry;
            ++entry)
         {
           const unsigned int i = coupled[entry.row()], k = coupled[j];
+          if (!is_here(i) || !is_here(k))
+            continue;
           differences[i / dim]
             .try_emplace(k / dim)
             .first->second[i % dim * dim + k % dim] += entry.value();
@@ -480,25 +595,30 @@ namespace Debond
 
     // Held unknowns keep their diagonal entries.
     std::vector<float> entries;
-    for (const unsigned int i : held)
+    for (const unsigned int i : held_unknowns)
       entries.push_back(
         finest.A.values[finest.A.find(i / dim, i / dim) * dim * dim +
                         i % dim * (dim + 1)]);
     change(finest, changes);
-    for (std::size_t h = 0; h < held.size(); ++h)
-      finest.A.values[finest.A.find(held[h] / dim, held[h] / dim) * dim * dim +
-                      held[h] % dim * (dim + 1)] = entries[h];
+    for (std::size_t h = 0; h < held_unknowns.size(); ++h)
+      {
+        const unsigned int i                 = held_unknowns[h];
+        finest.A.values[finest.A.find(i / dim, i / dim) * dim * dim +
+                        i % dim * (dim + 1)] = entries[h];
+      }
     for (unsigned int l = first; l < levels.size(); ++l)
       {
-        if (l > first)
-          {
-            changes = levels[l - 1].transfer.galerkin_product(changes);
-            change(levels[l], changes);
-          }
         for (const unsigned int row : levels[l].changed_rows)
           invert_diagonal(levels[l], row);
+        if (l + 1 < levels.size() || (l == 0 && root != nullptr))
+          changes = levels[l].transfer.galerkin_product(changes);
+        if (l == 0 && root != nullptr)
+          changes = root->gather_rows(changes);
+        if (l + 1 < levels.size())
+          change(levels[l + 1], changes);
       }
-    coarse_solver->set(levels.back().original, changes, levels.back().zero);
+    if (root == nullptr || root->is_root())
+      coarse_solver->set(levels.back().original, changes, levels.back().zero);
   }
 
 
@@ -507,8 +627,9 @@ namespace Debond
   void
   TruncatedCycle<dim>::cycle(const unsigned int l) const
   {
-    const Level &level = levels[l];
-    if (l + 1 == levels.size())
+    const Level &level     = levels[l];
+    const bool   is_shared = l == 0 && root != nullptr;
+    if (l + 1 == levels.size() && !is_shared)
       {
         coarse_solver->solve(level.b, level.x);
         return;
@@ -524,24 +645,27 @@ namespace Debond
     const float        next_rho = 1.f / (2.f * sigma - rho);
 
     // p = momentum p + step D^{-1} (b - A x), x += p
-    const auto move = [&](const float momentum, const float step) {
-      for (unsigned int i = 0; i < n; ++i)
-        {
-          std::array<float, dim> residual    = level.A.times(i, level.x.data());
-          const std::size_t      first_entry = std::size_t(i) * dim;
-          for (int c = 0; c < dim; ++c)
-            residual[c] = level.b[first_entry + c] - residual[c];
-          residual =
-            times<dim>(level.inverse_diagonal.data() + first_entry * dim,
-                       residual);
-          for (int c = 0; c < dim; ++c)
-            {
-              float &p                 = level.p[first_entry + c];
-              p                        = momentum * p + step * residual[c];
-              level.r[first_entry + c] = level.x[first_entry + c] + p;
-            }
-        }
+    const auto ranges = own_ranges(l);
+    const auto move   = [&](const float momentum, const float step) {
+      for (const auto &[begin, end] : ranges)
+        for (unsigned int i = begin; i < end; ++i)
+          {
+            std::array<float, dim> residual = level.A.times(i, level.x.data());
+            const std::size_t      first_entry = std::size_t(i) * dim;
+            for (int c = 0; c < dim; ++c)
+              residual[c] = level.b[first_entry + c] - residual[c];
+            residual =
+              times<dim>(level.inverse_diagonal.data() + first_entry * dim,
+                         residual);
+            for (int c = 0; c < dim; ++c)
+              {
+                float &p                 = level.p[first_entry + c];
+                p                        = momentum * p + step * residual[c];
+                level.r[first_entry + c] = level.x[first_entry + c] + p;
+              }
+          }
       std::swap(level.x, level.r);
+      update_ghosts(l, level.x);
     };
     const float momentum = next_rho * rho, step = 2.f * next_rho / delta;
 
@@ -558,18 +682,33 @@ namespace Debond
       }
     move(momentum, step);
 
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        const auto product = level.A.times(i, level.x.data());
-        for (int c = 0; c < dim; ++c)
-          level.r[std::size_t(i) * dim + c] =
-            level.b[std::size_t(i) * dim + c] - product[c];
-      }
-    const Level &coarser = levels[l + 1];
-    level.transfer.restrict_to(coarser.b.data(), level.r.data());
-    cycle(l + 1);
+    for (const auto &[begin, end] : ranges)
+      for (unsigned int i = begin; i < end; ++i)
+        {
+          const auto force = level.A.times(i, level.x.data());
+          for (int c = 0; c < dim; ++c)
+            level.r[std::size_t(i) * dim + c] =
+              level.b[std::size_t(i) * dim + c] - force[c];
+        }
     // The matrix does not couple held unknowns to others.
-    level.transfer.prolongate_add(level.x.data(), coarser.x.data());
+    if (is_shared)
+      {
+        update_ghosts(l, level.r);
+        level.transfer.restrict_to(coarse_b.data(), level.r.data());
+        std::vector<float> none;
+        root->gather(coarse_b, root->is_root() ? levels[1].b : none);
+        if (root->is_root())
+          cycle(1);
+        root->scatter(root->is_root() ? levels[1].x : none, coarse_x);
+        level.transfer.prolongate_add(level.x.data(), coarse_x.data());
+      }
+    else
+      {
+        const Level &coarser = levels[l + 1];
+        level.transfer.restrict_to(coarser.b.data(), level.r.data());
+        cycle(l + 1);
+        level.transfer.prolongate_add(level.x.data(), coarser.x.data());
+      }
 
     move(0.f, 1.f / theta);
     move(momentum, step);
@@ -584,7 +723,8 @@ namespace Debond
   {
     const Level &level = levels[first];
     // Single precision has a smaller range, too.
-    const double size = src.linfty_norm();
+    const double size =
+      first == 0 ? nodes.largest(src.begin()) : src.linfty_norm();
     if (size == 0. || !std::isfinite(size))
       {
         dst = size;

@@ -54,6 +54,11 @@ namespace Debond
     const std::vector<unsigned int> &
     origins() const;
 
+    /// Other frames of coarse nodes, where the fine nodes are not all.
+    void
+    set_coarse_frames(const NodeFrames<dim>           &frames,
+                      const std::vector<unsigned int> &origins);
+
     /// fine += P coarse. @p coarse is left in Cartesian components.
     template <typename Number>
     void

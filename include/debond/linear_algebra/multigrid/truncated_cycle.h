@@ -5,6 +5,8 @@
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/vector.h>
 
+#include <debond/linear_algebra/multigrid/root_level.h>
+#include <debond/linear_algebra/multigrid/shared_nodes.h>
 #include <debond/linear_algebra/multigrid/transfer.h>
 
 #include <Eigen/SparseCore>
@@ -26,17 +28,24 @@ namespace Debond
    * Smoothers are Chebyshev polynomials of degree 2 in D^{-1}A with the blocks
    * of the diagonal D; the coarsest matrix is factorised. Numbers are in single
    * precision, but for the products that make the matrices.
+   *
+   * Where ranks share the finest level, all of them call what concerns it; the
+   * coarser ones are the root's, and so is n_levels() > 1.
    */
   template <int dim>
   class TruncatedCycle
   {
   public:
     /// @p frames are those of the unknowns of A, @p interpolations those from
-    /// each coarser level to the next finer one, finest first. Keeps a
-    /// reference to A.
+    /// each coarser level to the next finer one, finest first. Keeps references
+    /// to A and to the nodes of its unknowns. If these are not the whole, @p
+    /// root has the coarser level; the first interpolation is between the
+    /// rank's nodes, and the root has the others.
     TruncatedCycle(const dealii::SparseMatrix<double> &A,
                    const NodeFrames<dim>              &frames,
-                   std::vector<Interpolation>          interpolations);
+                   std::vector<Interpolation>          interpolations,
+                   const SharedNodes                  &nodes,
+                   const RootLevel<dim>               *root = nullptr);
 
     TruncatedCycle(const TruncatedCycle &) = delete;
 
@@ -49,13 +58,23 @@ namespace Debond
     const Transfer<dim> &
     transfer(const unsigned int l) const;
 
+    /// Of the level l > 0.
+    const NodeFrames<dim> &
+    frames(const unsigned int l) const;
+
+    /// For each of frames() the node of the level l - 1 that it is like, by its
+    /// number in the whole.
+    const std::vector<unsigned int> &
+    origins(const unsigned int l) const;
+
     /// The Galerkin product of A on the level l > 0, nothing truncated.
     const BlockMatrix<dim, double> &
     matrix(const unsigned int l) const;
 
     /// From now on the cycle is that for the matrix of the given level, with @p
     /// held unknowns and E[i, j] added at the unknowns coupled[i], coupled[j].
-    /// Entries of E must be at nodes that A couples.
+    /// Entries of E must be at nodes that A couples; unknowns that the rank
+    /// does not have are dealii::numbers::invalid_unsigned_int.
     void
     truncate(const unsigned int                 level,
              const std::vector<unsigned int>   &held,
@@ -74,9 +93,26 @@ namespace Debond
     struct Level;
     class CoarseSolver;
 
+    /// Those that ranks find for the coarser level, for all of them.
+    void
+    share_coarse_frames();
+
     /// D^{-1} and the largest eigenvalue of D^{-1}A.
     void
-    prepare_smoother(Level &level);
+    prepare_smoother(const unsigned int l);
+
+    /// The nodes whose rows are to be computed.
+    std::vector<std::pair<unsigned int, unsigned int>>
+    own_ranges(const unsigned int l) const;
+
+    /// <a, b> on a level.
+    double
+    product(const unsigned int        l,
+            const std::vector<float> &a,
+            const std::vector<float> &b) const;
+
+    void
+    update_ghosts(const unsigned int l, std::vector<float> &values) const;
 
     static void
     invert_diagonal(Level &level, const unsigned int node);
@@ -89,10 +125,17 @@ namespace Debond
     cycle(const unsigned int l) const;
 
     const dealii::SparseMatrix<double> &A;
+    const SharedNodes                  &nodes;
+    const RootLevel<dim> *const         root; ///< or null
     std::vector<Level>                  levels;
     std::unique_ptr<CoarseSolver>       coarse_solver;
     unsigned int                        first = 0; ///< level of the cycle
     std::vector<unsigned int>           held_unknowns;
+
+    /// Of the coarser level of a rank.
+    NodeFrames<dim>            coarse_frames;
+    std::vector<unsigned int>  coarse_origins;
+    mutable std::vector<float> coarse_b, coarse_x;
   };
 } // namespace Debond
 

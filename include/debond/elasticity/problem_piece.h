@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_problem_piece_h
+#define debond_elasticity_problem_piece_h
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/contact/boundary.h>
+#include <debond/elasticity/fields.h>
+#include <debond/elasticity/unknowns.h>
+#include <debond/linear_algebra/multigrid/shared_nodes.h>
+#include <debond/mesh/box_piece.h>
+
+#include <vector>
+
+namespace Debond
+{
+  /// The points of the nodes (of degree 1), by number.
+  template <int dim>
+  std::vector<dealii::Point<dim>>
+  node_points(const ElasticUnknowns<dim> &unknowns);
+
+
+
+  /// For each vertex of the mesh of a piece its place in the order of the
+  /// numbers in the whole.
+  template <int dim>
+  std::vector<unsigned int>
+  node_order(const BoxPiece<dim>              &piece,
+             const dealii::Triangulation<dim> &mesh);
+
+
+
+  /**
+   * What a rank knows besides its piece of a body: who has which nodes, and the
+   * contact boundary of the whole body, which all ranks have. Vectors of a rank
+   * have the entries of its unknowns, and right ones at ghosts.
+   */
+  template <int dim>
+  class ProblemPiece
+  {
+  public:
+    /// To be called by all ranks, and so are the functions below that gather.
+    /// The order of the unknowns has to be that of node_order(). Supports must
+    /// have no displacements or gaps other than zero.
+    ProblemPiece(const BoxPiece<dim>        &piece,
+                 const ElasticUnknowns<dim> &unknowns,
+                 const MPI_Comm              communicator);
+
+    ProblemPiece(const ProblemPiece &) = delete;
+
+    const BoxPiece<dim> &
+    body() const;
+
+    const SharedNodes &
+    nodes() const;
+
+    /// Of the whole body, as on one rank.
+    const ContactBoundary<dim> &
+    boundary() const;
+
+    /// The rank's unknowns of the contact nodes,
+    /// dealii::numbers::invalid_unsigned_int for those that it does not have.
+    const std::vector<unsigned int> &
+    normals() const;
+
+    /// The same in the whole.
+    const std::vector<unsigned int> &
+    normal_numbers() const;
+
+    /// The entries of all contact nodes, on all ranks.
+    dealii::Vector<double>
+    trace(const dealii::Vector<double> &v) const;
+
+    /// The entries of all unknowns in the order of their numbers, on the root;
+    /// empty elsewhere.
+    dealii::Vector<double>
+    gather(const dealii::Vector<double> &v) const;
+
+    /// ElasticFields::elastic_functional() of the whole, on the root; zero
+    /// elsewhere.
+    double
+    elastic_functional(const ElasticFields<dim>      &fields,
+                       const dealii::DoFHandler<dim> &dofs,
+                       const dealii::Vector<double>  &u) const;
+
+  private:
+    const BoxPiece<dim>      &piece;
+    SharedNodes               shared_nodes;
+    ContactBoundary<dim>      contact_boundary;
+    std::vector<unsigned int> local_normals, numbers_of_normals;
+
+    /// The contact nodes of each rank follow those of the one before.
+    std::vector<int> counts, starts;
+  };
+} // namespace Debond
+
+#endif

@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/elasticity/problem_piece.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+
+namespace Debond
+{
+  namespace
+  {
+    constexpr unsigned int elsewhere = dealii::numbers::invalid_unsigned_int;
+
+
+
+    template <int dim>
+    SharedNodes
+    share_nodes(const BoxPiece<dim>        &piece,
+                const ElasticUnknowns<dim> &unknowns,
+                const MPI_Comm              communicator)
+    {
+      const std::vector<dealii::Point<dim>> points = node_points(unknowns);
+      const std::vector<unsigned int>       slabs  = piece.slabs(points);
+      SharedNodes::Piece                    nodes;
+      nodes.numbers      = piece.numbers(points);
+      nodes.communicator = communicator;
+      for (const unsigned int slab : slabs)
+        nodes.is_own.push_back(piece.first_slab() <= slab &&
+                               slab < piece.end_slab());
+      return SharedNodes(dim, slabs, piece.n_slabs(), nodes);
+    }
+
+
+
+    template <typename Entry>
+    std::vector<Entry>
+    gather_everywhere(const std::vector<Entry> &own,
+                      const MPI_Comm            communicator)
+    {
+      std::vector<Entry> result;
+      for (const auto &of_rank :
+           dealii::Utilities::MPI::all_gather(communicator, own))
+        result.insert(result.end(), of_rank.begin(), of_rank.end());
+      return result;
+    }
+
+
+
+    template <int dim>
+    void
+    append(const dealii::Tensor<1, dim> &vector, std::vector<double> &numbers)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        numbers.push_back(vector[d]);
+    }
+
+
+
+    template <int dim>
+    void
+    read(const double *&numbers, dealii::Tensor<1, dim> &vector)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        vector[d] = *numbers++;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::vector<dealii::Point<dim>>
+  node_points(const ElasticUnknowns<dim> &unknowns)
+  {
+    std::vector<dealii::Point<dim>> points(unknowns.n_dofs() / dim);
+    for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
+      for (const unsigned int v : cell->vertex_indices())
+        {
+          const unsigned int node = cell->vertex_dof_index(v, 0) / dim;
+          for (unsigned int d = 0; d < dim; ++d)
+            Assert(cell->vertex_dof_index(v, d) == node * dim + d,
+                   dealii::ExcInternalError());
+          points[node] = cell->vertex(v);
+        }
+    return points;
+  }
+
+
+
+  template <int dim>
+  std::vector<unsigned int>
+  node_order(const BoxPiece<dim> &piece, const dealii::Triangulation<dim> &mesh)
+  {
+    const std::vector<unsigned int> numbers =
+      piece.numbers(mesh.get_vertices());
+    std::vector<unsigned int> order(numbers.size()), place(numbers.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(),
+              order.end(),
+              [&](const unsigned int a, const unsigned int b) {
+                return numbers[a] < numbers[b];
+              });
+    for (unsigned int k = 0; k < order.size(); ++k)
+      place[order[k]] = k;
+    return place;
+  }
+
+
+
+  template <int dim>
+  ProblemPiece<dim>::ProblemPiece(const BoxPiece<dim>        &body_piece,
+                                  const ElasticUnknowns<dim> &unknowns,
+                                  const MPI_Comm              communicator)
+    : piece(body_piece)
+    , shared_nodes(share_nodes(piece, unknowns, communicator))
+  {
+    const ContactBoundary<dim> &local = unknowns.contact().boundary();
+    const auto                 &dofs  = unknowns.contact().normals();
+    if (unknowns.has_lifting() || !local.held_vertices.empty())
+      throw std::logic_error("Ranks cannot share prescribed displacements.");
+
+    const auto number_of = [&](const unsigned int dof) {
+      return shared_nodes.number(dof / dim) * dim + dof % dim;
+    };
+    std::vector<unsigned int> numbers;
+    std::vector<double>       of_nodes;
+    for (unsigned int i = 0; i < local.nodes.size(); ++i)
+      if (shared_nodes.is_own(static_cast<unsigned int>(dofs[i] / dim)))
+        {
+          const auto &node = local.nodes[i];
+          numbers.push_back(number_of(static_cast<unsigned int>(dofs[i])));
+          append<dim>(node.position, of_nodes);
+          append<dim>(node.normal, of_nodes);
+          of_nodes.push_back(node.measure);
+        }
+    counts =
+      dealii::Utilities::MPI::all_gather(communicator,
+                                         static_cast<int>(numbers.size()));
+    starts.resize(counts.size());
+    std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
+    numbers_of_normals = gather_everywhere(numbers, communicator);
+    of_nodes           = gather_everywhere(of_nodes, communicator);
+
+    // Nodes are in the order of x, as ranks are.
+    const double                        *next = of_nodes.data();
+    std::map<unsigned int, unsigned int> index_of;
+    for (unsigned int i = 0; i < numbers_of_normals.size(); ++i)
+      {
+        typename ContactBoundary<dim>::Node node;
+        read<dim>(next, node.position);
+        read<dim>(next, node.normal);
+        node.measure = *next++;
+        contact_boundary.nodes.push_back(node);
+        index_of[numbers_of_normals[i]] = i;
+      }
+    local_normals.assign(numbers_of_normals.size(), elsewhere);
+    for (const auto dof : dofs)
+      local_normals[index_of.at(number_of(static_cast<unsigned int>(dof)))] =
+        static_cast<unsigned int>(dof);
+
+    // Faces are in the order of their cells.
+    std::vector<std::size_t>  cells;
+    std::vector<unsigned int> nodes;
+    std::vector<double>       of_faces;
+    for (const auto &face : local.faces)
+      {
+        dealii::Point<dim> middle;
+        for (const dealii::Point<dim> &vertex : face.vertices)
+          middle += vertex / dim;
+        if (!piece.owns_cell_at(middle))
+          continue;
+        cells.push_back(piece.cell_at(middle));
+        for (const unsigned int node : face.nodes)
+          nodes.push_back(
+            node == elsewhere ?
+              elsewhere :
+              index_of.at(number_of(static_cast<unsigned int>(dofs[node]))));
+        for (const dealii::Point<dim> &vertex : face.vertices)
+          append<dim>(vertex, of_faces);
+        append<dim>(face.normal, of_faces);
+        of_faces.push_back(face.measure);
+      }
+    cells    = gather_everywhere(cells, communicator);
+    nodes    = gather_everywhere(nodes, communicator);
+    of_faces = gather_everywhere(of_faces, communicator);
+    std::vector<std::size_t> order(cells.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::stable_sort(order.begin(),
+                     order.end(),
+                     [&](const std::size_t a, const std::size_t b) {
+                       return cells[a] < cells[b];
+                     });
+    for (const std::size_t f : order)
+      {
+        typename ContactBoundary<dim>::Face face;
+        next = of_faces.data() + f * (dim * (dim + 1) + 1);
+        for (unsigned int v = 0; v < dim; ++v)
+          {
+            face.nodes[v] = nodes[f * dim + v];
+            read<dim>(next, face.vertices[v]);
+          }
+        read<dim>(next, face.normal);
+        face.measure = *next;
+        contact_boundary.faces.push_back(face);
+      }
+  }
+
+
+
+  template <int dim>
+  const BoxPiece<dim> &
+  ProblemPiece<dim>::body() const
+  {
+    return piece;
+  }
+
+
+
+  template <int dim>
+  const SharedNodes &
+  ProblemPiece<dim>::nodes() const
+  {
+    return shared_nodes;
+  }
+
+
+
+  template <int dim>
+  const ContactBoundary<dim> &
+  ProblemPiece<dim>::boundary() const
+  {
+    return contact_boundary;
+  }
+
+
+
+  template <int dim>
+  const std::vector<unsigned int> &
+  ProblemPiece<dim>::normals() const
+  {
+    return local_normals;
+  }
+
+
+
+  template <int dim>
+  const std::vector<unsigned int> &
+  ProblemPiece<dim>::normal_numbers() const
+  {
+    return numbers_of_normals;
+  }
+
+
+
+  template <int dim>
+  dealii::Vector<double>
+  ProblemPiece<dim>::trace(const dealii::Vector<double> &v) const
+  {
+    // deal.II's gather() packs what it sends.
+    const MPI_Comm     ranks = shared_nodes.communicator();
+    const unsigned int rank  = dealii::Utilities::MPI::this_mpi_process(ranks);
+    dealii::Vector<double> result(
+      static_cast<unsigned int>(local_normals.size()));
+    for (int i = starts[rank]; i < starts[rank] + counts[rank]; ++i)
+      result(i) = v(local_normals[i]);
+    const int error = MPI_Allgatherv(MPI_IN_PLACE,
+                                     0,
+                                     MPI_DATATYPE_NULL,
+                                     result.begin(),
+                                     counts.data(),
+                                     starts.data(),
+                                     MPI_DOUBLE,
+                                     ranks);
+    AssertThrowMPI(error);
+    return result;
+  }
+
+
+
+  template <int dim>
+  dealii::Vector<double>
+  ProblemPiece<dim>::gather(const dealii::Vector<double> &v) const
+  {
+    std::vector<unsigned int> numbers;
+    std::vector<double>       values;
+    for (const auto &[begin, end] : shared_nodes.own_ranges())
+      for (unsigned int i = begin; i < end; ++i)
+        {
+          numbers.push_back(shared_nodes.number(i));
+          for (unsigned int c = 0; c < dim; ++c)
+            values.push_back(v(i * dim + c));
+        }
+    const MPI_Comm ranks       = shared_nodes.communicator();
+    const auto     all_numbers = dealii::Utilities::MPI::gather(ranks, numbers);
+    const auto     all_values  = dealii::Utilities::MPI::gather(ranks, values);
+    std::size_t    size        = 0;
+    for (const auto &of_rank : all_values)
+      size += of_rank.size();
+    dealii::Vector<double> result(static_cast<unsigned int>(size));
+    for (std::size_t rank = 0; rank < all_numbers.size(); ++rank)
+      for (std::size_t i = 0; i < all_numbers[rank].size(); ++i)
+        for (unsigned int c = 0; c < dim; ++c)
+          result(all_numbers[rank][i] * dim + c) =
+            all_values[rank][i * dim + c];
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  ProblemPiece<dim>::elastic_functional(const ElasticFields<dim>      &fields,
+                                        const dealii::DoFHandler<dim> &dofs,
+                                        const dealii::Vector<double>  &u) const
+  {
+    auto terms         = fields.elastic_terms(u);
+    terms.load         = gather(terms.load);
+    terms.displacement = gather(terms.displacement);
+
+    // The energies of own cells, in the order of all cells.
+    std::vector<std::size_t> cells;
+    std::vector<double>      energies;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (piece.owns_cell_at(cell->center()))
+        {
+          cells.push_back(piece.cell_at(cell->center()));
+          energies.push_back(terms.energies[cell->active_cell_index()]);
+        }
+    const MPI_Comm ranks     = shared_nodes.communicator();
+    const auto     all_cells = dealii::Utilities::MPI::gather(ranks, cells);
+    const auto all_energies  = dealii::Utilities::MPI::gather(ranks, energies);
+    std::vector<std::pair<std::size_t, double>> ordered;
+    for (std::size_t rank = 0; rank < all_cells.size(); ++rank)
+      for (std::size_t k = 0; k < all_cells[rank].size(); ++k)
+        ordered.emplace_back(all_cells[rank][k], all_energies[rank][k]);
+    std::stable_sort(ordered.begin(),
+                     ordered.end(),
+                     [](const auto &a, const auto &b) {
+                       return a.first < b.first;
+                     });
+    terms.energies.clear();
+    for (const auto &[unused, energy] : ordered)
+      terms.energies.push_back(energy);
+    return terms.energies.empty() ? 0. : terms.sum();
+  }
+
+
+
+  template std::vector<dealii::Point<2>>
+  node_points(const ElasticUnknowns<2> &);
+  template std::vector<dealii::Point<3>>
+  node_points(const ElasticUnknowns<3> &);
+  template std::vector<unsigned int>
+  node_order(const BoxPiece<2> &, const dealii::Triangulation<2> &);
+  template std::vector<unsigned int>
+  node_order(const BoxPiece<3> &, const dealii::Triangulation<3> &);
+  template class ProblemPiece<2>;
+  template class ProblemPiece<3>;
+} // namespace Debond

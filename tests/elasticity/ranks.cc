@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A contact problem that ranks share has, to the last bit, the matrices, cycles
+// and the solution that it has on one rank, whatever their number. The same
+// output is expected of 1, 2, 3 and 4 ranks.
+
+#include <deal.II/base/mpi.h>
+
+#include <debond/contact/adhesion_integral.h>
+#include <debond/contact/laws/winkler.h>
+#include <debond/elasticity/elastic_levels.h>
+#include <debond/elasticity/level_problem.h>
+#include <debond/mesh/box_piece.h>
+#include <debond/optimization/majorise/majorise_minimise.h>
+#include <debond/optimization/majorise/restricted_function.h>
+
+#include <cstring>
+#include <iostream>
+
+#include "../check.h"
+
+using namespace Debond;
+
+namespace
+{
+  using Vector = dealii::Vector<double>;
+
+  const MPI_Comm communicator = MPI_COMM_WORLD;
+
+
+
+  bool
+  is_root()
+  {
+    return dealii::Utilities::MPI::this_mpi_process(communicator) == 0;
+  }
+
+
+
+  template <typename A, typename B>
+  bool
+  are_same_bits(const A &a, const B &b)
+  {
+    return a.size() == b.size() &&
+           (a.size() == 0 ||
+            std::memcmp(&*a.begin(), &*b.begin(), a.size() * sizeof(double)) ==
+              0);
+  }
+
+
+
+  /// Bonds tear under a force that lifts one part and presses another one.
+  template <int dim>
+  struct BodyProblem
+  {
+    BodyProblem(const Box<dim> &box, const BoxPiece<dim> *const piece)
+    {
+      const BoundaryNames names = box.make_mesh(mesh).boundaries;
+      BoundaryConditions  conditions;
+      conditions.clamped = names.at("left");
+      conditions.contact = names.at("bottom");
+      problem =
+        std::make_unique<ElasticProblem<dim>>(mesh,
+                                              conditions,
+                                              Supports<dim>(),
+                                              1,
+                                              piece == nullptr ?
+                                                std::vector<unsigned int>() :
+                                                node_order(*piece, mesh));
+      Loads<dim>             loads;
+      dealii::Tensor<1, dim> up, down;
+      up[1]   = 0.02;
+      down[1] = -0.003;
+      loads.tractions[*names.at("right").begin()] =
+        std::make_shared<dealii::Functions::ConstantFunction<dim>>(
+          up.begin_raw(), dim);
+      loads.tractions[*names.at("top").begin()] =
+        std::make_shared<dealii::Functions::ConstantFunction<dim>>(
+          down.begin_raw(), dim);
+      if (piece != nullptr)
+        for (const std::string name : {"right", "top"})
+          loads.n_faces[*names.at(name).begin()] = piece->n_faces_on(name);
+      Material material;
+      material.young_modulus = 69.;
+      material.poisson_ratio = 0.33;
+      problem->assemble(material, loads);
+    }
+
+    dealii::Triangulation<dim>           mesh;
+    std::unique_ptr<ElasticProblem<dim>> problem;
+  };
+
+
+
+  /// From the solution on the level 1, which the root makes.
+  template <int dim>
+  MajoriseMinimiseResult
+  minimise(ElasticLevels<dim>          &levels,
+           const AdhesionIntegral<dim> &adhesion,
+           Vector                      &u)
+  {
+    Vector     coarse;
+    const auto go_on = [](const MajoriseMinimiseIteration &) { return true; };
+    if (levels.is_root())
+      {
+        coarse.reinit(levels.n_unknowns(1));
+        const RestrictedFunction phi(adhesion, levels.trace_prolongation(1));
+        LevelProblem<dim>        problem(levels, 1, phi, coarse);
+        MajoriseMinimise({}).minimize(problem, go_on);
+      }
+    u = levels.prolongate(1, coarse);
+    for (const unsigned int normal : levels.normals(0))
+      if (normal != dealii::numbers::invalid_unsigned_int)
+        u(normal) = std::min(u(normal), 0.);
+    LevelProblem<dim> problem(levels, 0, adhesion, u);
+    return MajoriseMinimise({}).minimize(problem, go_on);
+  }
+
+
+
+  template <int dim>
+  void
+  test(const std::array<unsigned int, 3> &cells)
+  {
+    BoxParameters parameters;
+    parameters.cells = cells;
+    const Box<dim>               box(parameters);
+    const BodyProblem<dim>       whole(box, nullptr);
+    const AdhesiveLaw            law(winkler_law(69., 2e-3).branches);
+    const ContactQuadrature<dim> quadrature(
+      {ContactQuadratureParameters::Rule::nodal}, law.kinks());
+    const ContactBoundary<dim> &boundary =
+      whole.problem->unknowns().contact().boundary();
+    const AdhesionIntegral<dim> adhesion(boundary, law, quadrature);
+    const auto levels = ElasticLevels<dim>::make(box, *whole.problem);
+
+    const BoxPiece<dim> piece(
+      parameters,
+      dealii::Utilities::MPI::this_mpi_process(communicator),
+      dealii::Utilities::MPI::n_mpi_processes(communicator));
+    const BodyProblem<dim>      part(piece, &piece);
+    const ProblemPiece<dim>     shared(piece,
+                                   part.problem->unknowns(),
+                                   communicator);
+    const AdhesionIntegral<dim> shared_adhesion(shared.boundary(),
+                                                law,
+                                                quadrature);
+    const auto shared_levels = ElasticLevels<dim>::make(shared, *part.problem);
+
+    bool same = shared.boundary().nodes.size() == boundary.nodes.size() &&
+                shared.boundary().faces.size() == boundary.faces.size();
+    for (unsigned int i = 0; same && i < boundary.nodes.size(); ++i)
+      same =
+        shared.boundary().nodes[i].position == boundary.nodes[i].position &&
+        shared.boundary().nodes[i].normal == boundary.nodes[i].normal &&
+        shared.boundary().nodes[i].measure == boundary.nodes[i].measure;
+    for (unsigned int f = 0; same && f < boundary.faces.size(); ++f)
+      same =
+        shared.boundary().faces[f].nodes == boundary.faces[f].nodes &&
+        shared.boundary().faces[f].vertices == boundary.faces[f].vertices &&
+        shared.boundary().faces[f].measure == boundary.faces[f].measure;
+    check("  contact boundary", same);
+
+    const Vector f = shared.gather(shared_levels->load(0));
+    if (is_root())
+      {
+        check("  load", are_same_bits(f, levels->load(0)));
+        check("  coarser load",
+              are_same_bits(shared_levels->load(1), levels->load(1)));
+        check("  coarser normal displacements",
+              shared_levels->normals(1) == levels->normals(1) &&
+                (shared_levels->trace_prolongation(1) -
+                 levels->trace_prolongation(1))
+                    .norm() == 0.);
+        const auto &A = levels->cycle().matrix(1);
+        const auto &B = shared_levels->cycle().matrix(1);
+        check("  coarser matrix",
+              A.starts == B.starts && A.columns == B.columns &&
+                A.values == B.values);
+      }
+    check("  rows of contact nodes",
+          (shared_levels->contact_rows(0) - levels->contact_rows(0)).norm() ==
+            0.);
+
+    // Cycles, with half of the nodes held and bonds at all.
+    Vector x = levels->load(0), part_x = shared_levels->load(0), y(x),
+           z(part_x);
+    for (const bool is_truncated : {false, true})
+      {
+        const auto truncate = [&](ElasticLevels<dim> &of) {
+          std::vector<unsigned int> held;
+          for (unsigned int i = 0; i < of.normals(0).size() / 2; ++i)
+            held.push_back(of.normals(0)[i]);
+          of.cycle().truncate(0,
+                              held,
+                              of.normals(0),
+                              adhesion.curvature(
+                                Vector(static_cast<unsigned int>(
+                                  of.normals(0).size()))));
+        };
+        if (is_truncated)
+          {
+            truncate(*levels);
+            truncate(*shared_levels);
+          }
+        for (unsigned int k = 0; k < 2; ++k)
+          {
+            levels->vmult(0, y, x);
+            levels->cycle().vmult(x, y);
+            shared_levels->vmult(0, z, part_x);
+            shared_levels->cycle().vmult(part_x, z);
+          }
+        const Vector all = shared.gather(part_x);
+        if (is_root())
+          check(is_truncated ? "  truncated cycles" : "  cycles",
+                are_same_bits(all, x));
+        const double product = shared_levels->product(0, part_x, part_x);
+        if (is_root())
+          check("  products", product == levels->product(0, x, x));
+      }
+
+    Vector     u, part_u;
+    const auto result = minimise(*levels, adhesion, u);
+    const auto shared_result =
+      minimise(*shared_levels, shared_adhesion, part_u);
+    const Vector all = shared.gather(part_u);
+    const double J =
+      shared.elastic_functional(part.problem->fields(),
+                                part.problem->unknowns().dof_handler(),
+                                part_u);
+    if (is_root())
+      {
+        unsigned int n_contact = 0;
+        for (const double s : whole.problem->unknowns().contact().trace(u))
+          n_contact += s == 0.;
+        std::cout << "  " << result.history.size() << " majorants, J "
+                  << 1e6 * result.functional << ", contact " << n_contact
+                  << " of " << levels->normals(0).size() << " nodes\n";
+        check("  status",
+              result.status == SolverStatus::success &&
+                shared_result.status == SolverStatus::success);
+        check("  J, residual and iterations",
+              shared_result.functional == result.functional &&
+                shared_result.residual == result.residual &&
+                shared_result.history.size() == result.history.size());
+        check("  displacement", are_same_bits(all, u));
+        check("  energy from the strains",
+              J == whole.problem->fields().elastic_functional(u));
+      }
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *argv[])
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  if (!is_root())
+    std::cout.setstate(std::ios::failbit);
+  std::cout << "2D" << std::endl;
+  test<2>({{80, 8, 1}});
+  std::cout << "2D, odd numbers" << std::endl;
+  test<2>({{75, 7, 1}});
+  std::cout << "3D" << std::endl;
+  test<3>({{20, 2, 2}});
+  std::cout << "3D, odd numbers" << std::endl;
+  test<3>({{21, 5, 3}});
+}
