@@ -112,13 +112,12 @@ namespace Debond
 
 
   template <int dim>
-  BoxPiece<dim>::BoxPiece(const BoxParameters &box,
-                          const unsigned int   rank,
-                          const unsigned int   n_ranks)
+  BoxPiece<dim>::BoxPiece(const Box<dim>    &box,
+                          const unsigned int rank,
+                          const unsigned int n_ranks)
     : Box<dim>(box)
-    , first(
-        static_cast<unsigned int>(std::size_t(box.cells[0]) * rank / n_ranks))
-    , end(static_cast<unsigned int>(std::size_t(box.cells[0]) * (rank + 1) /
+    , first(static_cast<unsigned int>(std::size_t(n_slabs()) * rank / n_ranks))
+    , end(static_cast<unsigned int>(std::size_t(n_slabs()) * (rank + 1) /
                                     n_ranks))
   {
     if (n_ranks > n_slabs())
@@ -126,7 +125,7 @@ namespace Debond
         "a box with " + std::to_string(n_slabs()) +
         " cells along x can be cut for at most as many ranks, not " +
         std::to_string(n_ranks));
-    if (box.rotation != 0.)
+    if (this->parameters.rotation != 0.)
       throw std::invalid_argument("a turned box cannot be cut for ranks");
   }
 

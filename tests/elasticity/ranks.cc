@@ -134,7 +134,7 @@ namespace
     const auto levels = ElasticLevels<dim>::make(box, *whole.problem);
 
     const BoxPiece<dim> piece(
-      parameters,
+      box,
       dealii::Utilities::MPI::this_mpi_process(communicator),
       dealii::Utilities::MPI::n_mpi_processes(communicator));
     const BodyProblem<dim>      part(piece, &piece);

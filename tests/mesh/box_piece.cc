@@ -66,7 +66,7 @@ namespace
     const dealii::FE_SimplexP<dim> fe(1);
     dealii::DoFHandler<dim>        dofs(whole);
     dofs.distribute_dofs(fe);
-    const BoxPiece<dim>                    all(box, 0, 1);
+    const BoxPiece<dim>                    all(Box<dim>(box), 0, 1);
     std::vector<unsigned int>              numbers(whole.n_vertices());
     const std::vector<dealii::Point<dim>> &vertices = whole.get_vertices();
     const std::vector<unsigned int>        found    = all.numbers(vertices);
@@ -88,7 +88,7 @@ namespace
         bool are_equal = true, are_few = true, are_sorted = true;
         for (unsigned int rank = 0; rank < n_ranks; ++rank)
           {
-            const BoxPiece<dim>        piece(box, rank, n_ranks);
+            const BoxPiece<dim>        piece(Box<dim>(box), rank, n_ranks);
             dealii::Triangulation<dim> mesh;
             piece.make_mesh(mesh);
             are_few = are_few && mesh.n_active_cells() <=
@@ -148,7 +148,7 @@ main()
   test<3>({{7, 3, 2}});
   BoxParameters box;
   box.cells = {{3, 2, 1}};
-  print_error([&]() { BoxPiece<2>(box, 0, 4); });
+  print_error([&]() { BoxPiece<2>(Box<2>(box), 0, 4); });
   box.rotation = 10.;
-  print_error([&]() { BoxPiece<2>(box, 0, 2); });
+  print_error([&]() { BoxPiece<2>(Box<2>(box), 0, 2); });
 }

@@ -24,9 +24,9 @@ namespace Debond
   public:
     /// Throws std::invalid_argument if there are more ranks than slabs, or the
     /// box is turned: coordinates of turned boxes are rounded.
-    BoxPiece(const BoxParameters &parameters,
-             const unsigned int   rank,
-             const unsigned int   n_ranks);
+    BoxPiece(const Box<dim>    &box,
+             const unsigned int rank,
+             const unsigned int n_ranks);
 
     /// That of the own slabs and ghosts, with cells and vertices to the last
     /// bit as in the whole mesh, in the same order. Faces between them and what
