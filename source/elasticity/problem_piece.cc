@@ -160,7 +160,7 @@ namespace Debond
 
     // Faces are in the order of their cells.
     std::vector<std::size_t>  cells;
-    std::vector<unsigned int> nodes;
+    std::vector<unsigned int> nodes, ids;
     std::vector<double>       of_faces;
     for (const auto &face : local.faces)
       {
@@ -170,6 +170,7 @@ namespace Debond
         if (!piece.owns_cell_at(middle))
           continue;
         cells.push_back(piece.cell_at(middle));
+        ids.push_back(face.id);
         for (const unsigned int node : face.nodes)
           nodes.push_back(
             node == elsewhere ?
@@ -182,6 +183,7 @@ namespace Debond
       }
     cells    = gather_everywhere(cells, communicator);
     nodes    = gather_everywhere(nodes, communicator);
+    ids      = gather_everywhere(ids, communicator);
     of_faces = gather_everywhere(of_faces, communicator);
     std::vector<std::size_t> order(cells.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
@@ -201,6 +203,7 @@ namespace Debond
           }
         read<dim>(next, face.normal);
         face.measure = *next;
+        face.id      = ids[f];
         contact_boundary.faces.push_back(face);
       }
   }

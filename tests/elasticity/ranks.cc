@@ -156,6 +156,7 @@ namespace
     for (unsigned int f = 0; same && f < boundary.faces.size(); ++f)
       same =
         shared.boundary().faces[f].nodes == boundary.faces[f].nodes &&
+        shared.boundary().faces[f].id == boundary.faces[f].id &&
         shared.boundary().faces[f].vertices == boundary.faces[f].vertices &&
         shared.boundary().faces[f].measure == boundary.faces[f].measure;
     check("  contact boundary", same);
