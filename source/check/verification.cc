@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 namespace Debond
@@ -279,7 +280,8 @@ namespace Debond
     template <int dim>
     LargestResiduals
     largest_residuals(const ElasticProblem<dim>    &problem,
-                      const dealii::Vector<double> &residual)
+                      const dealii::Vector<double> &residual,
+                      const ProblemPiece<dim>      *piece)
     {
       std::vector<bool> supported(problem.unknowns().n_dofs(), false);
       for (const auto normal : problem.unknowns().contact().normals())
@@ -288,12 +290,18 @@ namespace Debond
       LargestResiduals result;
       for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
         {
+          if (piece != nullptr && !piece->nodes().is_own(i / dim))
+            continue;
           double &largest =
             supported[i] || problem.unknowns().is_constrained(i) ?
               result.supported :
               result.free;
           largest = std::max(largest, std::abs(residual(i)));
         }
+      if (piece != nullptr)
+        for (double *const largest : {&result.free, &result.supported})
+          *largest = dealii::Utilities::MPI::max(*largest,
+                                                 piece->nodes().communicator());
       return result;
     }
 
@@ -306,8 +314,13 @@ namespace Debond
                           const std::vector<double>    &held_forces,
                           const LoadFactors             factors,
                           const double                  smallest_force,
+                          const ProblemPiece<dim>      *piece,
                           Verification<dim>            &result)
     {
+      // Of all unknowns, on the first of several ranks.
+      const auto whole = [piece](const dealii::Vector<double> &v) {
+        return piece == nullptr ? v : piece->gather(v);
+      };
       const auto       &normals = problem.unknowns().contact().normals();
       std::vector<bool> is_normal(problem.unknowns().n_dofs(), false);
       std::vector<unsigned int> node_of_dof(
@@ -356,25 +369,38 @@ namespace Debond
 
       const auto resultant = [&](const dealii::Vector<double> &forces) {
         const dealii::Vector<double> cartesian =
-          problem.unknowns().cartesian_forces(forces);
+          whole(problem.unknowns().cartesian_forces(forces));
         dealii::Tensor<1, dim> sum;
         for (unsigned int i = 0; i < cartesian.size(); ++i)
-          sum[component[i]] += cartesian(i);
+          sum[piece == nullptr ? component[i] : i % dim] += cartesian(i);
         return sum;
       };
 
-      result.applied_force    = problem.fields().total_load(factors);
+      const dealii::Vector<double> applied =
+        whole(problem.fields().applied_nodal_forces(factors));
+      if (piece == nullptr)
+        result.applied_force = problem.fields().total_load(factors);
+      else
+        for (unsigned int i = 0; i < applied.size(); ++i)
+          result.applied_force[i % dim] += applied(i);
       result.clamped_reaction = resultant(clamped);
       result.contact_reaction = resultant(contact);
 
+      // A rank has not all supports.
       const std::vector<std::string> &names = unknowns.support_names();
-      for (unsigned int k = 0; k < names.size(); ++k)
+      std::set<std::string>           all_names(names.begin(), names.end());
+      if (piece != nullptr)
+        for (const auto &of_rank :
+             dealii::Utilities::MPI::all_gather(piece->nodes().communicator(),
+                                                names))
+          all_names.insert(of_rank.begin(), of_rank.end());
+      for (const std::string &name : all_names)
         {
           dealii::Vector<double> of_support(unknowns.n_dofs());
           for (const auto &[dof, support] : unknowns.supported())
-            if (support == k)
+            if (names[support] == name)
               of_support(dof) = residual(dof);
-          result.reactions[names[k]] += resultant(of_support);
+          result.reactions[name] = resultant(of_support);
         }
       // Bonds of vertices that a support moves pull at it.
       const auto &held = unknowns.contact().boundary().held_vertices;
@@ -391,7 +417,20 @@ namespace Debond
       for (const auto normal : normals)
         tangential(normal) = 0.;
       result.tangential_reaction = resultant(tangential);
-      tangential = problem.unknowns().cartesian_forces(tangential);
+      tangential = whole(problem.unknowns().cartesian_forces(tangential));
+      if (piece != nullptr)
+        {
+          vertex_dofs_of_node.clear();
+          for (unsigned int i = 0;
+               i < piece->normal_numbers().size() && tangential.size() > 0;
+               ++i)
+            {
+              vertex_dofs_of_node.emplace_back();
+              for (unsigned int d = 0; d < dim; ++d)
+                vertex_dofs_of_node.back()[d] =
+                  piece->normal_numbers()[i] / dim * dim + d;
+            }
+        }
       for (const auto &dofs : vertex_dofs_of_node)
         {
           dealii::Tensor<1, dim> force;
@@ -403,9 +442,9 @@ namespace Debond
       // Resultants can vanish where forces do not.
       dealii::Vector<double> supports = clamped;
       supports += contact;
+      supports = whole(supports);
       const double scale =
-        supports.l1_norm() +
-        problem.fields().applied_nodal_forces(factors).l1_norm();
+        supports.size() == 0 ? 0. : supports.l1_norm() + applied.l1_norm();
       const double imbalance = (result.applied_force + result.clamped_reaction +
                                 result.contact_reaction)
                                  .norm();
@@ -423,34 +462,49 @@ namespace Debond
          const AdhesiveLaw            &law,
          const dealii::Vector<double> &u,
          const LoadFactors             factors,
-         const double                  tolerance)
+         const double                  tolerance,
+         const ProblemPiece<dim>      *piece)
   {
-    if (!std::all_of(u.begin(), u.end(), [](const double x) {
-          return std::isfinite(x);
-        }))
+    const bool is_finite =
+      piece == nullptr ?
+        std::all_of(u.begin(),
+                    u.end(),
+                    [](const double x) { return std::isfinite(x); }) :
+        std::isfinite(piece->nodes().product(u.begin(), u.begin()));
+    if (!is_finite)
       throw std::invalid_argument(
         "The displacement is not finite and cannot be verified: the data of "
         "the "
         "scene are too large or too small for double precision.");
 
-    const ContactSpace<dim>     &contact = problem.unknowns().contact();
+    const ContactBoundary<dim> &boundary =
+      piece == nullptr ? problem.unknowns().contact().boundary() :
+                         piece->boundary();
+    const auto trace = [&](const dealii::Vector<double> &v) {
+      return piece == nullptr ? problem.unknowns().contact().trace(v) :
+                                piece->trace(v);
+    };
+    const auto largest_entry = [&](const dealii::Vector<double> &v) {
+      return piece == nullptr ? v.linfty_norm() :
+                                piece->nodes().largest(v.begin());
+    };
     const dealii::Vector<double> residual =
       problem.fields().residual(u, factors);
 
-    const dealii::Vector<double> s               = contact.trace(u);
-    const dealii::Vector<double> normal_residual = contact.trace(residual);
+    const dealii::Vector<double> s               = trace(u);
+    const dealii::Vector<double> normal_residual = trace(residual);
     const std::vector<Interval>  forces = adhesion.force_intervals(s, 0.);
 
     Verification<dim> result;
     result.state_names     = state_names(law);
     result.penetration     = 0.;
     result.largest_opening = 0.;
-    result.broken_zone     = broken_zone(contact.boundary(), law, adhesion, s);
+    result.broken_zone     = broken_zone(boundary, law, adhesion, s);
     for (unsigned int i = 0; i < s.size(); ++i)
       {
         ContactNodeState node;
         node.s                = s(i);
-        node.u_nu             = s(i) + contact.boundary().nodes[i].gap;
+        node.u_nu             = s(i) + boundary.nodes[i].gap;
         node.normal_force     = -normal_residual(i);
         node.allowed_force    = unbounded_above_if(s(i) >= 0., forces[i]);
         const BondScale bonds = adhesion.bonds_at(i);
@@ -465,15 +519,16 @@ namespace Debond
     dealii::Vector<double> displacement = u;
     if (problem.unknowns().has_lifting())
       displacement += problem.unknowns().lifting(factors);
-    const double           largest_displacement = displacement.linfty_norm();
-    const LargestResiduals largest = largest_residuals(problem, residual);
+    const double           largest_displacement = largest_entry(displacement);
+    const LargestResiduals largest =
+      largest_residuals(problem, residual, piece);
     const dealii::Vector<double> rounding =
       problem.fields().residual_rounding(u, factors);
     const std::vector<LawScale> scales = law_scales(law,
                                                     adhesion,
-                                                    contact.boundary(),
+                                                    boundary,
                                                     result.nodes,
-                                                    contact.trace(rounding),
+                                                    trace(rounding),
                                                     largest.supported,
                                                     largest_displacement);
     compute_violations(adhesion, s, scales, result.nodes);
@@ -493,18 +548,17 @@ namespace Debond
         result.law_violation = std::max(result.law_violation, node.violation);
       }
 
+    const double resolved = digits_above_rounding * largest_entry(rounding);
     result.equilibrium_residual =
       largest.free > 0. ?
-        largest.free /
-          std::max({largest.free,
-                    largest.supported,
-                    digits_above_rounding * rounding.linfty_norm()}) :
+        largest.free / std::max({largest.free, largest.supported, resolved}) :
         0.;
     compute_force_balance(problem,
                           residual,
                           adhesion.held_forces(s),
                           factors,
-                          digits_above_rounding * rounding.linfty_norm(),
+                          resolved,
+                          piece,
                           result);
     return result;
   }
@@ -533,12 +587,14 @@ namespace Debond
          const AdhesiveLaw &,
          const dealii::Vector<double> &,
          const LoadFactors,
-         const double);
+         const double,
+         const ProblemPiece<2> *);
   template Verification<3>
   verify(const ElasticProblem<3> &,
          const AdhesionIntegral<3> &,
          const AdhesiveLaw &,
          const dealii::Vector<double> &,
          const LoadFactors,
-         const double);
+         const double,
+         const ProblemPiece<3> *);
 } // namespace Debond

@@ -50,7 +50,10 @@ namespace Debond
     };
     return {
       {{"body.vtu"},
-       [&]() { return output.body_vtu && result.has_displacement(); },
+       [&]() {
+         return output.body_vtu && result.has_displacement() &&
+                scene.piece() == nullptr;
+       },
        [&](const std::string &path) {
          write_body_vtu(scene.problem(),
                         result.solve.u,
@@ -58,8 +61,15 @@ namespace Debond
                         result.solve.load_factor,
                         result.estimate ? &*result.estimate : nullptr);
        }},
+      // Of several ranks, which write it themselves.
+      {{"body.pvtu"},
+       []() { return false; },
+       [](const std::string & /*path*/) {}},
       {{"contact.vtu"},
-       [&]() { return output.contact_vtu && result.has_displacement(); },
+       [&]() {
+         return output.contact_vtu && result.has_displacement() &&
+                scene.piece() == nullptr;
+       },
        [&](const std::string &path) {
          write_contact_vtu(scene.problem(),
                            result.solve.u,
@@ -70,7 +80,7 @@ namespace Debond
       {{"contact_profile.csv"},
        [&]() { return output.contact_profile && result.has_displacement(); },
        [&](const std::string &path) {
-         write_contact_profile(scene.problem().unknowns().contact().boundary(),
+         write_contact_profile(scene.contact_boundary(),
                                result.verification,
                                path);
        }},

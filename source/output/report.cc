@@ -591,9 +591,9 @@ namespace Debond
                       parameters.degree == 2 ? ", quadratic displacements" :
                                                ""));
 
-    const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
-    const unsigned int          n_dofs   = unknowns.n_free_dofs();
-    const unsigned int          n_nodes  = unknowns.contact().size();
+    const unsigned int n_dofs = scene.n_unknowns();
+    const unsigned int n_nodes =
+      static_cast<unsigned int>(scene.contact_boundary().nodes.size());
     // The paper counts the tangential displacements of the contact nodes,
     // although they are fixed: 710 on its mesh 40x4.
     const bool is_fixed = parameters.tangential_displacement_fixed &&
@@ -608,7 +608,8 @@ namespace Debond
                      words(", with fixed tangential ones ", n_dofs_paper) :
                      ""));
     report_data(parameters, n_nodes, record);
-    if (const auto &motions = unknowns.held_by_contact().names;
+    if (const auto &motions =
+          scene.problem().unknowns().held_by_contact().names;
         !motions.empty())
       record.line("held by contact",
                   join(motions, ", ") + ", by bonds and the foundation alone");
@@ -687,7 +688,8 @@ namespace Debond
       report_estimate(*result.estimate, record);
     report_minimum(result.solve.minimum,
                    result.is_success(),
-                   scene.problem().unknowns().contact().size(),
+                   static_cast<unsigned int>(
+                     scene.contact_boundary().nodes.size()),
                    record);
     report_iterations(result.solve, choice.method, record);
     if (!result.has_displacement())

@@ -282,6 +282,67 @@ namespace Debond
 
 
   template <int dim>
+  std::vector<std::string>
+  write_body_pieces(const ElasticProblem<dim>    &problem,
+                    const ProblemPiece<dim>      &piece,
+                    const dealii::Vector<double> &u,
+                    const std::string            &directory)
+  {
+    using dealii::DataComponentInterpretation::component_is_part_of_vector;
+    using CellIterator = typename dealii::DataOut<dim>::cell_iterator;
+
+    const dealii::Vector<double> displacement =
+      problem.unknowns().cartesian_displacement(u);
+    dealii::DataOut<dim> data_out;
+    data_out.set_flags(vtk_flags());
+    data_out.attach_dof_handler(problem.unknowns().dof_handler());
+    data_out.add_data_vector(
+      displacement,
+      std::vector<std::string>(dim, "displacement"),
+      dealii::DataOut<dim>::type_dof_data,
+      std::vector<
+        dealii::DataComponentInterpretation::DataComponentInterpretation>(
+        dim, component_is_part_of_vector));
+    const auto own_from = [&piece](CellIterator cell, const CellIterator &end) {
+      while (cell != end && !piece.body().owns_cell_at(cell->center()))
+        ++cell;
+      return cell;
+    };
+    data_out.set_cell_selection(
+      [&](const dealii::Triangulation<dim> &mesh) {
+        return own_from(mesh.begin(), mesh.end());
+      },
+      [&](const dealii::Triangulation<dim> &mesh, const CellIterator &cell) {
+        return own_from(std::next(cell), mesh.end());
+      });
+    data_out.build_patches(problem.unknowns().mapping());
+
+    const MPI_Comm ranks = piece.nodes().communicator();
+    const auto     name  = [](const unsigned int rank) {
+      return "body.rank" + std::to_string(rank) + ".vtu";
+    };
+    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(ranks);
+    std::vector<std::string> written = {directory + "/" + name(rank)};
+    write_atomically(written[0],
+                     [&](std::ostream &out) { data_out.write_vtu(out); });
+    if (rank == 0)
+      {
+        std::vector<std::string> names;
+        for (unsigned int k = 0;
+             k < dealii::Utilities::MPI::n_mpi_processes(ranks);
+             ++k)
+          names.push_back(name(k));
+        written.push_back(directory + "/body.pvtu");
+        write_atomically(written[1], [&](std::ostream &out) {
+          data_out.write_pvtu_record(out, names);
+        });
+      }
+    return written;
+  }
+
+
+
+  template <int dim>
   void
   write_contact_vtu(const ElasticProblem<dim>    &problem,
                     const dealii::Vector<double> &u,
@@ -439,6 +500,16 @@ namespace Debond
                  const std::string &,
                  const LoadFactors,
                  const ErrorEstimate *);
+  template std::vector<std::string>
+  write_body_pieces(const ElasticProblem<2> &,
+                    const ProblemPiece<2> &,
+                    const dealii::Vector<double> &,
+                    const std::string &);
+  template std::vector<std::string>
+  write_body_pieces(const ElasticProblem<3> &,
+                    const ProblemPiece<3> &,
+                    const dealii::Vector<double> &,
+                    const std::string &);
   template void
   write_contact_vtu(const ElasticProblem<2> &,
                     const dealii::Vector<double> &,

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/multithread_info.h>
 
 #include <debond/base/version.h>
 #include <debond/input/parameters.h>
 #include <debond/linear_algebra/blas_threads.h>
 #include <debond/program/command_line.h>
+#include <debond/program/ranks.h>
 #include <debond/program/report_errors.h>
 #include <debond/program/run.h>
 #include <debond/solve/method_choice.h>
@@ -15,6 +17,7 @@
 
 #include <unistd.h>
 
+#include <functional>
 #include <iostream>
 
 namespace Debond
@@ -104,6 +107,11 @@ namespace Debond
     ExitCode
     run_or_validate(const Parameters &parameters, const bool only_validate)
     {
+      if (!only_validate && n_started_ranks() > 1)
+        return run_on_ranks<dim>(parameters,
+                                 MPI_COMM_WORLD,
+                                 std::cout,
+                                 isatty(STDOUT_FILENO) == 1);
       if (!only_validate)
         return run<dim>(parameters, std::cout, isatty(STDOUT_FILENO) == 1);
 
@@ -168,6 +176,41 @@ namespace Debond
                run_or_validate<2>(parameters, only_validate) :
                run_or_validate<3>(parameters, only_validate);
     }
+
+
+
+    /// Ranks agree on bad input and results, so the first one speaks for all.
+    /// What happens to one alone, such as a lack of memory, ends them all.
+    ExitCode
+    execute_on_ranks(const std::function<ExitCode()> &action)
+    {
+      static int                                     argc = 0;
+      static char                                  **argv = nullptr;
+      const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+      const bool                                     is_first =
+        dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+      if (!is_first)
+        for (std::ostream *const stream : {&std::cout, &std::cerr})
+          stream->setstate(std::ios::failbit);
+      return report_errors("debond", [&]() {
+        try
+          {
+            return action();
+          }
+        catch (const BadInput &)
+          {
+            throw;
+          }
+        catch (...)
+          {
+            std::cerr.clear();
+            const ExitCode code =
+              report_errors("debond", []() -> ExitCode { throw; });
+            MPI_Abort(MPI_COMM_WORLD, static_cast<int>(code));
+            return code;
+          }
+      });
+    }
   } // namespace
 
 
@@ -179,9 +222,11 @@ namespace Debond
     // operations would only change rounding.
     dealii::MultithreadInfo::set_thread_limit(1);
     use_one_blas_thread_by_default();
-    return report_errors("debond", [&]() {
+    const auto execute_here = [&]() {
       const po::options_description visible = visible_options();
       return execute(parse(argc, argv, visible), visible);
-    });
+    };
+    return n_started_ranks() == 1 ? report_errors("debond", execute_here) :
+                                    execute_on_ranks(execute_here);
   }
 } // namespace Debond

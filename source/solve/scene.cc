@@ -12,6 +12,7 @@
 #include <debond/solve/scene.h>
 
 #include <cmath>
+#include <functional>
 
 namespace Debond
 {
@@ -397,89 +398,163 @@ namespace Debond
   Scene<dim>::Scene(const Parameters                &parameters,
                     std::shared_ptr<const Body<dim>> body,
                     const MatrixStorage              storage)
+    : Scene(parameters, std::move(body), storage, nullptr, MPI_COMM_NULL)
+  {}
+
+
+
+  template <int dim>
+  Scene<dim>::Scene(const Parameters                    &parameters,
+                    std::shared_ptr<const BoxPiece<dim>> piece,
+                    const MPI_Comm                       ranks)
+    : Scene(parameters, piece, MatrixStorage::serial, piece.get(), ranks)
+  {}
+
+
+
+  template <int dim>
+  Scene<dim>::Scene(const Parameters                &parameters,
+                    std::shared_ptr<const Body<dim>> body,
+                    const MatrixStorage              storage,
+                    const BoxPiece<dim>             *box_piece,
+                    const MPI_Comm                   ranks)
     : elastic_body(std::move(body))
     , body_materials(parameters.materials.everywhere)
   {
     BoundaryNames boundaries;
     dealii::Timer timer;
     std::string   entry = "Mesh/Lengths"; // that errors belong to
-    try
-      {
-        const PieceNames names = elastic_body->make_mesh(triangulation);
-        boundaries             = names.boundaries;
-        body_notes             = names.notes;
-        seconds_for_mesh       = timer.wall_time();
+    // Returns what is wrong.
+    const auto attempt = [&](const std::function<void()> &action) {
+      try
+        {
+          action();
+          return std::string();
+        }
+      catch (const std::invalid_argument &error)
+        {
+          if (const auto *load = dynamic_cast<const LoadError *>(&error))
+            entry =
+              load->boundary ?
+                traction_entry(parameters.loads, boundaries, *load->boundary) :
+                "Loads/Body force";
+          if (dynamic_cast<const TemperatureError *>(&error) != nullptr)
+            entry = "Loads/Temperature change";
+          if (const auto *piece = dynamic_cast<const PieceError *>(&error))
+            entry = piece->entry;
+          if (const auto *part = dynamic_cast<const PartError *>(&error))
+            entry = "Parts/" + part->part;
+          if (const auto *support = dynamic_cast<const SupportError *>(&error))
+            entry = entry_of(*support, parameters.supports);
+          if (const auto *probe = dynamic_cast<const ProbeError *>(&error))
+            entry = "Probes/" + probe->probe;
+          if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))
+            {
+              const std::string everywhere = bonds->is_threshold ?
+                                               "Contact law/Bond threshold" :
+                                               "Contact law/Bond stiffness";
+              entry                        = everywhere + ' ' + bonds->boundary;
+              if (parameters.locations.count(entry) == 0)
+                entry = everywhere;
+            }
+          return parameters.locations.at(entry) + ": " + entry + ": " +
+                 error.what();
+        }
+    };
 
-        timer.restart();
-        entry               = "Boundary conditions/Clamped boundaries";
-        boundary_conditions = make_conditions(parameters, boundaries);
-        body_supports   = make_supports<dim>(parameters, boundary_conditions);
-        elastic_problem = std::make_unique<ElasticProblem<dim>>(
-          triangulation, boundary_conditions, body_supports, parameters.degree);
-        check_held_vertices(elastic_problem->unknowns(),
-                            displacement_factors(parameters.load_path));
-        entry = "Material/Poisson ratio";
-        const std::set<std::string> &dead_loads =
-          parameters.load_path.dead_loads;
-        body_loads =
-          make_loads<dim>(parameters.loads, dead_loads, false, boundaries);
-        body_dead_loads =
-          make_loads<dim>(parameters.loads, dead_loads, true, boundaries);
-        body_materials = make_materials(parameters.materials, names.regions);
-        elastic_problem->assemble(body_materials,
-                                  body_loads,
-                                  storage,
-                                  body_dead_loads);
-        named_probes = Probes<dim>(elastic_problem->unknowns(),
-                                   names,
-                                   make_probes<dim>(parameters.probes));
-        piece_means  = Probes<dim>(elastic_problem->unknowns(),
-                                  names,
-                                  means_of_pieces<dim>(names));
-        entry        = "Contact law/Quadrature";
-        add_contact(parameters, storage);
-        entry = "Solver/Euclidean bundle/Start";
-        // A run that restarts has its start already.
-        if (parameters.solver.start.empty() || parameters.checkpoints.restart)
-          {
-            const ContactSpace<dim> &contact =
-              elastic_problem->unknowns().contact();
-            first_iterate.reinit(elastic_problem->unknowns().n_dofs());
-            contact.add_normal(contact.at_rest(), first_iterate);
-          }
-        else
-          first_iterate = read_start(parameters.solver.start, *elastic_problem);
-      }
-    catch (const std::invalid_argument &error)
+    std::vector<std::string> errors = {attempt([&]() {
+      add_problem(parameters, storage, box_piece, boundaries, entry);
+    })};
+    if (box_piece != nullptr)
+      errors = dealii::Utilities::MPI::all_gather(ranks, errors[0]);
+    for (const std::string &error : errors)
+      if (!error.empty())
+        throw BadInput({error});
+    if (box_piece != nullptr)
+      problem_piece =
+        std::make_unique<const ProblemPiece<dim>>(*box_piece,
+                                                  elastic_problem->unknowns(),
+                                                  ranks);
+    const std::string error = attempt([&]() {
+      entry = "Contact law/Quadrature";
+      add_contact(parameters, storage);
+      entry = "Solver/Euclidean bundle/Start";
+      add_start(parameters);
+    });
+    if (!error.empty())
+      throw BadInput({error});
+    seconds_for_assembly = timer.wall_time() - seconds_for_mesh;
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::add_problem(const Parameters    &parameters,
+                          const MatrixStorage  storage,
+                          const BoxPiece<dim> *box_piece,
+                          BoundaryNames       &boundaries,
+                          std::string         &entry)
+  {
+    dealii::Timer    timer;
+    const PieceNames names = elastic_body->make_mesh(triangulation);
+    boundaries             = names.boundaries;
+    body_notes             = names.notes;
+    seconds_for_mesh       = timer.wall_time();
+
+    entry               = "Boundary conditions/Clamped boundaries";
+    boundary_conditions = make_conditions(parameters, boundaries);
+    body_supports       = make_supports<dim>(parameters, boundary_conditions);
+    elastic_problem     = std::make_unique<ElasticProblem<dim>>(
+      triangulation,
+      boundary_conditions,
+      body_supports,
+      parameters.degree,
+      box_piece == nullptr ? std::vector<unsigned int>() :
+                                 node_order(*box_piece, triangulation));
+    check_held_vertices(elastic_problem->unknowns(),
+                        displacement_factors(parameters.load_path));
+    entry                                   = "Material/Poisson ratio";
+    const std::set<std::string> &dead_loads = parameters.load_path.dead_loads;
+    body_loads =
+      make_loads<dim>(parameters.loads, dead_loads, false, boundaries);
+    body_dead_loads =
+      make_loads<dim>(parameters.loads, dead_loads, true, boundaries);
+    if (box_piece != nullptr)
+      for (const auto &[side, id] : box_sides<dim>())
+        body_loads.n_faces[id] = body_dead_loads.n_faces[id] =
+          box_piece->n_faces_on(side);
+    body_materials = make_materials(parameters.materials, names.regions);
+    elastic_problem->assemble(body_materials,
+                              body_loads,
+                              storage,
+                              body_dead_loads);
+    if (box_piece != nullptr)
+      return;
+    named_probes = Probes<dim>(elastic_problem->unknowns(),
+                               names,
+                               make_probes<dim>(parameters.probes));
+    piece_means  = Probes<dim>(elastic_problem->unknowns(),
+                              names,
+                              means_of_pieces<dim>(names));
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::add_start(const Parameters &parameters)
+  {
+    // A run that restarts has its start already.
+    if (parameters.solver.start.empty() || parameters.checkpoints.restart)
       {
-        if (const auto *load = dynamic_cast<const LoadError *>(&error))
-          entry =
-            load->boundary ?
-              traction_entry(parameters.loads, boundaries, *load->boundary) :
-              "Loads/Body force";
-        if (dynamic_cast<const TemperatureError *>(&error) != nullptr)
-          entry = "Loads/Temperature change";
-        if (const auto *piece = dynamic_cast<const PieceError *>(&error))
-          entry = piece->entry;
-        if (const auto *part = dynamic_cast<const PartError *>(&error))
-          entry = "Parts/" + part->part;
-        if (const auto *support = dynamic_cast<const SupportError *>(&error))
-          entry = entry_of(*support, parameters.supports);
-        if (const auto *probe = dynamic_cast<const ProbeError *>(&error))
-          entry = "Probes/" + probe->probe;
-        if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))
-          {
-            const std::string everywhere = bonds->is_threshold ?
-                                             "Contact law/Bond threshold" :
-                                             "Contact law/Bond stiffness";
-            entry                        = everywhere + ' ' + bonds->boundary;
-            if (parameters.locations.count(entry) == 0)
-              entry = everywhere;
-          }
-        throw BadInput({parameters.locations.at(entry) + ": " + entry + ": " +
-                        error.what()});
+        const ContactSpace<dim> &contact =
+          elastic_problem->unknowns().contact();
+        first_iterate.reinit(elastic_problem->unknowns().n_dofs());
+        contact.add_normal(contact.at_rest(), first_iterate);
       }
-    seconds_for_assembly = timer.wall_time();
+    else
+      first_iterate = read_start(parameters.solver.start, *elastic_problem);
   }
 
 
@@ -497,10 +572,9 @@ namespace Debond
       bond_field =
         make_bond_field<dim>(parameters, *adhesive_law, boundary_conditions);
     adhesion_integral = std::make_unique<AdhesionIntegral<dim>>(
-      elastic_problem->unknowns().contact().boundary(),
-      *adhesive_law,
-      *quadrature,
-      bond_field.get());
+      contact_boundary(), *adhesive_law, *quadrature, bond_field.get());
+    if (problem_piece)
+      return;
     const auto make_functional = [this](const auto &A) {
       using MatrixType = std::decay_t<decltype(A)>;
       energy           = std::make_unique<Functional<dim, MatrixType, Vector>>(
@@ -644,10 +718,57 @@ namespace Debond
 
 
   template <int dim>
+  const ProblemPiece<dim> *
+  Scene<dim>::piece() const
+  {
+    return problem_piece.get();
+  }
+
+
+
+  template <int dim>
+  const ContactBoundary<dim> &
+  Scene<dim>::contact_boundary() const
+  {
+    return problem_piece ? problem_piece->boundary() :
+                           elastic_problem->unknowns().contact().boundary();
+  }
+
+
+
+  template <int dim>
+  dealii::Vector<double>
+  Scene<dim>::contact_trace(const dealii::Vector<double> &u) const
+  {
+    return problem_piece ? problem_piece->trace(u) :
+                           elastic_problem->unknowns().contact().trace(u);
+  }
+
+
+
+  template <int dim>
   unsigned int
   Scene<dim>::n_cells() const
   {
-    return triangulation.n_active_cells();
+    return problem_piece ? static_cast<unsigned int>(elastic_body->n_cells()) :
+                           triangulation.n_active_cells();
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  Scene<dim>::n_unknowns() const
+  {
+    const ElasticUnknowns<dim> &unknowns = elastic_problem->unknowns();
+    if (!problem_piece)
+      return unknowns.n_free_dofs();
+    unsigned int own = 0;
+    for (const auto &[begin, end] : problem_piece->nodes().own_ranges())
+      for (unsigned int i = begin * dim; i < end * dim; ++i)
+        own += !unknowns.is_constrained(i);
+    return dealii::Utilities::MPI::sum(own,
+                                       problem_piece->nodes().communicator());
   }
 
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/timer.h>
 
 #include <debond/base/interrupt.h>
@@ -25,6 +26,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <sstream>
 
 namespace Debond
 {
@@ -52,12 +54,19 @@ namespace Debond
     class Watch
     {
     public:
-      explicit Watch(const InterruptGuard &guard)
+      /// Several ranks all do what the first one decides.
+      explicit Watch(const InterruptGuard &guard,
+                     const MPI_Comm        ranks = MPI_COMM_NULL)
         : guard(guard)
+        , ranks(ranks)
       {}
 
-      Watch(const InterruptGuard &guard, std::ostream &out, const bool terminal)
+      Watch(const InterruptGuard &guard,
+            std::ostream         &out,
+            const bool            terminal,
+            const MPI_Comm        ranks)
         : guard(guard)
+        , ranks(ranks)
         , progress(std::make_unique<Progress>(out, terminal))
         , log(&out)
       {}
@@ -99,18 +108,22 @@ namespace Debond
         iteration.functional += offset;
         if (progress)
           progress->report(iteration);
-        return !guard.requested();
+        return may_go_on();
       }
 
       bool
       may_go_on() const
       {
-        return !guard.requested();
+        const bool is_requested = guard.requested();
+        return !(ranks == MPI_COMM_NULL ?
+                   is_requested :
+                   dealii::Utilities::MPI::broadcast(ranks, is_requested));
       }
 
     private:
       double                    offset = 0.;
       const InterruptGuard     &guard;
+      const MPI_Comm            ranks = MPI_COMM_NULL;
       std::unique_ptr<Progress> progress;
       std::ostream             *log = nullptr;
     };
@@ -136,14 +149,51 @@ namespace Debond
 
 
 
-    /// J(u), from the strains.
+    /// J(u), from the strains, on the first of several ranks.
     template <int dim>
     double
     functional_of(const Scene<dim> &scene, const Vector &u)
     {
-      return scene.problem().fields().elastic_functional(u) +
-             scene.adhesion().energy(
-               scene.problem().unknowns().contact().trace(u));
+      const ElasticProblem<dim> &problem = scene.problem();
+      return (scene.piece() == nullptr ?
+                problem.fields().elastic_functional(u) :
+                scene.piece()->elastic_functional(
+                  problem.fields(), problem.unknowns().dof_handler(), u)) +
+             scene.adhesion().energy(scene.contact_trace(u));
+    }
+
+
+
+    /// Refinement knows no ranks.
+    template <int dim>
+    std::string
+    note_on_rounding(const Scene<dim> &scene, const Vector &u)
+    {
+      constexpr double largest_energy_rounding = 1e-9;
+
+      const ProblemPiece<dim> &piece = *scene.piece();
+      Vector                   terms = u;
+      for (unsigned int i = 0; i < u.size(); ++i)
+        terms(i) *= scene.problem().unknowns().is_constrained(i) ?
+                      0. :
+                      scene.problem().diagonal_entry(i);
+      const Vector s = scene.contact_trace(u);
+      Vector       xi(s.size());
+      scene.adhesion().subgradient(s, xi);
+      const double energy =
+        piece.nodes().product(scene.problem().load().begin(), u.begin()) -
+        (s.size() == 0 ? 0. : xi * s);
+      const double rounding = std::numeric_limits<double>::epsilon() *
+                              piece.nodes().product(terms.begin(), u.begin());
+      if (rounding <= largest_energy_rounding * energy)
+        return "";
+      std::ostringstream note;
+      note.precision(1);
+      note << std::scientific << "in double precision rounding can change "
+           << rounding / energy
+           << " of the strain energy; only one rank would refine the result in "
+              "extended precision.";
+      return note.str();
     }
 
 
@@ -285,6 +335,13 @@ namespace Debond
     {
       if (!can_be_verified(result.status))
         return;
+      if (scene.piece() != nullptr)
+        {
+          const std::string note = note_on_rounding(scene, result.u);
+          if (!note.empty())
+            result.notes.push_back(note);
+          return;
+        }
       const dealii::Timer timer;
       const Vector        before =
         scene.problem().unknowns().contact().trace(result.u);
@@ -547,19 +604,23 @@ namespace Debond
     keep_admissible(const std::vector<unsigned int> &normals, Vector &u)
     {
       for (const unsigned int normal : normals)
-        u(normal) = std::min(u(normal), 0.);
+        if (normal != dealii::numbers::invalid_unsigned_int)
+          u(normal) = std::min(u(normal), 0.);
     }
 
 
 
     /// Minima on the coarser levels, each the start of the next finer one, from
     /// that of the first coarser mesh that is factorised, on which the search
-    /// of the scene is done; @p result gets its counts and notes.
+    /// of the scene is done; @p result gets its counts and notes. Returns that
+    /// of the level @p last_level > 0, or the start on the finest one.
     template <int dim>
     Vector
-    start_from_levels(const Parameters     &parameters,
+    start_from_levels(const MethodChoice   &choice,
+                      const Parameters     &parameters,
                       const Scene<dim>     &scene,
                       ElasticLevels<dim>   &levels,
+                      const unsigned int    last_level,
                       const InterruptGuard &guard,
                       const Watch          &fine_watch,
                       SolveResult          &result)
@@ -580,8 +641,10 @@ namespace Debond
           coarse.solver.start.clear(); // belongs to the finest mesh
           coarse.solver.prove = false;
           const Scene<dim> coarse_scene(coarse, body, MatrixStorage::serial);
-          Watch            watch(guard, fine_watch);
-          SolveResult      start;
+          // A piece does not know what holds the whole.
+          check_supports_of_method(choice, parameters, coarse_scene);
+          Watch       watch(guard, fine_watch);
+          SolveResult start;
           solve_condensed(SolverMethod::majorise_minimise,
                           coarse.solver,
                           coarse_scene,
@@ -625,9 +688,9 @@ namespace Debond
       coarse_parameters.tolerance =
         std::max(coarse_parameters.tolerance, coarse_level_tolerance);
       const unsigned int solved_level = is_solved ? l : levels.n_levels();
-      for (; l > 0; --l)
+      for (;; --l)
         {
-          if (l != solved_level && fine_watch.may_go_on())
+          if (l > 0 && l != solved_level && fine_watch.may_go_on())
             {
               const RestrictedFunction     phi(scene.adhesion(),
                                            levels.trace_prolongation(l));
@@ -644,9 +707,51 @@ namespace Debond
                                        std::to_string(levels.n_unknowns(l)) +
                                        " unknowns: " + minimum.message);
             }
+          if (l == last_level)
+            return u;
           u = levels.prolongate(l, u);
           keep_admissible(levels.normals(l - 1), u);
         }
+    }
+
+
+
+    /// The same where ranks share the finest level: the root has the others.
+    template <int dim>
+    Vector
+    start_from_root(const MethodChoice   &choice,
+                    const Parameters     &parameters,
+                    const Scene<dim>     &scene,
+                    ElasticLevels<dim>   &levels,
+                    const InterruptGuard &guard,
+                    const Watch          &fine_watch,
+                    SolveResult          &result)
+    {
+      Vector                   u;
+      std::vector<std::string> errors;
+      if (levels.is_root())
+        try
+          {
+            u = start_from_levels(choice,
+                                  parameters,
+                                  scene,
+                                  levels,
+                                  1,
+                                  guard,
+                                  Watch(guard, fine_watch),
+                                  result);
+          }
+        catch (const BadInput &error)
+          {
+            errors = error.lines;
+          }
+      errors =
+        dealii::Utilities::MPI::broadcast(scene.piece()->nodes().communicator(),
+                                          errors);
+      if (!errors.empty())
+        throw BadInput(errors);
+      u = levels.prolongate(1, u);
+      keep_admissible(levels.normals(0), u);
       return u;
     }
 
@@ -692,7 +797,8 @@ namespace Debond
     /// majorant.
     template <int dim>
     void
-    solve_by_levels(const Parameters     &parameters,
+    solve_by_levels(const MethodChoice   &choice,
+                    const Parameters     &parameters,
                     const Scene<dim>     &scene,
                     const InterruptGuard &guard,
                     Watch                &watch,
@@ -704,12 +810,18 @@ namespace Debond
       watch.add_energy(energy);
       watch.announce("multigrid", scene.problem().unknowns().n_free_dofs());
       const auto levels =
-        ElasticLevels<dim>::make(scene.body(), scene.problem());
+        scene.piece() == nullptr ?
+          ElasticLevels<dim>::make(scene.body(), scene.problem()) :
+          ElasticLevels<dim>::make(*scene.piece(), scene.problem());
       result.parts["multigrid setup"] = timer.wall_time();
 
       timer.restart();
       result.u =
-        start_from_levels(parameters, scene, *levels, guard, watch, result);
+        scene.piece() == nullptr ?
+          start_from_levels(
+            choice, parameters, scene, *levels, 0, guard, watch, result) :
+          start_from_root(
+            choice, parameters, scene, *levels, guard, watch, result);
       result.parts["coarser meshes"] = timer.wall_time();
       if (!watch.may_go_on())
         {
@@ -796,14 +908,21 @@ namespace Debond
     SolveResult result;
     {
       const InterruptGuard guard;
-      const auto           watch = parameters.output.machine_details ?
-                                     std::make_unique<Watch>(guard, out, terminal) :
-                                     std::make_unique<Watch>(guard);
+      const MPI_Comm       ranks = scene.piece() == nullptr ?
+                                     MPI_COMM_NULL :
+                                     scene.piece()->nodes().communicator();
+      const bool           is_logged =
+        parameters.output.machine_details &&
+        (scene.piece() == nullptr ||
+         dealii::Utilities::MPI::this_mpi_process(ranks) == 0);
+      const auto watch =
+        is_logged ? std::make_unique<Watch>(guard, out, terminal, ranks) :
+                    std::make_unique<Watch>(guard, ranks);
       if (choice.method == SolverMethod::euclidean_bundle)
         solve_by_euclidean_bundle(
           parameters.solver.bundle, scene, checkpoints, *watch, result);
       else if (choice.has_levels)
-        solve_by_levels(parameters, scene, guard, *watch, result);
+        solve_by_levels(choice, parameters, scene, guard, *watch, result);
       else if (choice.linear_solver == LinearSolver::multigrid)
         solve_by_multigrid(parameters, scene, guard, *watch, result);
       else
@@ -816,11 +935,9 @@ namespace Debond
                         result);
     }
     if (choice.linear_solver != LinearSolver::direct)
-      result.minimum.kind =
-        kind_without_search(scene.law(),
-                            scene.adhesion(),
-                            scene.problem().unknowns().contact().trace(
-                              result.u));
+      result.minimum.kind = kind_without_search(scene.law(),
+                                                scene.adhesion(),
+                                                scene.contact_trace(result.u));
     result.functional = result.status == SolverStatus::comes_off ?
                           std::numeric_limits<double>::quiet_NaN() :
                           functional_of(scene, result.u);

@@ -7,6 +7,7 @@
 
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/elasticity/problem_piece.h>
 
 #include <map>
 #include <string>
@@ -157,6 +158,9 @@ namespace Debond
   /// largest |u_nu|) of 0 and the kinks count as
   /// contact and kink for ContactNodeState::state (and for nothing else). So
   /// does a gap under pressure within the node's violation and 1e-3 L_i.
+  ///
+  /// Where ranks share the problem all of them call it with their @p piece, and
+  /// the first one has the result, with the sums of one rank.
   template <int dim>
   Verification<dim>
   verify(const ElasticProblem<dim>    &problem,
@@ -164,7 +168,8 @@ namespace Debond
          const AdhesiveLaw            &law,
          const dealii::Vector<double> &u,
          const LoadFactors             factors   = 1.,
-         const double                  tolerance = 1e-6);
+         const double                  tolerance = 1e-6,
+         const ProblemPiece<dim>      *piece     = nullptr);
 } // namespace Debond
 
 #endif

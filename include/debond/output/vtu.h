@@ -4,8 +4,10 @@
 
 #include <debond/check/error_estimate.h>
 #include <debond/check/verification.h>
+#include <debond/elasticity/problem_piece.h>
 
 #include <string>
+#include <vector>
 
 namespace Debond
 {
@@ -23,6 +25,16 @@ namespace Debond
                  const std::string            &file_name,
                  const LoadFactors             factors  = 1.,
                  const ErrorEstimate          *estimate = nullptr);
+
+  /// Each of several ranks writes the displacement of its own cells as
+  /// body.rankN.vtu, and the first one body.pvtu, which joins them. Returns the
+  /// paths of what the rank has written; throws as above.
+  template <int dim>
+  std::vector<std::string>
+  write_body_pieces(const ElasticProblem<dim>    &problem,
+                    const ProblemPiece<dim>      &piece,
+                    const dealii::Vector<double> &u,
+                    const std::string            &directory);
 
   /**
    * Writes the contact boundary as VTU: displacement, u_nu, gap (-u_nu),

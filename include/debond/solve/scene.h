@@ -7,6 +7,7 @@
 #include <debond/check/probes.h>
 #include <debond/contact/functional.h>
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/elasticity/problem_piece.h>
 #include <debond/input/parameters.h>
 #include <debond/mesh/by_region.h>
 
@@ -34,10 +35,27 @@ namespace Debond
           std::shared_ptr<const Body<dim>> body,
           const MatrixStorage              storage);
 
+    /// The piece that one of several ranks has. To be called by all of them; an
+    /// error of one is thrown by all. There are no probes or means.
+    Scene(const Parameters                    &parameters,
+          std::shared_ptr<const BoxPiece<dim>> piece,
+          const MPI_Comm                       ranks);
+
     Scene(const Scene &) = delete;
 
     const Body<dim> &
     body() const;
+
+    /// What ranks share; null if this is the whole scene.
+    const ProblemPiece<dim> *
+    piece() const;
+
+    /// The boundary and the normal displacements of the whole scene.
+    const ContactBoundary<dim> &
+    contact_boundary() const;
+
+    dealii::Vector<double>
+    contact_trace(const dealii::Vector<double> &u) const;
 
     const ElasticProblem<dim> &
     problem() const;
@@ -85,9 +103,12 @@ namespace Debond
     const std::vector<std::string> &
     notes() const;
 
-    /// Triangles or tetrahedra.
+    /// Triangles or tetrahedra, and free unknowns, of the whole scene.
     unsigned int
     n_cells() const;
+
+    unsigned int
+    n_unknowns() const;
 
     /// Wall seconds that the constructor took for the mesh.
     double
@@ -98,6 +119,24 @@ namespace Debond
     assembly_seconds() const;
 
   private:
+    Scene(const Parameters                &parameters,
+          std::shared_ptr<const Body<dim>> body,
+          const MatrixStorage              storage,
+          const BoxPiece<dim>             *box_piece,
+          const MPI_Comm                   ranks);
+
+    /// All but what belongs to the contact boundary; @p entry is that of
+    /// errors.
+    void
+    add_problem(const Parameters    &parameters,
+                const MatrixStorage  storage,
+                const BoxPiece<dim> *box_piece,
+                BoundaryNames       &boundaries,
+                std::string         &entry);
+
+    void
+    add_start(const Parameters &parameters);
+
     void
     add_contact(const Parameters &parameters, const MatrixStorage storage);
 
@@ -112,6 +151,7 @@ namespace Debond
     Loads<dim>                                         body_dead_loads;
     ByRegion<Material>                                 body_materials;
     std::unique_ptr<ElasticProblem<dim>>               elastic_problem;
+    std::unique_ptr<const ProblemPiece<dim>>           problem_piece;
     std::unique_ptr<AdhesiveLaw>                       adhesive_law;
     std::unique_ptr<ContactQuadrature<dim>>            quadrature;
     std::unique_ptr<BondField<dim>>                    bond_field;

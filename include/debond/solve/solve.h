@@ -70,7 +70,8 @@ namespace Debond
   /// matrix_storage() says, by the given method, the bundle methods with
   /// @p checkpoints if there are any. Iterations are printed to @p out unless
   /// the scene wants no machine details. Methods with a factorisation begin at
-  /// @p start, if there is one.
+  /// @p start, if there is one. Ranks that share a scene call it together, with
+  /// a method that has levels; the first one has J and the notes.
   template <int dim>
   SolveResult
   solve(const MethodChoice           &choice,

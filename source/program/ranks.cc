@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/program/ranks.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace Debond
+{
+  unsigned int
+  n_started_ranks()
+  {
+    // Of Open MPI; of MPICH and those that come from it.
+    int n = 1;
+    for (const char *const name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
+      if (const char *const text = std::getenv(name))
+        n = std::max(n, std::atoi(text));
+    return static_cast<unsigned int>(n);
+  }
+} // namespace Debond
