@@ -1,0 +1,89 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# check_ranks.sh DEBOND: 1, 2, 3 and 4 ranks write the same displacement and
+# contact profile byte for byte, and a summary whose numbers are the same; one
+# message and one exit code for all of them where they cannot share a scene.
+source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
+
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export OPENBLAS_NUM_THREADS=1
+
+# scene NAME DIMENSION CELLS LENGTHS TRACTION
+scene() {
+  cat >"$1.prm" <<END
+set Dimension = $2
+subsection Mesh
+  set Lengths = $4
+  set Cells = $3
+end
+subsection Boundary conditions
+  set Clamped boundaries = left
+end
+subsection Loads
+  set Traction right = $5
+end
+subsection Solver
+  set Method = majorise minimise
+  set Linear solver = multigrid
+end
+subsection Output
+  set Displacement = true
+  set Machine details = false
+end
+END
+}
+scene plane 2 "320, 8" "0.4, 0.01" "0; 0.001"
+scene solid 3 "42, 4, 3" "0.4, 0.04, 0.03" "0; 0.02; 0"
+
+# What all ranks have: neither times nor the error estimate and the means.
+numbers() {
+  python3 - "$1" <<'END'
+import json, sys
+summary = json.load(open(sys.argv[1]))
+for name in ("timings_s", "peak_memory_bytes", "memory_estimate_bytes",
+             "estimated_error", "estimated_error_of", "mean_displacements",
+             "probes"):
+    summary.pop(name, None)
+print(json.dumps(summary, indent=1, sort_keys=True))
+END
+}
+
+for name in plane solid; do
+  expect_code 0 "$debond" $name.prm --set Output/Directory=$name-1
+  numbers $name-1/summary.json >$name-1.numbers
+  for n in 2 3 4; do
+    expect_code 0 mpirun --oversubscribe -n $n "$debond" $name.prm \
+      --set Output/Directory=$name-$n
+    [ ! -s errors ] || fail "$n ranks: $(cat errors)"
+    [ "$(grep -c '^Result' log)" -eq 1 ] || fail "$n ranks print $(cat log)"
+    for file in displacement.txt contact_profile.csv history.csv; do
+      cmp $name-1/$file $name-$n/$file ||
+        fail "$name: $file of $n ranks is not that of one"
+    done
+    numbers $name-$n/summary.json >$name-$n.numbers
+    diff $name-1.numbers $name-$n.numbers ||
+      fail "$name: the summary of $n ranks is not that of one"
+    [ "$(grep -c '<Piece Source' $name-$n/body.pvtu)" -eq $n ] ||
+      fail "body.pvtu does not join $n files"
+  done
+done
+
+# refused ENTRY=VALUE MESSAGE
+refused() {
+  expect_code 2 mpirun --oversubscribe -n 2 "$debond" plane.prm \
+    --set Output/Directory=refused --set "$1"
+  [ "$(grep -c "$2" errors)" -eq 1 ] || fail "$1: $(cat errors)"
+  [ ! -e refused ] || fail "$1: there is a directory"
+}
+refused "Mesh/Degree=2" "Mesh/Degree"
+refused "Solver/Linear solver=direct" "Solver/Linear solver"
+refused "Solver/Method=euclidean bundle" "Solver/Method"
+refused "Certificate/Kind=global" "Certificate/Kind"
+refused "Accuracy/Target=1e-2" "Accuracy/Target"
+refused "Mesh/Rotation=10" "Mesh/Rotation"
+refused "Probes/end=0.4, 0.005" "Probes/end"
+refused "Loads/Traction top=0; 1/(x-0.3)" "Loads/Traction top"
+refused "Mesh/Cells=3, 1" "Mesh/Cells"
+expect_code 2 mpirun --oversubscribe -n 5 "$debond" plane.prm \
+  --set Mesh/Cells=4,400 --set Output/Directory=refused
+grep -q "at most as many ranks, not 5" errors || fail "$(cat errors)"
