@@ -190,8 +190,7 @@ namespace Debond
       const bool                                     is_first =
         dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
       if (!is_first)
-        for (std::ostream *const stream : {&std::cout, &std::cerr})
-          stream->setstate(std::ios::failbit);
+        std::cout.setstate(std::ios::failbit);
       return report_errors("debond", [&]() {
         try
           {
@@ -199,11 +198,12 @@ namespace Debond
           }
         catch (const BadInput &)
           {
-            throw;
+            if (is_first)
+              throw;
+            return ExitCode::bad_input;
           }
         catch (...)
           {
-            std::cerr.clear();
             const ExitCode code =
               report_errors("debond", []() -> ExitCode { throw; });
             MPI_Abort(MPI_COMM_WORLD, static_cast<int>(code));

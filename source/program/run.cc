@@ -637,7 +637,8 @@ namespace Debond
     failure = dealii::Utilities::MPI::broadcast(ranks, failure);
     if (!failure.empty())
       {
-        std::cerr << "debond: " << failure << std::endl;
+        if (is_first)
+          std::cerr << "debond: " << failure << std::endl;
         return ExitCode::output_not_saved;
       }
 

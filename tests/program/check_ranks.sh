@@ -75,15 +75,15 @@ refused() {
   [ "$(grep -c "$2" errors)" -eq 1 ] || fail "$1: $(cat errors)"
   [ ! -e refused ] || fail "$1: there is a directory"
 }
-refused "Mesh/Degree=2" "Mesh/Degree"
+refused "Solver/Prove=true" "Solver/Prove"
 refused "Solver/Linear solver=direct" "Solver/Linear solver"
 refused "Solver/Method=euclidean bundle" "Solver/Method"
 refused "Certificate/Kind=global" "Certificate/Kind"
-refused "Accuracy/Target=1e-2" "Accuracy/Target"
+refused "Contact law/Initial gap=1e-4" "Contact law/Initial gap"
 refused "Mesh/Rotation=10" "Mesh/Rotation"
 refused "Probes/end=0.4, 0.005" "Probes/end"
 refused "Loads/Traction top=0; 1/(x-0.3)" "Loads/Traction top"
 refused "Mesh/Cells=3, 1" "Mesh/Cells"
 expect_code 2 mpirun --oversubscribe -n 5 "$debond" plane.prm \
-  --set Mesh/Cells=4,400 --set Output/Directory=refused
+  --set Mesh/Lengths=0.4,8 --set Mesh/Cells=4,80 --set Output/Directory=refused
 grep -q "at most as many ranks, not 5" errors || fail "$(cat errors)"
