@@ -836,7 +836,8 @@ namespace Debond
                                 [&watch]() { return watch.may_go_on(); });
       LevelCorrection<dim> solver(*levels);
       minimise_on_all_unknowns(parameters, energy, problem, watch, result);
-      if (wants_search(parameters.solver))
+      // Windows are cut out of a whole mesh.
+      if (wants_search(parameters.solver) && scene.piece() == nullptr)
         improve_fronts(parameters, scene, energy, problem, watch, result);
       refine_result(scene, solver, watch, result);
     }

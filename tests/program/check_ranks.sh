@@ -25,6 +25,7 @@ end
 subsection Solver
   set Method = majorise minimise
   set Linear solver = multigrid
+  set Search = none
 end
 subsection Output
   set Displacement = true
