@@ -27,8 +27,9 @@ namespace Debond
     /// that is zero anyway, is that of an unknown that is not free.
     constexpr float vanishing = 1e-5f;
 
-    /// Of the diagonal of the coarsest matrix, relative.
-    constexpr double largest_shift = 1e-8;
+    /// Of the diagonal of the coarsest matrix, relative. What truncation takes
+    /// from it is known in single precision.
+    constexpr double largest_shift = 1e-5;
 
 
 
