@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/input/parameters.h>
+#include <debond/program/ranks.h>
 #include <debond/program/report_errors.h>
 #include <debond/study/cases.h>
 #include <debond/study/command_line.h>
@@ -124,6 +125,9 @@ namespace Debond
         }
 
       const StudyParameters study = read_study(options);
+      if (n_started_ranks() > 1)
+        throw BadInput({"--study: a study starts its cases itself; use --jobs "
+                        "in place of mpirun"});
       if (options.count("validate") > 0)
         {
           const Cases cases = make_cases(study);
