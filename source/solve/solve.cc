@@ -45,6 +45,10 @@ namespace Debond
     /// On coarser meshes, where the time for a factorisation does not count.
     constexpr double largest_coarse_factorisation = 3e4;
 
+    /// Each lowers J; fronts that are still moving then are left where they
+    /// are.
+    constexpr unsigned int most_front_rounds = 20;
+
     /// A level needs to be solved to what the next finer one makes of it.
     constexpr double coarse_level_tolerance = 1e-4;
 
@@ -771,7 +775,7 @@ namespace Debond
         return;
       const MajoriseMinimise method(parameters.solver.majorise_minimise);
       WhichMinimum          &minimum = result.minimum;
-      while (can_be_verified(result.status))
+      for (unsigned int round = 1; can_be_verified(result.status); ++round)
         {
           const dealii::Timer     timer;
           const FrontSearchResult search = search_fronts(
@@ -781,12 +785,15 @@ namespace Debond
           minimum.front_trials += search.trials;
           minimum.search_improvements += search.improvements;
           minimum.search_failures += search.failures;
-          if (!search.complete)
-            result.notes.push_back("not all fronts were searched");
-          if (search.improvements == 0)
-            return;
-          minimise_on_all_unknowns(parameters, energy, problem, watch, result);
-          if (!search.complete)
+          minimum.interrupted = !watch.may_go_on();
+          const bool is_last  = !search.complete || round == most_front_rounds;
+          if (is_last && (!search.complete || search.improvements > 0))
+            result.notes.push_back("the search for better fronts of bonds was "
+                                   "ended before it had tried all of them");
+          if (search.improvements > 0)
+            minimise_on_all_unknowns(
+              parameters, energy, problem, watch, result);
+          if (is_last || search.improvements == 0)
             return;
         }
     }
