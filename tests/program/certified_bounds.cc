@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Bounds of random small scenes beside the least J that a search finds on a
+// mesh four times as fine: with quadratic displacements, which are of the
+// continuous problem and know nothing of equilibrated stresses. No bound may be
+// above that, and the parts of a gap, none of them below zero, are together as
+// large as the gap. Arguments: the number of scenes, the first one.
+
+#include <debond/solve/certificate.h>
+#include <debond/solve/method_choice.h>
+#include <debond/solve/solve.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <sstream>
+
+#include "../check.h"
+#include "parameters_of.h"
+
+using namespace Debond;
+
+namespace
+{
+  class Generator
+  {
+  public:
+    explicit Generator(const unsigned int seed)
+      : engine(seed)
+    {}
+
+    double
+    uniform(const double a, const double b)
+    {
+      return a + (b - a) * (static_cast<double>(engine() >> 11) * 0x1p-53);
+    }
+
+    /// 10 to the power of what is uniform.
+    double
+    magnitude(const double a, const double b)
+    {
+      return std::pow(10., uniform(a, b));
+    }
+
+    template <typename T>
+    T
+    choice(const std::vector<T> &values)
+    {
+      return values[engine() % values.size()];
+    }
+
+  private:
+    std::mt19937_64 engine;
+  };
+
+
+
+  struct RandomScene
+  {
+    Values          values, coarse, fine;
+    CertificateKind kind = CertificateKind::global;
+  };
+
+
+
+  std::string
+  point(const double x, const double y)
+  {
+    return text(x) + ',' + text(y);
+  }
+
+
+
+  /// A box, a sheared one or any convex quadrilateral, with the names of its
+  /// left, right, bottom and top.
+  std::vector<std::string>
+  set_body(Generator   &random,
+           const double length,
+           const double height,
+           RandomScene &scene)
+  {
+    const unsigned int ny = random.choice<unsigned int>({1, 2});
+    if (random.uniform(0., 1.) < 0.7)
+      {
+        const unsigned int nx = 2 * random.choice<unsigned int>({1, 2, 3});
+        scene.values.push_back("Mesh/Lengths=" + text(length) + ',' +
+                               text(height));
+        for (const auto &[cells, factor] : {std::make_pair(&scene.coarse, 1u),
+                                            std::make_pair(&scene.fine, 4u)})
+          cells->push_back("Mesh/Cells=" + std::to_string(factor * nx) + ',' +
+                           std::to_string(factor * ny));
+        return {"left", "right", "bottom", "top"};
+      }
+    const bool   is_sheared = random.uniform(0., 1.) < 0.5;
+    const double x          = random.uniform(-0.3, 0.3) * height;
+    const double y          = height * random.uniform(0.6, 1.);
+    const double narrower   = is_sheared ? 0. : random.uniform(0., 0.4);
+    scene.values =
+      scene.values +
+      Values{"Mesh/Source=generator",
+             "Mesh/Generator=general_cell",
+             "Mesh/Arguments=" + point(0., 0.) + ';' + point(length, 0.) + ';' +
+               point(x, height) + ';' +
+               point(x + length * (1. - narrower), is_sheared ? height : y) +
+               ": true"};
+    scene.coarse.push_back("Mesh/Refinements=" + std::to_string(ny));
+    scene.fine.push_back("Mesh/Refinements=" + std::to_string(ny + 2));
+    return {"0", "1", "2", "3"};
+  }
+
+
+
+  /// Loads, laws, materials and supports of all kinds; loads are linear on
+  /// sides and constant in cells.
+  RandomScene
+  draw(const unsigned int number)
+  {
+    Generator    random(number);
+    const double length = random.choice<double>({1e-3, 1., 1e3});
+    const double stress = random.choice<double>({1., 1e3, 1e9});
+    const double width  = length * random.choice<double>({0.4, 1.2});
+    const double height = length * random.choice<double>({0.03, 0.1, 0.4});
+
+    RandomScene                    scene;
+    const std::vector<std::string> sides =
+      set_body(random, width, height, scene);
+    const std::vector<std::string> clamps =
+      random.choice<std::vector<std::string>>(
+        {{sides[0]}, {sides[1]}, {sides[0], sides[1]}, {sides[3]}});
+    const bool  from_top = clamps[0] == sides[3];
+    std::string clamped  = clamps[0];
+    for (unsigned int k = 1; k < clamps.size(); ++k)
+      clamped += ", " + clamps[k];
+    const auto load = [&]() {
+      return random.choice<double>({-1., 1.}) * random.magnitude(-3., 0.) *
+             stress * height / length;
+    };
+    const double a = random.magnitude(-1., 3.) * stress / length;
+    const double M = random.magnitude(-4., -2.) * length;
+    scene.values =
+      scene.values +
+      Values{"Boundary conditions/Clamped boundaries=" + clamped,
+             "Boundary conditions/Contact boundary=" + sides[2],
+             "Material/Young modulus=" + text(69. * stress),
+             "Material/Poisson ratio=" + text(random.uniform(0., 0.49)),
+             "Material/Hypothesis=" +
+               random.choice<std::string>({"plane stress", "plane strain"}),
+             "Contact law/Tangential displacement=" +
+               random.choice<std::string>({"fixed", "free"}),
+             "Contact law/Quadrature=exact",
+             "Loads/Traction top=",
+             "Loads/Traction " + (from_top ? sides[1] : sides[3]) + '=' +
+               text(load()) + "; " + text(load()) + '+' +
+               text(load() / length) + (from_top ? "*y" : "*x"),
+             "Loads/Body force=0; " +
+               text(random.uniform(-1., 1.) * stress / length),
+             "Solver/Method=automatic",
+             "Solver/Proof/Maximum nodes=200"};
+    const std::string law = random.choice<std::string>(
+      {"winkler", "winkler", "winkler", "stepped", "none", "unbreakable"});
+    scene.values.push_back("Contact law/Law=" +
+                           (law == "unbreakable" ? "winkler" : law));
+    if (law == "stepped")
+      scene.values =
+        scene.values + Values{"Contact law/Stepped/Stiffnesses=" + text(a) +
+                                ',' + text(a / 3.),
+                              "Contact law/Stepped/Thresholds=" + text(M) +
+                                ',' + text(2. * M)};
+    else if (law != "none")
+      scene.values =
+        scene.values + Values{"Contact law/Bond stiffness=" + text(a),
+                              "Contact law/Bond threshold=" +
+                                text(law == "unbreakable" ? 1e6 * length : M)};
+    if (law == "unbreakable" || law == "none")
+      scene.kind = CertificateKind::fixed_state;
+    return scene;
+  }
+
+
+
+  struct Counts
+  {
+    unsigned int        refused = 0, unsolved = 0, above = 0, wrong_sum = 0;
+    unsigned int        negative = 0;
+    std::vector<double> distances;
+  };
+
+
+
+  SolveResult
+  solution(const Parameters &parameters, const Scene<2> &scene)
+  {
+    std::ostringstream log;
+    return solve(choose_method(parameters), parameters, scene, log, false);
+  }
+
+
+
+  void
+  test(const unsigned int number, Counts &counts)
+  {
+    const RandomScene random     = draw(number);
+    const Parameters  parameters = parameters_of(random.values + random.coarse);
+    const auto        scene      = std::make_shared<const Scene<2>>(parameters);
+    Certificate       certificate;
+    try
+      {
+        const Certifier   certifier(random.kind, scene);
+        const SolveResult result = solution(parameters, *scene);
+        if (!can_be_verified(result.status))
+          {
+            ++counts.unsolved;
+            return;
+          }
+        certificate =
+          certifier.certify(*scene, result.u, parameters.solver.proof, []() {
+            return true;
+          });
+      }
+    catch (const EquilibriumError &)
+      {
+        ++counts.refused;
+        return;
+      }
+    const Parameters finer =
+      parameters_of(random.values + random.fine + Values{"Mesh/Degree=2"});
+    const Scene<2>    fine_scene(finer);
+    const SolveResult fine = solution(finer, fine_scene);
+    if (!can_be_verified(fine.status))
+      {
+        ++counts.unsolved;
+        return;
+      }
+
+    const double scale = std::abs(certificate.upper);
+    counts.distances.push_back((fine.functional - certificate.lower) / scale);
+    if (!(certificate.lower <= std::min(fine.functional, certificate.upper)))
+      {
+        ++counts.above;
+        std::cout << "scene " << number << ": " << text(certificate.lower)
+                  << " is above " << text(fine.functional) << " or "
+                  << text(certificate.upper) << '\n';
+        for (const std::string &value : random.values + random.coarse)
+          std::cout << "  " << value << '\n';
+      }
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *argv[])
+{
+  const unsigned int n     = argc > 1 ? std::stoul(argv[1]) : 60;
+  const unsigned int first = argc > 2 ? std::stoul(argv[2]) : 0;
+
+  Counts counts;
+  for (unsigned int number = first; number < first + n; ++number)
+    test(number, counts);
+  check("bounds above what a search finds", counts.above, 0);
+  check("most scenes have one", counts.distances.size() > n / 2);
+  if (argc > 1)
+    {
+      std::sort(counts.distances.begin(), counts.distances.end());
+      std::cout << counts.distances.size() << " bounds, " << counts.refused
+                << " refused, " << counts.unsolved << " not solved; below by "
+                << counts.distances.front() << " at least, "
+                << counts.distances[counts.distances.size() / 2]
+                << " in the median\n";
+    }
+}
