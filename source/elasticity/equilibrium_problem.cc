@@ -112,16 +112,16 @@ namespace Debond
 
 
 
-    dealii::SymmetricTensor<2, 2>
-    strain(const Triangle                          &cell,
-           const std::vector<dealii::Tensor<1, 2>> &vertex_values)
+    /// Of a point of the cell.
+    std::array<double, 3>
+    barycentric_of(const LinearSimplex<2> &simplex,
+                   const Triangle         &cell,
+                   const dealii::Point<2> &point)
     {
-      const LinearSimplex<2> simplex(cell);
-      dealii::Tensor<2, 2>   gradient;
+      std::array<double, 3> result;
       for (unsigned int v = 0; v < 3; ++v)
-        gradient += outer_product(vertex_values[cell->vertex_index(v)],
-                                  simplex.gradients[v]);
-      return symmetrize(gradient);
+        result[v] = 1. + simplex.gradients[v] * (point - cell->vertex(v));
+      return result;
     }
   } // namespace
 
@@ -571,78 +571,148 @@ namespace Debond
 
   double
   EquilibriumProblem::elastic_functional(
-    const std::vector<dealii::Tensor<1, 2>> &vertex_values) const
+    const std::vector<CellDisplacement> &u) const
   {
     double sum = 0.;
+    for (const double energy : strain_energies(u))
+      sum += 0.5 * energy;
     for (const auto &cell : mesh.active_cell_iterators())
-      {
-        const dealii::SymmetricTensor<2, 2> epsilon =
-          strain(cell, vertex_values);
-        sum += std::abs(LinearSimplex<2>(cell).volume) *
-               (0.5 * (epsilon *
-                       (materials(cell->material_id()).elasticity_tensor<2>() *
-                        epsilon)) -
-                thermal_stress(cell) * trace(epsilon));
-      }
+      if (const double p = thermal_stress(cell); p != 0.)
+        {
+          const CellDisplacement   &own = u[cell->active_cell_index()];
+          const BernsteinSimplex<2> simplex(cell, own.degree);
+          for (unsigned int q = 0; q < simplex.n_points; ++q)
+            sum -= std::abs(simplex.weight) * p *
+                   trace(own.strain(simplex, simplex.point(q)));
+        }
     for (const Place &place : places)
-      for (unsigned int i = 0; i < (place.vertices.size() == 3 ? 1 : 4); ++i)
-        for (unsigned int v = 0; v < 3; ++v)
-          sum -=
-            std::abs(LinearSimplex<2>(place.cells[i]).volume) / 3. *
-            (place.body_force * vertex_values[place.cells[i]->vertex_index(v)]);
-    for (unsigned int number = 0; number < sides.size(); ++number)
-      {
-        const Side                &side  = sides[number];
-        const dealii::Tensor<1, 2> first = vertex_values[side.vertices[0]];
-        const dealii::Tensor<1, 2> last  = vertex_values[side.vertices[1]];
-        for (unsigned int d = 0; d < 2; ++d)
-          {
-            const unsigned int k = unknowns_of_a_side * number + d;
-            sum -=
-              0.5 *
-              (loads_on_sides(k) * ((first + last) * side.directions[d]) +
-               loads_on_sides(k + 2) * ((last - first) * side.directions[d]));
-          }
-      }
+      for (unsigned int i = 0; i < place.sides.size(); ++i)
+        {
+          const CellDisplacement &own = u[place.cells[i]->active_cell_index()];
+          const double            area =
+            std::abs(LinearSimplex<2>(place.cells[i]).volume) /
+            (place.vertices.size() == 3 ? 3. : 1.);
+          sum -= area * (place.body_force * own.mean());
+
+          // Only sides of the boundary have loads.
+          const Side &side                 = sides[place.sides[i]];
+          const auto [first, middle, last] = own.on_side(side.vertices);
+          for (unsigned int d = 0; d < 2; ++d)
+            {
+              const unsigned int k = unknowns_of_a_side * place.sides[i] + d;
+              const dealii::Tensor<1, 2> direction = side.directions[d];
+              sum -= loads_on_sides(k) / 6. *
+                       ((first + 4. * middle + last) * direction) +
+                     loads_on_sides(k + 2) / 2. * ((last - first) * direction);
+            }
+        }
     return sum;
   }
 
 
 
   std::vector<double>
+  EquilibriumProblem::strain_energies(
+    const std::vector<CellDisplacement> &u) const
+  {
+    std::vector<double> result;
+    for (const auto &cell : mesh.active_cell_iterators())
+      {
+        const CellDisplacement   &own = u[cell->active_cell_index()];
+        const BernsteinSimplex<2> simplex(cell, own.degree);
+        const auto C = materials(cell->material_id()).elasticity_tensor<2>();
+        result.push_back(0.);
+        for (unsigned int q = 0; q < simplex.n_points; ++q)
+          {
+            const dealii::SymmetricTensor<2, 2> epsilon =
+              own.strain(simplex, simplex.point(q));
+            result.back() +=
+              std::abs(simplex.weight) * (epsilon * (C * epsilon));
+          }
+      }
+    return result;
+  }
+
+
+
+  Eigen::VectorXd
+  EquilibriumProblem::stress_of(const unsigned int            element,
+                                const dealii::Vector<double> &unknowns) const
+  {
+    const std::vector<unsigned int> numbers = unknowns_of(element);
+    Eigen::VectorXd                 own(numbers.size());
+    for (unsigned int i = 0; i < numbers.size(); ++i)
+      own(i) = unknowns(numbers[i]);
+    return all_elements[element].stress(to_element(element) * own);
+  }
+
+
+
+  std::vector<double>
   EquilibriumProblem::constitutive_gaps(
-    const std::vector<dealii::Tensor<1, 2>> &vertex_values,
-    const dealii::Vector<double>            &unknowns) const
+    const std::vector<CellDisplacement> &u,
+    const dealii::Vector<double>        &unknowns) const
   {
     std::vector<double> gaps(mesh.n_active_cells(), 0.);
     for (unsigned int element = 0; element < places.size(); ++element)
       {
-        const Place                    &place   = places[element];
-        const std::vector<unsigned int> numbers = unknowns_of(element);
-        Eigen::VectorXd                 own(numbers.size());
-        for (unsigned int i = 0; i < numbers.size(); ++i)
-          own(i) = unknowns(numbers[i]);
-        const Eigen::VectorXd stress =
-          all_elements[element].stress(to_element(element) * own);
+        const Place              &place  = places[element];
+        const EquilibriumElement &shape  = all_elements[element];
+        const Eigen::VectorXd     stress = stress_of(element, unknowns);
         for (unsigned int i = 0; i < place.cells.size(); ++i)
           {
-            const Triangle &cell     = place.cells[i];
-            const Material &material = materials(cell->material_id());
-            const dealii::SymmetricTensor<2, 2> elastic =
-              material.elasticity_tensor<2>() * strain(cell, vertex_values);
+            const Triangle           &cell = place.cells[i];
+            const CellDisplacement   &own  = u[cell->active_cell_index()];
+            const BernsteinSimplex<2> simplex(cell, own.degree);
+            const Material           &material = materials(cell->material_id());
+            const dealii::Point<2>    points[] = {
+                 shape.corners[i],
+                 shape.corners[(i + 1) % shape.corners.size()],
+                 shape.centre};
+            // Linear, as both stresses are.
             Eigen::Matrix<double, 9, 1> difference = stress.segment<9>(9 * i);
             for (unsigned int corner = 0; corner < 3; ++corner)
-              difference.segment<3>(3 * corner) -=
-                Eigen::Vector3d(elastic[0][0] - thermal_stress(cell),
-                                elastic[1][1] - thermal_stress(cell),
-                                elastic[0][1]);
+              {
+                const dealii::SymmetricTensor<2, 2> elastic =
+                  material.elasticity_tensor<2>() *
+                  own.strain(simplex,
+                             barycentric_of(simplex, cell, points[corner]));
+                difference.segment<3>(3 * corner) -=
+                  Eigen::Vector3d(elastic[0][0] - thermal_stress(cell),
+                                  elastic[1][1] - thermal_stress(cell),
+                                  elastic[0][1]);
+              }
             // A triangle's three parts have the same area.
-            const double area = std::abs(LinearSimplex<2>(cell).volume) /
-                                (place.vertices.size() == 3 ? 3. : 1.);
+            const double area =
+              std::abs(simplex.volume) / (place.vertices.size() == 3 ? 3. : 1.);
             gaps[cell->active_cell_index()] +=
               0.5 * complementary_energy(difference, area, material);
           }
       }
     return gaps;
+  }
+
+
+
+  std::vector<dealii::SymmetricTensor<2, 2>>
+  EquilibriumProblem::mean_stresses(
+    const dealii::Vector<double> &unknowns) const
+  {
+    std::vector<dealii::SymmetricTensor<2, 2>> result(mesh.n_active_cells());
+    for (unsigned int element = 0; element < places.size(); ++element)
+      {
+        const Place          &place  = places[element];
+        const Eigen::VectorXd stress = stress_of(element, unknowns);
+        const double          share  = place.vertices.size() == 3 ? 9. : 3.;
+        for (unsigned int i = 0; i < place.cells.size(); ++i)
+          for (unsigned int k = 9 * i; k < 9 * (i + 1); k += 3)
+            {
+              auto &mean = result[place.cells[i]->active_cell_index()];
+              mean[0][0] += stress(k) / share;
+              mean[1][1] += stress(k + 1) / share;
+              mean[0][1] += stress(k + 2) / share;
+            }
+      }
+    return result;
   }
 } // namespace Debond

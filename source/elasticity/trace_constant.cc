@@ -21,19 +21,16 @@ namespace Debond
     /// linear on each of n sides, without those that are linear on all of them;
     /// S comes from a part 1 - theta of the stiffness at the sides.
     double
-    least_eigenvalue(const RectangleAboveSide &Q,
-                     const Material           &material,
-                     const bool                tangential_fixed,
-                     const unsigned int        n,
-                     const double              theta)
+    least_eigenvalue(const dealii::Triangulation<2>             &mesh,
+                     const std::set<dealii::types::boundary_id> &I,
+                     const double                                width,
+                     const Material                             &material,
+                     const bool         tangential_fixed,
+                     const unsigned int n,
+                     const double       theta)
     {
-      dealii::Triangulation<2> mesh;
-      const BoundaryNames      names =
-        Box<2>({{{Q.width, Q.height, 0.}}, {{n, n, 1}}})
-          .make_mesh(mesh)
-          .boundaries;
       BoundaryConditions conditions;
-      conditions.contact                       = names.at("bottom");
+      conditions.contact                       = I;
       conditions.tangential_displacement_fixed = tangential_fixed;
       EquilibriumProblem problem(mesh, conditions, {}, material, Loads<2>());
       // A motion along I does not change the energy.
@@ -45,11 +42,11 @@ namespace Debond
       for (const EquilibriumProblem::ContactSide &side : sides)
         weights[side.element] = 1. - theta;
 
-      const double    h = Q.width / n;
+      const double    h = width / n;
       Eigen::VectorXd mass(2 * n);
       Eigen::MatrixXd linear = Eigen::MatrixXd::Zero(2 * n, 2);
       // Rigid motions have no energy: they get that of springs at I.
-      const double spring = material.young_modulus / Q.width;
+      const double spring = material.young_modulus / width;
       std::vector<std::pair<unsigned int, double>> springs;
       for (unsigned int i = 0; i < n; ++i)
         {
@@ -76,6 +73,61 @@ namespace Debond
                scaled, Eigen::EigenvaluesOnly)
                .eigenvalues()(0) -
              spring;
+    }
+
+
+
+    /// The parts of the stiffness that are tried: theta n has to be more than
+    /// 1.
+    std::array<double, 4>
+    parts_of_stiffness(const unsigned int n)
+    {
+      std::array<double, 4> theta = {{1.1, 1.5, 2.5, 5.}};
+      for (double &part : theta)
+        part = std::min(part / n, 0.9);
+      return theta;
+    }
+
+
+
+    constexpr double constant_rounding = 1e-9;
+
+
+
+    /// A triangle with its side I from 0 to (1, 0), divided into n x n; I is
+    /// the boundary 1.
+    void
+    make_divided_triangle(const dealii::Point<2>   &apex,
+                          const unsigned int        n,
+                          dealii::Triangulation<2> &mesh)
+    {
+      std::vector<dealii::Point<2>>    points;
+      std::vector<dealii::CellData<2>> cells;
+      std::vector<unsigned int>        first;
+      for (unsigned int j = 0; j <= n; ++j)
+        {
+          first.push_back(static_cast<unsigned int>(points.size()));
+          for (unsigned int i = 0; i <= n - j; ++i)
+            points.emplace_back((i + apex[0] * j) / n, apex[1] * j / n);
+        }
+      const auto add = [&cells](const std::vector<unsigned int> &vertices) {
+        cells.emplace_back(3);
+        cells.back().vertices = vertices;
+      };
+      for (unsigned int j = 0; j < n; ++j)
+        for (unsigned int i = 0; i < n - j; ++i)
+          {
+            const unsigned int a = first[j] + i, b = first[j + 1] + i;
+            add({a, a + 1, b});
+            if (i + 1 < n - j)
+              add({a + 1, b + 1, b});
+          }
+      mesh.create_triangulation(points, cells, {});
+      for (const auto &cell : mesh.active_cell_iterators())
+        for (const unsigned int face : cell->face_indices())
+          if (cell->face(face)->at_boundary())
+            cell->face(face)->set_boundary_id(
+              cell->face(face)->center()[1] < 0.25 * apex[1] / n ? 1 : 0);
     }
   } // namespace
 
@@ -114,14 +166,16 @@ namespace Debond
     unit.young_modulus             = 1.;
     const RectangleAboveSide shape = {1., Q.height / Q.width};
 
-    // theta n has to be more than 1.
-    constexpr std::array<double, 4> multiples = {{1.1, 1.5, 2.5, 5.}};
-    std::array<double, 4>           theta, least;
+    dealii::Triangulation<2> mesh;
+    const BoundaryNames      names =
+      Box<2>({{{shape.width, shape.height, 0.}}, {{n, n, 1}}})
+        .make_mesh(mesh)
+        .boundaries;
+    const std::array<double, 4> theta = parts_of_stiffness(n);
+    std::array<double, 4>       least;
     for (unsigned int k = 0; k < theta.size(); ++k)
-      {
-        theta[k] = std::min(multiples[k] / n, 0.9);
-        least[k] = least_eigenvalue(shape, unit, tangential_fixed, n, theta[k]);
-      }
+      least[k] = least_eigenvalue(
+        mesh, names.at("bottom"), 1., unit, tangential_fixed, n, theta[k]);
 
     double constant = elementary_trace_constant(shape, unit, tangential_fixed);
     for (double previous = 0.; constant > (1. + 1e-6) * previous;)
@@ -131,7 +185,29 @@ namespace Debond
           constant =
             std::max(constant, std::min(least[k], theta[k] * n * previous));
       }
-    constexpr double rounding = 1e-9;
-    return (1. - rounding) * constant * material.young_modulus / Q.width;
+    return (1. - constant_rounding) * constant * material.young_modulus /
+           Q.width;
+  }
+
+
+
+  double
+  trace_constant(const TriangleAboveSide &Q,
+                 const Material          &material,
+                 const bool               tangential_fixed,
+                 const unsigned int       n)
+  {
+    Material unit      = material;
+    unit.young_modulus = 1.;
+    dealii::Triangulation<2> mesh;
+    make_divided_triangle({Q.apex / Q.width, Q.height / Q.width}, n, mesh);
+
+    double constant = 0.;
+    for (const double theta : parts_of_stiffness(n))
+      constant = std::max(
+        constant,
+        least_eigenvalue(mesh, {1}, 1., unit, tangential_fixed, n, theta));
+    return (1. - constant_rounding) * constant * material.young_modulus /
+           Q.width;
   }
 } // namespace Debond

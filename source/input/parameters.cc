@@ -113,9 +113,9 @@ namespace Debond
     bind_supports(p.supports, *this);
     bind_contact(p, *this);
     bind_solver(p.solver, p.checkpoints, *this);
+    bind_certificate(p.certificate, *this);
     bind_accuracy(p.accuracy, *this);
     bind_verification(p.verification, *this);
-    bind_certificate(p.certificate, *this);
     bind_output(p.output, *this);
   }
 
@@ -247,7 +247,13 @@ namespace Debond
     check_certificate(const Parameters &p, ParameterTable &table)
     {
       if (p.certificate.kind == CertificateKind::none)
-        return;
+        {
+          if (p.accuracy.certified_width > 0.)
+            table.reject("Certificate/Target",
+                         "is for a certificate",
+                         {"Certificate/Kind"});
+          return;
+        }
       if (p.dimension != 2)
         table.reject("Certificate/Kind", "is for plane bodies", {"Dimension"});
       if (!p.load_path.factors.empty() || !p.load_path.dead_loads.empty())
@@ -331,9 +337,6 @@ namespace Debond
       refuse(p.solver.prove,
              "Solver/Prove",
              "needs a bond for each node, which Mesh/Degree = 2 has not");
-      refuse(p.certificate.kind != CertificateKind::none,
-             "Certificate/Kind",
-             "is for Mesh/Degree = 1");
       refuse(!p.load_path.factors.empty(),
              "Load path/Factors",
              "load paths are for Mesh/Degree = 1");
@@ -369,7 +372,9 @@ namespace Debond
         if (is_set)
           table.reject(entry,
                        reason,
-                       {"Accuracy/Target", "Accuracy/Maximum unknowns"});
+                       {"Accuracy/Target",
+                        "Accuracy/Maximum unknowns",
+                        "Certificate/Target"});
       };
       refuse(p.solver.method == "euclidean bundle",
              "Solver/Method",

@@ -5,6 +5,8 @@
 #include <debond/output/vtu.h>
 #include <debond/solve/displacement.h>
 
+#include <algorithm>
+
 namespace Debond
 {
   namespace
@@ -34,6 +36,66 @@ namespace Debond
           note = run_gnuplot(plot, directory);
         }
     }
+
+
+
+    /// Of a certificate with stresses of the same mesh: the mean equilibrated
+    /// stress and the gap per area.
+    template <int dim>
+    std::vector<CellField>
+    fields_of_cells(const Scene<dim>                 &scene,
+                    const std::optional<Certificate> &certificate)
+    {
+      if (!certificate || certificate->gaps.empty())
+        return {};
+      std::vector<CellField> fields = {{"equilibrated_stress_xx", {}},
+                                       {"equilibrated_stress_yy", {}},
+                                       {"equilibrated_stress_xy", {}},
+                                       {"gap_density", {}}};
+      for (const auto &cell :
+           scene.problem().unknowns().dof_handler().active_cell_iterators())
+        {
+          const auto &stress = certificate->stresses[cell->active_cell_index()];
+          fields[0].second.push_back(stress[0][0]);
+          fields[1].second.push_back(stress[1][1]);
+          fields[2].second.push_back(stress[0][1]);
+          fields[3].second.push_back(
+            certificate->gaps[cell->active_cell_index()] / cell->measure());
+        }
+      return fields;
+    }
+
+
+
+    /// Where a certificate has the state of bonds: the number of the law's
+    /// branch on which each face is in all minima, -1 where that is not known.
+    template <int dim>
+    std::vector<CellField>
+    fields_of_faces(const Scene<dim>                 &scene,
+                    const std::optional<Certificate> &certificate)
+    {
+      if (!certificate || certificate->sides.empty())
+        return {};
+      CellField field = {"certain_branch", {}};
+      if constexpr (dim == 2)
+        for (const auto &face : scene.contact_boundary().faces)
+          {
+            const dealii::Point<2> middle =
+              0.5 * (face.vertices[0] + face.vertices[1]);
+            const auto side =
+              std::find_if(certificate->sides.begin(),
+                           certificate->sides.end(),
+                           [&](const CertifiedSide &other) {
+                             const auto &[a, b] = other.ends;
+                             return a.distance(middle) + middle.distance(b) <=
+                                    (1. + 1e-9) * a.distance(b);
+                           });
+            field.second.push_back(
+              side == certificate->sides.end() || !side->piece ? -1. :
+                                                                 *side->piece);
+          }
+      return {field};
+    }
   } // namespace
 
 
@@ -59,7 +121,8 @@ namespace Debond
                         result.solve.u,
                         path,
                         result.solve.load_factor,
-                        result.estimate ? &*result.estimate : nullptr);
+                        result.estimate ? &*result.estimate : nullptr,
+                        fields_of_cells(scene, result.certificate));
        }},
       // Of several ranks, which write it themselves.
       {{"body.pvtu"},
@@ -75,7 +138,8 @@ namespace Debond
                            result.solve.u,
                            result.verification,
                            path,
-                           result.solve.load_factor);
+                           result.solve.load_factor,
+                           fields_of_faces(scene, result.certificate));
        }},
       {{"contact_profile.csv"},
        [&]() { return output.contact_profile && result.has_displacement(); },

@@ -644,18 +644,19 @@ namespace Debond
                 {"iterations", level.iterations},
                 {"functional", level.functional},
                 {"estimated_error", level.estimated_error},
+                {"gap", level.gap},
                 {"seconds", level.seconds}});
-    record.line(words("mesh ", number),
-                words(level.unknowns,
-                      " unknowns, ",
-                      level.contact_nodes,
-                      " contact nodes, J ",
-                      scientific(level.functional, 10),
-                      ", error about ",
-                      scientific(level.estimated_error, 1)) +
-                  (record.has_details() ?
-                     ", " + fixed(level.seconds, 2) + " s" :
-                     ""));
+    record.line(
+      words("mesh ", number),
+      words(level.unknowns,
+            " unknowns, ",
+            level.contact_nodes,
+            " contact nodes, J ",
+            scientific(level.functional, 10),
+            ", error about ",
+            scientific(level.estimated_error, 1),
+            level.gap > 0. ? ", gap " + scientific(level.gap, 1) : "") +
+        (record.has_details() ? ", " + fixed(level.seconds, 2) + " s" : ""));
   }
 
 

@@ -191,7 +191,8 @@ namespace Debond
                  const dealii::Vector<double> &u,
                  const std::string            &file_name,
                  const LoadFactors             factors,
-                 const ErrorEstimate          *estimate)
+                 const ErrorEstimate          *estimate,
+                 const std::vector<CellField> &more)
   {
     using dealii::DataComponentInterpretation::component_is_part_of_vector;
 
@@ -245,6 +246,8 @@ namespace Debond
     add_field("strain_energy_density");
     if (estimate != nullptr)
       add_field("error_density");
+    for (const auto &[name, unused] : more)
+      add_field(name);
 
     // In the order of deal.II's patches.
     for (const auto &cell :
@@ -267,6 +270,8 @@ namespace Debond
         add(problem.fields().material(cell).energy_density(stress));
         if (estimate != nullptr)
           add(estimate->cells[cell->active_cell_index()] / cell->measure());
+        for (const auto &[unused, numbers] : more)
+          add(numbers[cell->active_cell_index()]);
       }
 
     // Two subdivisions make a quadratic cell each.
@@ -348,7 +353,8 @@ namespace Debond
                     const dealii::Vector<double> &u,
                     const Verification<dim>      &verification,
                     const std::string            &file_name,
-                    const LoadFactors             factors)
+                    const LoadFactors             factors,
+                    const std::vector<CellField> &more)
   {
     constexpr double            nan = std::numeric_limits<double>::quiet_NaN();
     const ContactBoundary<dim> &boundary =
@@ -404,10 +410,13 @@ namespace Debond
     // Each vertex has its share of the face, so that its state can be shown
     // without a transition to that of its neighbours.
     std::vector<dealii::DataOutBase::Patch<dim - 1, dim>> patches;
-    Field states = {"bond_state", {}};
-    for (const auto &face : boundary.faces)
+    std::vector<Field> fields = {{"bond_state", {}}};
+    for (const auto &[name, unused] : more)
+      fields.emplace_back(name, std::vector<float>());
+    for (unsigned int f = 0; f < boundary.faces.size(); ++f)
       for (const auto &part : parts_of_face<dim>(boundary.degree))
         {
+          const auto                         &face = boundary.faces[f];
           std::array<ContactValues<dim>, dim> values;
           std::array<dealii::Point<dim>, dim> corners;
           for (unsigned int k = 0; k < dim; ++k)
@@ -457,10 +466,13 @@ namespace Debond
               patches.push_back(patch);
 
               const unsigned int node = face.node(part[k]);
-              states.second.push_back(
+              fields[0].second.push_back(
                 node == dealii::numbers::invalid_unsigned_int ?
                   static_cast<float>(BondState::held) :
                   static_cast<float>(verification.nodes[node].state));
+              for (unsigned int m = 0; m < more.size(); ++m)
+                fields[m + 1].second.push_back(
+                  static_cast<float>(more[m].second[f]));
             }
         }
 
@@ -482,7 +494,7 @@ namespace Debond
                                    vtk_flags(),
                                    vtu);
     write_atomically(file_name, [&](std::ostream &out) {
-      write_with_cell_data(vtu.str(), {states}, out);
+      write_with_cell_data(vtu.str(), fields, out);
     });
   }
 
@@ -493,13 +505,15 @@ namespace Debond
                  const dealii::Vector<double> &,
                  const std::string &,
                  const LoadFactors,
-                 const ErrorEstimate *);
+                 const ErrorEstimate *,
+                 const std::vector<CellField> &);
   template void
   write_body_vtu(const ElasticProblem<3> &,
                  const dealii::Vector<double> &,
                  const std::string &,
                  const LoadFactors,
-                 const ErrorEstimate *);
+                 const ErrorEstimate *,
+                 const std::vector<CellField> &);
   template std::vector<std::string>
   write_body_pieces(const ElasticProblem<2> &,
                     const ProblemPiece<2> &,
@@ -515,11 +529,13 @@ namespace Debond
                     const dealii::Vector<double> &,
                     const Verification<2> &,
                     const std::string &,
-                    const LoadFactors);
+                    const LoadFactors,
+                    const std::vector<CellField> &);
   template void
   write_contact_vtu(const ElasticProblem<3> &,
                     const dealii::Vector<double> &,
                     const Verification<3> &,
                     const std::string &,
-                    const LoadFactors);
+                    const LoadFactors,
+                    const std::vector<CellField> &);
 } // namespace Debond

@@ -545,8 +545,9 @@ namespace Debond
             std::filesystem::remove(parameters.output.directory, not_empty);
             throw;
           }
-        result.solve = std::move(adaptive.solve);
-        shortfall    = adaptive.shortfall;
+        result.solve       = std::move(adaptive.solve);
+        shortfall          = adaptive.shortfall;
+        result.certificate = std::move(adaptive.certificate);
         // On the last mesh.
         choice.memory =
           memory_with_factorisation(scene_size(scene->body(),
@@ -575,7 +576,7 @@ namespace Debond
         result.path);
     result.times.emplace_back("solve", timer.wall_time());
     check_result(parameters, *scene, shortfall, result);
-    if (certifier && result.is_success())
+    if (certifier && result.is_success() && !result.certificate)
       certify_result(*certifier, parameters, scene, result);
     std::string output_error = finish_checkpoints(checkpoints, result, written);
     report_result(parameters, *scene, choice, result, record);

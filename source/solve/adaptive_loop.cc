@@ -7,6 +7,7 @@
 #include <debond/solve/adaptive_loop.h>
 #include <debond/solve/scene_size.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <queue>
@@ -74,6 +75,14 @@ namespace Debond
     {
       const SceneSize size =
         scene_size(body, dim, parameters.contact_boundaries, parameters.degree);
+      SceneSize largest = size;
+      if (parameters.accuracy.certified_width > 0.)
+        {
+          // Four unknowns of stresses on each of 3/2 sides a triangle, two kept
+          // on each side in contact.
+          largest.unknowns = std::max(size.unknowns, 6. * size.cells);
+          largest.contact_nodes *= 2.;
+        }
       std::ostringstream text;
       text << "the next mesh would have " << std::fixed << std::setprecision(0)
            << size.unknowns << " unknowns, ";
@@ -84,9 +93,9 @@ namespace Debond
           size.unknowns > parameters.accuracy.maximum_unknowns)
         text << "Accuracy/Maximum unknowns is "
              << parameters.accuracy.maximum_unknowns;
-      else if (memory_with_factorisation(size, dim) > limit)
+      else if (memory_with_factorisation(largest, dim) > limit)
         text << "which need about " << std::setprecision(1)
-             << memory_with_factorisation(size, dim) / (1 << 30)
+             << memory_with_factorisation(largest, dim) / (1 << 30)
              << " GiB of memory, the limit is " << limit / (1 << 30) << " GiB";
       else
         return "";
@@ -112,6 +121,58 @@ namespace Debond
         vertex_displacements(scene.problem(), u);
       body.extend(displacements);
       return from_vertex_displacements(displacements, next.problem());
+    }
+
+
+
+    /// The certificate of a level; of one that Certificate/Target is for
+    /// bonds that may break, which takes longer, that for their branches as
+    /// they are as long as that is not narrow enough and @p is_last is false.
+    /// Throws EquilibriumError if there is none.
+    template <int dim>
+    Certificate
+    certify_level(
+      [[maybe_unused]] const Parameters                        &parameters,
+      [[maybe_unused]] const std::shared_ptr<const Scene<dim>> &scene,
+      [[maybe_unused]] const dealii::Vector<double>            &u,
+      [[maybe_unused]] const bool                               is_last,
+      [[maybe_unused]] const std::function<bool()>             &may_go_on)
+    {
+      if constexpr (dim == 2)
+        {
+          const auto certify = [&](const CertificateKind kind) {
+            return Certifier(kind, scene)
+              .certify(*scene, u, parameters.solver.proof, may_go_on);
+          };
+          const CertificateKind kind = parameters.certificate.kind;
+          if (kind == CertificateKind::global && !is_last)
+            try
+              {
+                const Certificate first = certify(CertificateKind::fixed_state);
+                if (first.minimum == CertifiedMinimum::global ||
+                    first.width() > parameters.accuracy.certified_width)
+                  return first;
+              }
+            catch (const EquilibriumError &)
+              {
+                // Such as a body that only bonds hold.
+              }
+          return certify(kind);
+        }
+      else
+        throw EquilibriumError("there is none in 3D");
+    }
+
+
+
+    std::string
+    too_wide(const Certificate &certificate, const Parameters &parameters)
+    {
+      std::ostringstream text;
+      text << "The interval is " << std::setprecision(2) << certificate.width()
+           << " of |J| wide, Certificate/Target is "
+           << parameters.accuracy.certified_width;
+      return text.str();
     }
 
 
@@ -207,6 +268,30 @@ namespace Debond
               error.what() + '.';
             return result;
           }
+        const double target  = parameters.accuracy.certified_width;
+        const auto   certify = [&](const bool is_last) {
+          result.certificate.reset();
+          try
+            {
+              result.certificate =
+                certify_level<dim>(parameters,
+                                   scene,
+                                   result.solve.u,
+                                   is_last,
+                                   [&]() { return !guard.requested(); });
+            }
+          catch (const EquilibriumError &error)
+            {
+              result.shortfall =
+                std::string("There is no certificate: ") + error.what() + '.';
+            }
+        };
+        if (target > 0.)
+          certify(false);
+        if (!result.shortfall.empty())
+          return result;
+        const double width =
+          result.certificate ? result.certificate->width() : 0.;
         const ElasticUnknowns<dim> &unknowns = scene->problem().unknowns();
         report({scene->n_cells(),
                 unknowns.n_free_dofs(),
@@ -214,25 +299,51 @@ namespace Debond
                 result.solve.iterations,
                 result.solve.functional,
                 estimate.relative(),
+                width,
                 timer.wall_time() + (is_first ? scene->mesh_seconds() +
                                                   scene->assembly_seconds() :
                                                 0.)});
-        if (estimate.relative() <= parameters.accuracy.target)
+        const bool is_accurate =
+          estimate.relative() <= parameters.accuracy.target;
+        if (target > 0. && guard.requested())
+          {
+            interrupt(result.solve);
+            return result;
+          }
+        if (target > 0. ? width <= target &&
+                            (is_accurate || parameters.accuracy.target == 0.) :
+                          is_accurate)
           return result;
 
         timer.restart();
+        const bool by_gaps =
+          width > target && !result.certificate->gaps.empty();
         const std::shared_ptr<const BisectedBody<dim>> body =
-          bisected(*scene).refined(divisions(estimate.cells, dim));
+          bisected(*scene).refined(
+            divisions(by_gaps ? result.certificate->gaps : estimate.cells,
+                      dim));
         const std::string limit = too_large<dim>(parameters, *body);
         if (!limit.empty() || estimate.functional == 0.)
           {
-            if (parameters.accuracy.target > 0.)
+            if (target > 0.)
+              {
+                if (parameters.certificate.kind == CertificateKind::global &&
+                    result.certificate->minimum != CertifiedMinimum::global)
+                  certify(true);
+                if (!result.shortfall.empty())
+                  return result;
+                if (result.certificate->width() > target)
+                  result.shortfall = too_wide(*result.certificate, parameters) +
+                                     ": " + limit + '.';
+              }
+            if (!is_accurate && parameters.accuracy.target > 0.)
               {
                 std::ostringstream text;
-                text << "The estimated error of " << std::setprecision(2)
+                text << (result.shortfall.empty() ? "" : " ")
+                     << "The estimated error of " << std::setprecision(2)
                      << estimate.relative() << " is above Accuracy/Target = "
                      << parameters.accuracy.target << ": " << limit << '.';
-                result.shortfall = text.str();
+                result.shortfall += text.str();
               }
             return result;
           }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/timer.h>
 
 #include <debond/elasticity/temperature_load.h>
 #include <debond/linear_algebra/eigen_view.h>
+#include <debond/optimization/global/rounded_branches.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/solve/certificate.h>
 
@@ -42,25 +44,6 @@ namespace Debond
 
 
 
-    std::vector<dealii::Tensor<1, 2>>
-    vertex_displacements(const ElasticProblem<2>      &problem,
-                         const dealii::Vector<double> &u)
-    {
-      const dealii::DoFHandler<2> &dofs = problem.unknowns().dof_handler();
-      const dealii::Vector<double> cartesian =
-        problem.unknowns().cartesian_displacement(u);
-      std::vector<dealii::Tensor<1, 2>> values(
-        dofs.get_triangulation().n_vertices());
-      for (const auto &cell : dofs.active_cell_iterators())
-        for (unsigned int v = 0; v < 3; ++v)
-          for (unsigned int d = 0; d < 2; ++d)
-            values[cell->vertex_index(v)][d] =
-              cartesian(cell->vertex_dof_index(v, d));
-      return values;
-    }
-
-
-
     /// Throws EquilibriumError if a contact node has a normal that is not that
     /// of its sides.
     void
@@ -87,9 +70,11 @@ namespace Debond
       for (const ContactBoundary<2>::Face &face : boundary.faces)
         {
           double value = 0.;
-          for (const unsigned int node : face.nodes)
-            if (node < boundary.nodes.size())
-              value += 0.5 * trace(node);
+          // All functions of the basis have the same mean.
+          const unsigned int n = n_coefficients(2, boundary.degree);
+          for (unsigned int k = 0; k < n; ++k)
+            if (face.node(k) < boundary.nodes.size())
+              value += trace(face.node(k)) / n;
           const dealii::Point<2> middle =
             0.5 * (face.vertices[0] + face.vertices[1]);
           for (unsigned int i = 0; i < sides.size(); ++i)
@@ -137,17 +122,6 @@ namespace Debond
 
 
 
-    double
-    integral_of_parabola(const double length,
-                         const double first,
-                         const double middle,
-                         const double last)
-    {
-      return length / 6. * (first + 4. * middle + last);
-    }
-
-
-
     /// int h(q) of the linear q with the values @p first and @p last at the
     /// ends,
     ///     h(q) = inf_{s <= 0} piece(s) + q s
@@ -176,34 +150,64 @@ namespace Debond
 
 
 
-    /// The normal displacements at the ends of a side, and its unknowns there:
-    /// mean +- slope / 3 are <= 0 if the displacement is, as linear tractions
-    /// <= 0 see it.
-    struct Trace
+    /// The normal displacement of a side, of degree 1 or 2 in xi.
+    class Trace
     {
-      double first, last;
+    public:
+      Trace(const ContactSide                   &side,
+            const std::vector<CellDisplacement> &displacement)
+        : length(side.length)
+      {
+        const auto values = displacement[side.cell].on_side(side.vertices);
+        const auto normal = [&](const unsigned int k) {
+          return values[k] * side.normal;
+        };
+        middle    = normal(1);
+        slope     = 0.5 * (normal(2) - normal(0));
+        curvature = 0.5 * (normal(2) + normal(0)) - middle;
+      }
 
-      Trace(const ContactSide                       &side,
-            const std::vector<dealii::Tensor<1, 2>> &displacements)
-        : first(displacements[side.vertices[0]] * side.normal)
-        , last(displacements[side.vertices[1]] * side.normal)
-      {}
+      double
+      value(const double xi) const
+      {
+        return middle + xi * (slope + xi * curvature);
+      }
 
       double
       mean() const
       {
-        return 0.5 * (first + last);
+        return middle + curvature / 3.;
       }
+
+      /// Of a function of xi and the displacement there, exact up to degree 5.
+      template <typename Function>
+      double
+      integral(const Function &function) const
+      {
+        const dealii::QGauss<1> rule(3);
+        double                  sum = 0.;
+        for (unsigned int q = 0; q < rule.size(); ++q)
+          {
+            const double xi = 2. * rule.point(q)[0] - 1.;
+            sum += rule.weight(q) * length * function(xi, value(xi));
+          }
+        return sum;
+      }
+
+      double slope;
+
+    private:
+      double length, middle, curvature;
     };
 
 
 
     /// The least J with given branches.
     void
-    bound_fixed_state(const EquilibriumProblem                &equilibrium,
-                      const BranchMinimum                     &law,
-                      const std::vector<dealii::Tensor<1, 2>> &displacements,
-                      Certificate                             &certificate)
+    bound_fixed_state(const EquilibriumProblem            &equilibrium,
+                      const BranchMinimum                 &law,
+                      const std::vector<CellDisplacement> &displacement,
+                      Certificate                         &certificate)
     {
       const std::vector<ContactSide> &sides = equilibrium.contact_sides();
       const Eigen::Index    n         = static_cast<Eigen::Index>(sides.size());
@@ -211,7 +215,8 @@ namespace Debond
       const Eigen::MatrixXd S = eigen_view(condensed->schur_complement());
       const Eigen::VectorXd g = eigen_view(condensed->load());
 
-      // Means and slopes from mean +- slope / 3.
+      // Means and slopes from mean +- slope / 3, which are <= 0 if the
+      // displacement is, as linear tractions <= 0 see it.
       Eigen::MatrixXd T(2 * n, 2 * n);
       T << 0.5 * Eigen::MatrixXd::Identity(n, n),
         0.5 * Eigen::MatrixXd::Identity(n, n),
@@ -222,7 +227,7 @@ namespace Debond
       Eigen::VectorXd                   r = g;
       for (Eigen::Index i = 0; i < n; ++i)
         {
-          const Trace trace(sides[i], displacements);
+          const Trace trace(sides[i], displacement);
           pieces.push_back(law[law.index(trace.mean())]);
           const double weight = sides[i].length * pieces.back().curvature;
           M(i, i) += weight;
@@ -250,10 +255,11 @@ namespace Debond
                    (std::abs(moments(i)) + 3. * std::abs(moments(n + i))) /
                      sides[i].length);
       certificate.lower = condensed->energy_at_zero() - 0.5 * x.dot(S * x);
-      certificate.upper = equilibrium.elastic_functional(displacements);
+      certificate.upper = equilibrium.elastic_functional(displacement);
       const dealii::Vector<double> kept(x.begin(), x.end());
-      certificate.gaps =
-        equilibrium.constitutive_gaps(displacements, condensed->expand(kept));
+      const dealii::Vector<double> unknowns = condensed->expand(kept);
+      certificate.gaps = equilibrium.constitutive_gaps(displacement, unknowns);
+      certificate.stresses = equilibrium.mean_stresses(unknowns);
       for (Eigen::Index i = 0; i < n; ++i)
         {
           const double length = sides[i].length;
@@ -265,22 +271,47 @@ namespace Debond
                                mean - slope,
                                mean + slope,
                                traction_rounding * largest_traction);
-          const Trace trace(sides[i], displacements);
-          const auto  energy = [&](const double s) {
-            return pieces[i].value(s);
-          };
-          const double of_bonds = integral_of_parabola(length,
-                                                       energy(trace.first),
-                                                       energy(trace.mean()),
-                                                       energy(trace.last));
+          const Trace  trace(sides[i], displacement);
+          const double of_bonds = trace.integral(
+            [&](double, const double s) { return pieces[i].value(s); });
           certificate.lower += bonds;
           certificate.upper += of_bonds;
           certificate.gaps[sides[i].cell] +=
             of_bonds - bonds +
-            integral_of_parabola(length,
-                                 (mean - slope) * trace.first,
-                                 mean * trace.mean(),
-                                 (mean + slope) * trace.last);
+            trace.integral([&](const double xi, const double s) {
+              return (mean + slope * xi) * s;
+            });
+        }
+    }
+
+
+
+    /// Adds what the sides lose by stiffness that is taken from the elements
+    /// and by the rounded law, at the displacement itself: the difference of
+    /// the sides of theorem 1 or 2 without that of the stresses.
+    void
+    add_losses(const EquilibriumProblem            &equilibrium,
+               const std::vector<double>           &trace_constants,
+               const BranchMinimum                 &law,
+               const GlobalBound                   &bound,
+               const std::vector<CellDisplacement> &displacement,
+               std::vector<double>                 &gaps)
+    {
+      const std::vector<double> energies =
+        equilibrium.strain_energies(displacement);
+      const std::vector<ContactSide> &sides = equilibrium.contact_sides();
+      for (unsigned int i = 0; i < sides.size(); ++i)
+        {
+          const double D = bound.shifts[i];
+          const Trace  trace(sides[i], displacement);
+          double loss = 0.5 * D / trace_constants[i] * energies[sides[i].cell];
+          if (!bound.sides[i].piece)
+            loss += trace.integral([&](double, const double s) {
+              return law.value(s);
+            }) - sides[i].length *
+                      (RoundedBranches(law, D).minimum().value(trace.mean()) -
+                       D * trace.slope * trace.slope / 6.);
+          gaps[sides[i].cell] += std::max(0., loss);
         }
     }
   } // namespace
@@ -290,7 +321,7 @@ namespace Debond
   double
   Certificate::width() const
   {
-    return (upper - lower) / std::abs(upper);
+    return upper == lower ? 0. : (upper - lower) / std::abs(upper);
   }
 
 
@@ -335,11 +366,12 @@ namespace Debond
                      const BranchAndBoundParameters &proof,
                      const std::function<bool()>    &may_go_on) const
   {
-    Assert(&solved == scene.get() || is_for_finer_meshes(),
-           dealii::ExcInternalError());
-    dealii::Timer        timer;
-    const BranchMinimum &law  = scene->law().branches();
-    const auto  displacements = vertex_displacements(solved.problem(), u);
+    const bool is_own = &solved == scene.get();
+    Assert(is_own || is_for_finer_meshes(), dealii::ExcInternalError());
+    dealii::Timer                       timer;
+    const BranchMinimum                &law = scene->law().branches();
+    const std::vector<CellDisplacement> displacement =
+      cell_displacements(solved.problem(), u);
     Certificate certificate;
     certificate.minimum         = minimum;
     certificate.loads_are_exact = equilibrium.loads_are_exact();
@@ -351,28 +383,39 @@ namespace Debond
       return certificate_rounding *
              std::max(std::abs(certificate.upper), strain_energy);
     };
-    if (trace_constants.empty())
+    if (is_own)
       try
         {
-          bound_fixed_state(equilibrium, law, displacements, certificate);
-          certificate.upper += reserve();
+          bound_fixed_state(equilibrium, law, displacement, certificate);
+          certificate.reserve = reserve();
+          certificate.upper += certificate.reserve;
+          certificate.lower -= certificate.reserve;
         }
       catch (const std::runtime_error &error)
         {
           // Such as a body that only bonds hold.
-          throw EquilibriumError(error.what());
+          if (trace_constants.empty())
+            throw EquilibriumError(error.what());
+          certificate.gaps.clear();
         }
-    else
+      catch (const EquilibriumError &)
+        {
+          if (trace_constants.empty())
+            throw;
+          certificate.gaps.clear();
+        }
+    if (!trace_constants.empty())
       {
         ContactQuadratureParameters exact;
         exact.rule = ContactQuadratureParameters::Rule::exact;
         const ContactQuadrature<2> quadrature(exact, scene->law().kinks());
         const ContactSpace<2> &contact = solved.problem().unknowns().contact();
         certificate.upper =
-          elastic_functional(solved, displacements) +
+          elastic_functional(solved, displacement) +
           AdhesionIntegral<2>(contact.boundary(), scene->law(), quadrature)
             .energy(contact.trace(u));
-        certificate.upper += reserve();
+        certificate.reserve = reserve();
+        certificate.upper += certificate.reserve;
         GlobalBound bound        = bound_global(equilibrium,
                                          trace_constants,
                                          law,
@@ -382,17 +425,23 @@ namespace Debond
                                          certificate.upper,
                                          proof,
                                          may_go_on);
-        certificate.lower        = bound.lower;
+        certificate.lower        = bound.lower - certificate.reserve;
         certificate.proof_status = bound.status;
         certificate.proof_nodes  = bound.nodes;
-        certificate.sides        = std::move(bound.sides);
+        if (!certificate.gaps.empty())
+          add_losses(equilibrium,
+                     trace_constants,
+                     law,
+                     bound,
+                     displacement,
+                     certificate.gaps);
+        certificate.sides = std::move(bound.sides);
         certificate.lengths =
           certified_lengths(certificate.sides, scene->law());
       }
     if (!std::isfinite(certificate.lower))
       throw EquilibriumError("no bound was found (" +
                              to_string(certificate.proof_status) + ")");
-    certificate.lower -= reserve();
     certificate.seconds = timer.wall_time();
     return certificate;
   }
@@ -401,11 +450,11 @@ namespace Debond
 
   double
   Certifier::elastic_functional(
-    const Scene<2>                          &solved,
-    const std::vector<dealii::Tensor<1, 2>> &displacements) const
+    const Scene<2>                      &solved,
+    const std::vector<CellDisplacement> &displacement) const
   {
     if (&solved == scene.get())
-      return equilibrium.elastic_functional(displacements);
-    return equilibrium_problem(solved).elastic_functional(displacements);
+      return equilibrium.elastic_functional(displacement);
+    return equilibrium_problem(solved).elastic_functional(displacement);
   }
 } // namespace Debond

@@ -37,17 +37,38 @@ namespace Debond
 
 
 
-    /// Throws EquilibriumError if the element is none.
-    RectangleAboveSide
+    /// Nothing if the element is none.
+    std::optional<RectangleAboveSide>
     rectangle(const ContactSide &side, const EquilibriumElement &element)
     {
       const dealii::Tensor<1, 2> a = element.corners[1] - element.corners[0];
       const dealii::Tensor<1, 2> b = element.corners[2] - element.corners[1];
       if (element.corners.size() != 4 ||
           std::abs(a * b) > 1e-10 * a.norm() * b.norm())
-        throw EquilibriumError("cells at the contact boundary that are not "
-                               "crossed rectangles are not done");
-      return {side.length, element.area / side.length};
+        return {};
+      return RectangleAboveSide{side.length, element.area / side.length};
+    }
+
+
+
+    /// Between the side and the opposite corner of its cell.
+    TriangleAboveSide
+    triangle(const ContactSide &side, const EquilibriumElement &element)
+    {
+      dealii::Point<2> apex = element.centre;
+      if (element.corners.size() == 3)
+        for (unsigned int i = 0; i < 3; ++i)
+          if (element.corners[i].distance(side.ends[0]) > 1e-8 * side.length &&
+              element.corners[i].distance(side.ends[1]) > 1e-8 * side.length)
+            apex = element.corners[i];
+      const dealii::Tensor<1, 2> along =
+        (side.ends[1] - side.ends[0]) / side.length;
+      const dealii::Tensor<1, 2> to_apex = apex - side.ends[0];
+      const double               place   = to_apex * along;
+      // Mirrored triangles have the same constant.
+      return {side.length,
+              (to_apex - place * along).norm(),
+              std::min(place, side.length - place)};
     }
 
 
@@ -71,7 +92,8 @@ namespace Debond
       dealii::Vector<double>             g;
       std::unique_ptr<SeparableBranches> phi;
 
-      /// Of the sides.
+      // Of the sides.
+      std::vector<double>                      shifts;
       std::vector<std::optional<unsigned int>> pieces;
 
       Eigen::VectorXd offset;
@@ -216,6 +238,7 @@ namespace Debond
       Eigen::VectorXd b = eigen_view(condensed->load());
 
       MeanProblem result;
+      result.shifts   = D;
       result.constant = condensed->energy_at_zero();
       std::vector<BranchMinimum> laws;
       for (unsigned int i = 0; i < n; ++i)
@@ -413,35 +436,56 @@ namespace Debond
                  const ByRegion<Material> &materials,
                  const bool                tangential_fixed)
   {
+    // Of shapes with a side of length 1.
     struct Known
     {
-      RectangleAboveSide Q;
-      Material           material;
-      double             constant;
+      double                height;
+      std::optional<double> apex;
+      Material              material;
+      double                constant;
     };
     std::vector<Known>  known;
     std::vector<double> constants;
     for (const ContactSide &side : equilibrium.contact_sides())
       {
-        const RectangleAboveSide Q =
-          rectangle(side, equilibrium.elements()[side.element]);
-        const Material &material = materials(side.material);
-        const auto      is_same  = [](const double one, const double other) {
-          return std::abs(one - other) <= 1e-12 * std::abs(other);
+        const EquilibriumElement &element =
+          equilibrium.elements()[side.element];
+        Known own = {0., {}, materials(side.material), 0.};
+        if (const auto Q = rectangle(side, element))
+          own.height = Q->height / Q->width;
+        else
+          {
+            const TriangleAboveSide triangle_above = triangle(side, element);
+            own.height = triangle_above.height / triangle_above.width;
+            own.apex   = triangle_above.apex / triangle_above.width;
+          }
+        const auto is_same = [](const double one, const double other) {
+          return std::abs(one - other) <= 1e-9;
         };
         auto same =
           std::find_if(known.begin(), known.end(), [&](const Known &other) {
-            return is_same(other.Q.width, Q.width) &&
-                   is_same(other.Q.height, Q.height) &&
-                   other.material.young_modulus == material.young_modulus &&
-                   other.material.poisson_ratio == material.poisson_ratio;
+            return is_same(other.height / own.height, 1.) &&
+                   other.apex.has_value() == own.apex.has_value() &&
+                   (!own.apex ||
+                    is_same((*other.apex - *own.apex) / own.height, 0.)) &&
+                   other.material.young_modulus == own.material.young_modulus &&
+                   other.material.poisson_ratio == own.material.poisson_ratio;
           });
         if (same == known.end())
-          same = known.insert(known.end(),
-                              {Q,
-                               material,
-                               trace_constant(Q, material, tangential_fixed)});
-        constants.push_back(same->constant);
+          {
+            own.constant =
+              own.apex ?
+                trace_constant(TriangleAboveSide{1., own.height, *own.apex},
+                               own.material,
+                               tangential_fixed) :
+                trace_constant(RectangleAboveSide{1., own.height},
+                               own.material,
+                               tangential_fixed);
+            same = known.insert(known.end(), own);
+          }
+        // Shapes count as the same if they are to less than this.
+        constexpr double rounding = 1e-7;
+        constants.push_back((1. - rounding) * same->constant / side.length);
       }
     return constants;
   }
@@ -526,6 +570,7 @@ namespace Debond
            ranges[i].linear,
            best->pieces[i]});
       }
+    result.shifts = best->shifts;
     return result;
   }
 } // namespace Debond

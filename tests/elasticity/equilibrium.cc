@@ -16,6 +16,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <tuple>
 
 #include "../check.h"
 
@@ -232,25 +233,22 @@ namespace
 
 
 
-  /// The least quotient of the constant's inequality among P1 displacements on
-  /// n x n crossed rectangles: not below the constant.
+  /// The least quotient of the constant's inequality among P1 displacements of
+  /// a mesh, I at y = 0: not below the constant.
   double
-  quotient_from_above(const RectangleAboveSide &Q,
-                      const Material           &material,
-                      const bool                tangential_fixed,
-                      const unsigned int        n)
+  quotient_from_above(const dealii::Triangulation<2>             &mesh,
+                      const std::set<dealii::types::boundary_id> &I,
+                      const std::set<dealii::types::boundary_id> &left,
+                      const Material                             &material,
+                      const bool tangential_fixed)
   {
-    dealii::Triangulation<2> mesh;
-    const BoundaryNames names = Box<2>({{{Q.width, Q.height, 0.}}, {{n, n, 1}}})
-                                  .make_mesh(mesh)
-                                  .boundaries;
     BoundaryConditions conditions;
-    conditions.contact                       = names.at("bottom");
+    conditions.contact                       = I;
     conditions.tangential_displacement_fixed = tangential_fixed;
     // A problem is not made with the motion along the side free.
     Supports<2> supports;
     if (!tangential_fixed)
-      supports.displacements.push_back({"left", names.at("left"), true});
+      supports.displacements.push_back({"left", left, true});
     ElasticProblem<2> problem(mesh, conditions, supports);
     problem.assemble(material, Loads<2>());
     const auto        &contact = problem.unknowns().contact();
@@ -266,19 +264,16 @@ namespace
       {},
       true);
     const Eigen::MatrixXd S    = eigen_view(condensed.schur_complement());
-    const double          h    = Q.width / n;
     const Eigen::Index    size = S.rows();
     Eigen::MatrixXd       mass = Eigen::MatrixXd::Zero(size, size);
     Eigen::MatrixXd       linear(size, 2);
     for (Eigen::Index i = 0; i < size; ++i)
-      {
-        linear.row(i) << 1., nodes[i].position[0];
-        if (i > 0)
-          {
-            mass.block<2, 2>(i - 1, i - 1).diagonal().array() += h / 3.;
-            mass(i - 1, i) = mass(i, i - 1) = h / 6.;
-          }
-      }
+      linear.row(i) << 1., nodes[i].position[0];
+    for (const auto &face : contact.boundary().faces)
+      for (const unsigned int i : face.nodes)
+        for (const unsigned int j : face.nodes)
+          if (i < size && j < size)
+            mass(i, j) += face.measure / (i == j ? 3. : 6.);
     // On what is orthogonal to linear functions in L2(I).
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(mass * linear);
     const Eigen::MatrixXd                       complement =
@@ -287,6 +282,50 @@ namespace
              complement.transpose() * S * complement,
              complement.transpose() * mass * complement)
       .eigenvalues()(0);
+  }
+
+
+
+  double
+  quotient_from_above(const RectangleAboveSide &Q,
+                      const Material           &material,
+                      const bool                tangential_fixed,
+                      const unsigned int        n)
+  {
+    dealii::Triangulation<2> mesh;
+    const BoundaryNames names = Box<2>({{{Q.width, Q.height, 0.}}, {{n, n, 1}}})
+                                  .make_mesh(mesh)
+                                  .boundaries;
+    return quotient_from_above(
+      mesh, names.at("bottom"), names.at("left"), material, tangential_fixed);
+  }
+
+
+
+  double
+  quotient_from_above(const TriangleAboveSide &Q,
+                      const Material          &material,
+                      const bool               tangential_fixed)
+  {
+    dealii::Triangulation<2> mesh;
+    dealii::CellData<2>      cell(3);
+    cell.vertices = {0, 1, 2};
+    mesh.create_triangulation({{0., 0.}, {Q.width, 0.}, {Q.apex, Q.height}},
+                              {cell},
+                              {});
+    mesh.refine_global(5);
+    for (const auto &face : mesh.active_face_iterators())
+      if (face->at_boundary())
+        {
+          const Point<2> middle = face->center();
+          const bool     is_left =
+            std::abs(middle[0] * Q.height - middle[1] * Q.apex) <
+            1e-9 * Q.width * Q.height;
+          face->set_boundary_id(middle[1] < 1e-9 * Q.height ? 1 :
+                                is_left                     ? 2 :
+                                                              0);
+        }
+    return quotient_from_above(mesh, {1}, {2}, material, tangential_fixed);
   }
 
 
@@ -300,26 +339,66 @@ namespace
       for (const double aspect : {0.01, 0.3, 1., 3., 100.})
         {
           const double elementary =
-            elementary_trace_constant({1., aspect}, material, fixed);
+            elementary_trace_constant(RectangleAboveSide{1., aspect},
+                                      material,
+                                      fixed);
           const double better =
-            trace_constant({1., aspect}, material, fixed, 8);
+            trace_constant(RectangleAboveSide{1., aspect}, material, fixed, 8);
           std::cout << (fixed ? "fixed" : "free") << ", aspect " << aspect
                     << ": the elementary one is not larger: "
                     << verdict(elementary <= better) << std::endl;
-          const double above =
-            quotient_from_above({1., aspect}, material, fixed, 32);
+          const double above = quotient_from_above(
+            RectangleAboveSide{1., aspect}, material, fixed, 32);
           std::cout << "  it is below what P1 displacements have: "
                     << verdict(better < above) << std::endl;
           if (fixed && aspect == 1.)
             check("  but not by much",
-                  1. - trace_constant({1., 1.}, material, fixed) / above,
+                  1. - trace_constant(RectangleAboveSide{1., 1.},
+                                      material,
+                                      fixed) /
+                         above,
                   0.05);
           check("units do not matter",
-                std::abs(
-                  trace_constant({1e3, 1e3 * aspect}, {69e3, 0.33}, fixed, 8) /
-                    better -
-                  1.),
+                std::abs(trace_constant(RectangleAboveSide{1e3, 1e3 * aspect},
+                                        {69e3, 0.33},
+                                        fixed,
+                                        8) /
+                           better -
+                         1.),
                 1e-9);
+        }
+  }
+
+
+
+  /// Of triangles as bisection makes them, and of others.
+  void
+  test_constants_of_triangles()
+  {
+    Material material;
+    material.poisson_ratio = 0.33;
+    for (const bool fixed : {true, false})
+      for (const auto &[height, apex, loss] : {std::make_tuple(0.5, 0.5, 0.15),
+                                               std::make_tuple(1., 0., 0.15),
+                                               std::make_tuple(0.2, 0.8, 0.4),
+                                               std::make_tuple(3., 1.5, 0.2)})
+        {
+          const TriangleAboveSide Q        = {1., height, apex};
+          const double            constant = trace_constant(Q, material, fixed);
+          const double above = quotient_from_above(Q, material, fixed);
+          std::cout << "triangle, " << (fixed ? "fixed" : "free") << ", height "
+                    << height << ", apex " << apex
+                    << ": it is below what P1 displacements have: "
+                    << verdict(constant < above) << std::endl;
+          // Where the side is free these have one motion less.
+          if (fixed)
+            check("  but not by much", 1. - constant / above, loss);
+          check("  mirrored it is the same",
+                std::abs(
+                  trace_constant({1., height, 1. - apex}, material, fixed) /
+                    constant -
+                  1.),
+                1e-6);
         }
   }
 
@@ -386,6 +465,7 @@ main(int argc, char *[])
   test_element({{0., 0.}, {1., 0.2}, {0.3, 0.9}}, {}, "triangle");
   test_bounds();
   test_trace_constants();
+  test_constants_of_triangles();
   test_temperature();
   test_refusals();
 }

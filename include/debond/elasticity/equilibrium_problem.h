@@ -7,6 +7,7 @@
 #include <deal.II/lac/sparsity_pattern.h>
 #include <deal.II/lac/vector.h>
 
+#include <debond/elasticity/cell_displacement.h>
 #include <debond/elasticity/equilibrium_element.h>
 #include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/unknowns.h>
@@ -111,19 +112,26 @@ namespace Debond
       const std::vector<double>                          &weights = {},
       const std::vector<std::pair<unsigned int, double>> &added   = {}) const;
 
-    /// 1/2 a(u,u) - L(u) of the P1 displacement u with the given Cartesian
-    /// values at the vertices, for the loads as represented here.
+    /// 1/2 a(u,u) - L(u) of the displacement u, given in the order of the
+    /// active cells, for the loads as represented here.
     double
-    elastic_functional(
-      const std::vector<dealii::Tensor<1, 2>> &vertex_values) const;
+    elastic_functional(const std::vector<CellDisplacement> &u) const;
+
+    /// Of each active cell int epsilon(u) : C epsilon(u).
+    std::vector<double>
+    strain_energies(const std::vector<CellDisplacement> &u) const;
 
     /// Of each active cell
     ///     1/2 int |C^{1/2} epsilon(u) - C^{-1/2} (sigma + p 1)|^2
     /// of u as above and of the stress for @p unknowns, which are those of a
     /// condensation without weights.
     std::vector<double>
-    constitutive_gaps(const std::vector<dealii::Tensor<1, 2>> &vertex_values,
-                      const dealii::Vector<double>            &unknowns) const;
+    constitutive_gaps(const std::vector<CellDisplacement> &u,
+                      const dealii::Vector<double>        &unknowns) const;
+
+    /// Of each active cell the mean of the same stress without p.
+    std::vector<dealii::SymmetricTensor<2, 2>>
+    mean_stresses(const dealii::Vector<double> &unknowns) const;
 
   private:
     struct Side
@@ -167,6 +175,11 @@ namespace Debond
 
     void
     add_tractions(const unsigned int side, const dealii::Function<2> &traction);
+
+    /// EquilibriumElement::stress() for all unknowns.
+    Eigen::VectorXd
+    stress_of(const unsigned int            element,
+              const dealii::Vector<double> &unknowns) const;
 
     double
     thermal_stress(const dealii::Triangulation<2>::cell_iterator &cell) const;

@@ -15,6 +15,16 @@ namespace Debond
 
 
 
+  /// A triangle above one of its sides.
+  struct TriangleAboveSide
+  {
+    double width;  ///< of the side
+    double height; ///< of the apex above its line
+    double apex;   ///< where the apex is along the side, from one end of it
+  };
+
+
+
   /**
    * A number Lambda, force per volume, with
    *
@@ -48,6 +58,21 @@ namespace Debond
                  const Material           &material,
                  const bool                tangential_fixed,
                  const unsigned int        n = 16);
+
+  /**
+   * The same for a triangle, from its division into n x n triangles of its
+   * kind, n of them at I as the triangle itself is. That the best constant
+   * Lambda is not 0 is known (Korn's inequality), and with theta n > 1
+   *
+   *     Lambda >= min(lambda_min(theta), theta n Lambda)
+   *
+   * says that it is at least lambda_min(theta).
+   */
+  double
+  trace_constant(const TriangleAboveSide &Q,
+                 const Material          &material,
+                 const bool               tangential_fixed,
+                 const unsigned int       n = 8);
 } // namespace Debond
 
 #endif

@@ -12,6 +12,9 @@ namespace Debond
     /// Estimated error relative to J; 0 for any.
     double target = 0.;
 
+    /// Width of the interval of a certificate relative to J; 0 for any.
+    double certified_width = 0.;
+
     /// Of the finest mesh; 0 for as many as the memory has room for.
     unsigned int maximum_unknowns = 0;
 
@@ -19,11 +22,11 @@ namespace Debond
     bool
     is_adaptive() const
     {
-      return target > 0. || maximum_unknowns > 0;
+      return target > 0. || certified_width > 0. || maximum_unknowns > 0;
     }
   };
 
-  /// The section Accuracy.
+  /// The section Accuracy, and Certificate/Target.
   void
   bind_accuracy(AccuracyParameters &accuracy, ParameterTable &table);
 } // namespace Debond

@@ -7,16 +7,23 @@
 #include <debond/elasticity/problem_piece.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace Debond
 {
+  /// A name and a number for each cell, in the order of the active ones, or for
+  /// each face of the contact boundary.
+  using CellField = std::pair<std::string, std::vector<double>>;
+
+
+
   /**
    * Writes the body as VTU: displacement (vector, nodal; warp by it), and as
    * cell data, where P1 elements have them, stress components (with stress_zz
-   * in plane strain), von Mises stress, strain-energy density and, if
-   * @p estimate is not null, the estimated error of J per volume. Throws
-   * std::runtime_error naming the file if it cannot be written.
+   * in plane strain), von Mises stress, strain-energy density, if
+   * @p estimate is not null the estimated error of J per volume, and @p more.
+   * Throws std::runtime_error naming the file if it cannot be written.
    */
   template <int dim>
   void
@@ -24,7 +31,8 @@ namespace Debond
                  const dealii::Vector<double> &u,
                  const std::string            &file_name,
                  const LoadFactors             factors  = 1.,
-                 const ErrorEstimate          *estimate = nullptr);
+                 const ErrorEstimate          *estimate = nullptr,
+                 const std::vector<CellField> &more     = {});
 
   /// Each of several ranks writes the displacement of its own cells as
   /// body.rankN.vtu, and the first one body.pvtu, which joins them. Returns the
@@ -43,7 +51,8 @@ namespace Debond
    * A face is cut into the shares of its vertices, which are the cells of the
    * file, with bond_state as cell data: 0 contact, 1 bonded, 2 kink, 3 broken,
    * 4 free (no adhesion), 5 held (a vertex that is clamped as well, where
-   * forces and violation are NaN), from 6 on the other branches of the law.
+   * forces and violation are NaN), from 6 on the other branches of the law;
+   * and @p more of the faces.
    */
   template <int dim>
   void
@@ -51,7 +60,8 @@ namespace Debond
                     const dealii::Vector<double> &u,
                     const Verification<dim>      &verification,
                     const std::string            &file_name,
-                    const LoadFactors             factors = 1.);
+                    const LoadFactors             factors = 1.,
+                    const std::vector<CellField> &more    = {});
 } // namespace Debond
 
 #endif

@@ -3,10 +3,12 @@
 #define debond_solve_adaptive_loop_h
 
 #include <debond/check/error_estimate.h>
+#include <debond/solve/certificate.h>
 #include <debond/solve/solve.h>
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +23,8 @@ namespace Debond
     unsigned int iterations;
     double       functional;      ///< J
     double       estimated_error; ///< ErrorEstimate::relative()
-    double       seconds;         ///< wall time of mesh, assembly and solve
+    double       gap; ///< Certificate::width(), 0 without Certificate/Target
+    double       seconds; ///< wall time of mesh, assembly and solve
   };
 
 
@@ -29,6 +32,9 @@ namespace Debond
   struct AdaptiveResult
   {
     SolveResult solve; ///< on the last mesh
+
+    /// Of the last mesh, with Certificate/Target.
+    std::optional<Certificate> certificate;
 
     /// What kept the loop from its target; empty if nothing did.
     std::string shortfall;
@@ -41,8 +47,9 @@ namespace Debond
   make_first_scene(const Parameters &parameters, const MatrixStorage storage);
 
   /// Solves the scene of make_first_scene(), and again and again on a mesh that
-  /// is refined where the estimate is large, from the state before; with the
-  /// search that the scene wants on each. @p scene becomes that of the result,
+  /// is refined where the estimate is large, or with Certificate/Target the
+  /// parts of the gap, from the state before; with the search that the scene
+  /// wants on each. @p scene becomes that of the result,
   /// the last mesh on which there is one. @p report gets each level when it is
   /// done.
   template <int dim>

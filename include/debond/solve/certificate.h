@@ -36,7 +36,7 @@ namespace Debond
 
   /**
    * An interval for the minimum of the continuous problem, in the body of the
-   * mesh: `upper` is J of the P1 displacement, with j_1 integrated exactly,
+   * mesh: `upper` is J of the displacement, with j_1 integrated exactly,
    * `lower` comes from equilibrated stresses (doc/reference/certificate.md).
    */
   struct Certificate
@@ -55,9 +55,18 @@ namespace Debond
     ProofStatus  proof_status = ProofStatus::proved;
     unsigned int proof_nodes  = 0;
 
-    /// upper - lower of each active cell, with the contact sides above it,
-    /// where the bonds' branches are fixed; empty otherwise.
+    /// What each of the two numbers has as a reserve for rounding.
+    double reserve = 0.;
+
+    /// Of each active cell with the contact sides below it, in their order,
+    /// unless the stresses are of another mesh: the parts of upper - lower -
+    /// 2 reserve of the bonds' branches as they are, none of them below zero;
+    /// if branches may change, with what the bound for that loses at the sides.
     std::vector<double> gaps;
+
+    /// Where there are gaps: the means of the equilibrated stress of the bonds'
+    /// branches as they are, in each active cell.
+    std::vector<dealii::SymmetricTensor<2, 2>> stresses;
 
     /// Of the contact boundary, of all displacements with J at most `upper`;
     /// empty unless the bound is for bonds that may break anywhere.
@@ -79,9 +88,7 @@ namespace Debond
   public:
     /// Throws EquilibriumError if there is no certificate for the scene: with
     /// gaps, prescribed displacements, bonds that vary, contact boundaries
-    /// whose corners are rounded by a mean normal or, for the least J with
-    /// bonds that break, cells at the contact boundary that are not crossed
-    /// rectangles.
+    /// whose corners are rounded by a mean normal.
     Certifier(const CertificateKind                  kind,
               const std::shared_ptr<const Scene<2>> &scene);
 
@@ -100,9 +107,8 @@ namespace Debond
 
   private:
     double
-    elastic_functional(
-      const Scene<2>                          &solved,
-      const std::vector<dealii::Tensor<1, 2>> &displacements) const;
+    elastic_functional(const Scene<2>                      &solved,
+                       const std::vector<CellDisplacement> &displacement) const;
 
     const std::shared_ptr<const Scene<2>> scene;
     const CertifiedMinimum                minimum;

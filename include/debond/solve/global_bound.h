@@ -45,12 +45,15 @@ namespace Debond
     unsigned int nodes  = 0; ///< of all
 
     std::vector<CertifiedSide> sides;
+
+    /// D of theorem 1 for the last bound, of the sides.
+    std::vector<double> shifts;
   };
 
 
 
-  /// trace_constant() of the contact sides. Throws EquilibriumError if there is
-  /// a cell at the contact boundary that is no crossed rectangle.
+  /// trace_constant() of the rectangles and triangles above the contact sides;
+  /// in a crossed parallelogram it is that of the triangle above the side.
   std::vector<double>
   side_constants(const EquilibriumProblem &equilibrium,
                  const ByRegion<Material> &materials,
