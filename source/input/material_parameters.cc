@@ -25,8 +25,9 @@ namespace Debond
         }
       catch (const std::invalid_argument &error)
         {
-          table.add_error("Material/Poisson ratio" + region,
-                          error.what(),
+          const std::string entry = "Material/Poisson ratio" + region;
+          table.add_error(entry,
+                          entry + ": " + error.what(),
                           {"Dimension",
                            "Material/Young modulus",
                            "Material/Hypothesis"});
@@ -132,12 +133,8 @@ namespace Debond
     check("Material/Poisson ratio", materials.poisson_ratios);
     check("Material/Thermal expansion", materials.thermal_expansions);
     for (const auto &[region, material] : materials.of_regions())
-      if (regions.count(region) > 0)
-        check_numbers(dimension,
-                      material,
-                      materials.poisson_ratios.count(region) > 0 ?
-                        ' ' + region :
-                        "",
-                      table);
+      if (regions.count(region) > 0 &&
+          materials.poisson_ratios.count(region) > 0)
+        check_numbers(dimension, material, ' ' + region, table);
   }
 } // namespace Debond

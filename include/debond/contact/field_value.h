@@ -46,7 +46,11 @@ namespace Debond
         // muParser's functions throw outside of their domains.
       }
     if (!std::isfinite(value))
-      throw std::invalid_argument("it is not finite at " + point_text(point));
+      throw std::invalid_argument(std::string("it is not finite, ") +
+                                  (std::isnan(value) ? "nan" :
+                                   value > 0.        ? "inf" :
+                                                       "-inf") +
+                                  ", at " + point_text(point));
     return value;
   }
 
