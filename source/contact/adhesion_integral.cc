@@ -61,16 +61,20 @@ namespace Debond
       sum.stiffness += measure * bonds.energy / (bonds.stretch * bonds.stretch);
       sum.energy += measure * bonds.energy;
     };
+    const auto at = [this](const auto               &face,
+                           const dealii::Point<dim> &position) {
+      return quadrature.depends_on_trace() ? bonds_of(face, {}) :
+                                             field->at(position, face.id);
+    };
     for (const auto &face : boundary.faces)
       for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
         if (const unsigned int node = face.node(k);
             node != dealii::numbers::invalid_unsigned_int)
-          add(field->at(boundary.nodes[node].position, face.id),
+          add(at(face, boundary.nodes[node].position),
               face.measure,
               nodes[node]);
         else if (!held.empty())
-          add(field->at(boundary.held_vertices[face.held_at(k)].position,
-                        face.id),
+          add(at(face, boundary.held_vertices[face.held_at(k)].position),
               face.measure,
               held[face.held_at(k)]);
 
@@ -370,9 +374,7 @@ namespace Debond
       return quadrature.points_of(trace);
 
     // The kinks are those of the face's bonds.
-    std::array<double, dim> centre;
-    centre.fill(1. / dim);
-    const double stretch  = bonds_of(face, centre).stretch;
+    const double stretch  = bonds_of(face, {}).stretch;
     Trace        relative = trace;
     for (double &coefficient : relative)
       coefficient /= stretch;
@@ -500,9 +502,12 @@ namespace Debond
   {
     if (field == nullptr)
       return {};
+    // Where pieces between kinks are integrated exactly bonds are constant on
+    // each face.
     dealii::Point<dim> position;
     for (unsigned int k = 0; k < dim; ++k)
-      position += barycentric[k] * face.vertices[k];
+      position += (quadrature.depends_on_trace() ? 1. / dim : barycentric[k]) *
+                  face.vertices[k];
     return field->at(position, face.id);
   }
 

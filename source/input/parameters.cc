@@ -48,7 +48,7 @@ namespace Debond
         p.quadrature_name,
         parsed_by("nodal, midpoint, gauss N with N from 1 to 99, or exact",
                   ContactQuadratureParameters::parse),
-        "The quadrature of the adhesion energy on each face: at the vertices, at the midpoint, Gauss' rule with N points, at most 99 (in 3D for each direction, at most 7), or exact for the piecewise polynomial displacement, split at the kinks of the law",
+        "The quadrature of the adhesion energy on each face: at the vertices, at the midpoint, Gauss' rule with N points, at most 99 (in 3D for each direction, at most 7), or exact for the piecewise polynomial displacement, split at the kinks of the law; bonds that vary have on each face the stiffness and the threshold of its centre",
         "none",
         [&p](const std::string &text) {
           p.quadrature_name = text;
@@ -137,15 +137,6 @@ namespace Debond
 
   namespace
   {
-    bool
-    is_number(const std::string &text)
-    {
-      double unused;
-      return read_number(text, unused);
-    }
-
-
-
     void
     check_boundaries(const Parameters &p, ParameterTable &table)
     {
@@ -208,10 +199,7 @@ namespace Debond
     {
       const std::string stiffness = "Contact law/Bond stiffness";
       const std::string threshold = "Contact law/Bond threshold";
-      bool              is_uniform =
-        (p.law.stiffness.empty() || is_number(p.law.stiffness)) &&
-        p.law.threshold.empty();
-      const auto check = [&](const std::string &path,
+      const auto        check     = [&](const std::string &path,
                              const std::string &expression) {
         check_expression(
           path, expression, p.dimension, 1, p.loads.constants, table);
@@ -224,15 +212,7 @@ namespace Debond
             check(stiffness + " " + name, bonds.stiffness);
           if (table.is_set(threshold + " " + name))
             check(threshold + " " + name, bonds.threshold);
-          is_uniform = is_uniform && is_number(bonds.stiffness) &&
-                       is_number(bonds.threshold);
         }
-      if (!is_uniform &&
-          p.quadrature.rule == ContactQuadratureParameters::Rule::exact)
-        table.reject("Contact law/Quadrature",
-                     "is for bonds that are the same on the whole of each "
-                     "contact boundary",
-                     {stiffness, threshold});
       if (!p.load_path.bonds_heal &&
           p.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
         table.reject("Load path/Bonds heal",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Two faces that meet in a node, each with bonds of its own, against the sum of
-// the faces' energies.
+// the faces' energies. Bonds that vary with the exact rule, against sampling of
+// what it stands for and against the bonds themselves.
 
 #include <debond/contact/adhesion_integral.h>
 #include <debond/contact/laws/winkler.h>
@@ -63,6 +64,193 @@ namespace
   j(const double a, const double M, const double s)
   {
     return 0.5 * a * std::min(s * s, M * M);
+  }
+
+
+
+  /// Bonds that vary with the place, relative to a_1 and M_1.
+  template <int dim>
+  double
+  stiffness_at(const dealii::Point<dim> &point)
+  {
+    return 2. + std::sin(3. * point[0]) + (dim == 3 ? point[dim - 1] : 0.);
+  }
+
+  template <int dim>
+  double
+  threshold_at(const dealii::Point<dim> &point)
+  {
+    return 0.2 + 0.1 * point[0] * point[0];
+  }
+
+
+
+  template <int dim>
+  BondField<dim>
+  varying_field()
+  {
+    const auto function = [](double (*f)(const dealii::Point<dim> &)) {
+      return std::make_shared<
+        const dealii::ScalarFunctionFromFunctionObject<dim>>(f);
+    };
+    return {a_1,
+            M_1,
+            {"", function(&stiffness_at<dim>), function(&threshold_at<dim>)},
+            {}};
+  }
+
+
+
+  /// n faces from 0 to 1, or 2 n^2 triangles of a unit square.
+  template <int dim>
+  ContactBoundary<dim>
+  uniform_boundary(const unsigned int n)
+  {
+    ContactBoundary<dim> boundary;
+    const unsigned int   rows = dim == 2 ? 1 : n + 1;
+    for (unsigned int j = 0; j < rows; ++j)
+      for (unsigned int i = 0; i <= n; ++i)
+        {
+          typename ContactBoundary<dim>::Node node = {};
+          node.position[0]                         = double(i) / n;
+          if (dim == 3)
+            node.position[dim - 1] = double(j) / n;
+          boundary.nodes.push_back(node);
+        }
+    const auto add = [&](const std::array<unsigned int, dim> &nodes) {
+      typename ContactBoundary<dim>::Face face = {};
+      face.nodes                               = nodes;
+      for (unsigned int k = 0; k < dim; ++k)
+        face.vertices[k] = boundary.nodes[nodes[k]].position;
+      face.measure = dim == 2 ? 1. / n : 0.5 / (n * n);
+      boundary.faces.push_back(face);
+    };
+    for (unsigned int i = 0; i < n; ++i)
+      if constexpr (dim == 2)
+        add({{i, i + 1}});
+      else
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            const unsigned int corner = j * (n + 1) + i, above = corner + n + 1;
+            add({{corner, corner + 1, above + 1}});
+            add({{corner, above, above + 1}});
+          }
+    return boundary;
+  }
+
+
+
+  template <int dim>
+  dealii::Vector<double>
+  varying_trace(const ContactBoundary<dim> &boundary)
+  {
+    dealii::Vector<double> s(static_cast<unsigned int>(boundary.nodes.size()));
+    for (unsigned int i = 0; i < s.size(); ++i)
+      {
+        const auto &x = boundary.nodes[i].position;
+        s(i)          = -0.4 * x[0] - (dim == 3 ? 0.1 * x[dim - 1] : 0.);
+      }
+    return s;
+  }
+
+
+
+  /// The energy by midpoints of n^(dim - 1) pieces of each face.
+  template <int dim>
+  double
+  sampled(const ContactBoundary<dim>   &boundary,
+          const dealii::Vector<double> &s,
+          const unsigned int            n,
+          const bool                    by_face)
+  {
+    double sum = 0.;
+    for (const auto &face : boundary.faces)
+      {
+        dealii::Point<dim> centre;
+        for (const auto &vertex : face.vertices)
+          centre += vertex / dim;
+        const auto add = [&](const std::array<double, 3> &shape,
+                             const double                 weight) {
+          double             trace = 0.;
+          dealii::Point<dim> point;
+          for (unsigned int k = 0; k < dim; ++k)
+            {
+              trace += shape[k] * s(face.nodes[k]);
+              point += shape[k] * face.vertices[k];
+            }
+          if (by_face)
+            point = centre;
+          sum += face.measure * weight *
+                 j(stiffness_at(point), threshold_at(point), trace);
+        };
+        for (unsigned int i = 0; i < n; ++i)
+          if constexpr (dim == 2)
+            add({{(i + 0.5) / n, 1. - (i + 0.5) / n, 0.}}, 1. / n);
+          else
+            for (unsigned int l = 0; i + l < n; ++l)
+              {
+                const double weight = 1. / (n * n), third = 1. / 3.;
+                const auto   at = [&](const double p, const double q) {
+                  add({{p / n, q / n, 1. - (p + q) / n}}, weight);
+                };
+                at(i + third, l + third);
+                if (i + l + 1 < n)
+                  at(i + 2. * third, l + 2. * third);
+              }
+      }
+    return sum;
+  }
+
+
+
+  template <int dim>
+  void
+  test_varying_bonds()
+  {
+    std::cout << "Bonds that vary, " << dim << "D\n";
+    const AdhesiveLaw            law(winkler_law(a_1, M_1).branches);
+    const BondField<dim>         field = varying_field<dim>();
+    const ContactQuadrature<dim> exact(
+      ContactQuadratureParameters::parse("exact"), law.kinks());
+    double last_error = 0.;
+    bool   falls      = true;
+    for (const unsigned int n : {4u, 8u, 16u})
+      {
+        const ContactBoundary<dim>   boundary = uniform_boundary<dim>(n);
+        const AdhesionIntegral<dim>  phi(boundary, law, exact, &field);
+        const dealii::Vector<double> s     = varying_trace(boundary);
+        const double                 value = phi.value(s);
+        // The trace is linear, and the sum that of the bonds themselves.
+        const double error = std::abs(
+          value - sampled(boundary, s, (dim == 2 ? 32000 : 512) / n, false));
+        falls      = falls && (n == 4 || error < last_error / 3.);
+        last_error = error;
+        if (n > 4)
+          continue;
+        check("bonds of the centres beside sampling",
+              std::abs(value /
+                         sampled(boundary, s, dim == 2 ? 20000 : 400, true) -
+                       1.),
+              dim == 2 ? 1e-8 : 1e-5);
+        dealii::Vector<double> xi(s.size());
+        phi.subgradient(s, xi);
+        double difference = 0., largest = 0.;
+        for (unsigned int i = 0; i < s.size(); ++i)
+          {
+            constexpr double       step  = 1e-6;
+            dealii::Vector<double> above = s, below = s;
+            above(i) += step;
+            below(i) -= step;
+            difference =
+              std::max(difference,
+                       std::abs((phi.value(above) - phi.value(below)) /
+                                  (2. * step) -
+                                xi(i)));
+            largest = std::max(largest, std::abs(xi(i)));
+          }
+        check("derivative beside differences", difference / largest, 1e-6);
+      }
+    check("the error falls to a third with each halving at least", falls);
   }
 } // namespace
 
@@ -157,4 +345,6 @@ main(int argc, char **)
       }
     check("its derivative beside differences", error, 1e-8);
   }
+  test_varying_bonds<2>();
+  test_varying_bonds<3>();
 }

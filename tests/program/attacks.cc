@@ -257,7 +257,7 @@ namespace
         own.gap = gap;
         attack.set("Contact law/Initial gap", expression);
       }
-    if (own.a == 0. || own.quadrature == "exact" || random.chance(0.4))
+    if (own.a == 0. || random.chance(0.4))
       return;
     const double a = own.a, M = own.M;
     const auto [stiffness, stiffness_text] = random_field(
@@ -280,7 +280,7 @@ namespace
   add_own_bonds(Generator &random, Attack<dim> &attack)
   {
     auto      &own   = attack.own;
-    const bool plain = attack.rotation != 0. || own.quadrature == "exact";
+    const bool plain = attack.rotation != 0.;
     // A number or, on an unturned box, a field.
     const auto draw = [&](const double first, const double last) {
       if (!plain && random.chance(0.4))

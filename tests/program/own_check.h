@@ -847,11 +847,14 @@ namespace OwnCheck
                       const std::array<Real, dim> &t,
                       const Integrand             &integrand) const
     {
-      // The same all over a side.
-      const Point origin = points[face.vertices[0]];
-      const Real  a      = scene.a_at(face.side, origin),
-                 M       = scene.M_at(face.side, origin);
-      using Barycentric  = std::array<Real, dim>;
+      // The same all over a face.
+      Point middle_of_face = {};
+      for (unsigned int v = 0; v < dim; ++v)
+        for (unsigned int d = 0; d < dim; ++d)
+          middle_of_face[d] += points[face.vertices[v]][d] / dim;
+      const Real a      = scene.a_at(face.side, middle_of_face),
+                 M      = scene.M_at(face.side, middle_of_face);
+      using Barycentric = std::array<Real, dim>;
       for (const int side : {1, -1})
         {
           std::vector<Barycentric> polygon;
