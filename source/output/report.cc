@@ -269,8 +269,10 @@ namespace Debond
       record.add("/stop_criterion", result.criterion);
       record.add("/largest_qp_residual", result.largest_qp_residual);
       record.add("/linear_iterations", result.linear_iterations);
-      if (result.condition_estimate)
-        record.add("/condition_estimate", *result.condition_estimate);
+      record.add("/condition_estimate",
+                 result.condition_estimate ?
+                   Record::Json(*result.condition_estimate) :
+                   Record::Json());
       if (!record.has_details())
         return;
       record.line("iterations",

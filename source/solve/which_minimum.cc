@@ -27,7 +27,8 @@ namespace Debond
 
 
 
-    /// Where a proof is cheap: automatic looks there before it goes on.
+    /// Where a proof is cheap: automatic looks there before it goes on, with
+    /// the proof first.
     constexpr unsigned int coarse_look = 50;
 
 
@@ -97,12 +98,13 @@ namespace Debond
 
     GuidedSearchParameters
     guided_search_parameters(const SolverParameters &parameters,
-                             const double            energy)
+                             const double            energy,
+                             const bool              proof_first)
     {
       GuidedSearchParameters guided;
-      guided.tolerance     = parameters.proof.tolerance * energy;
-      guided.maximum_bytes = memory_left(parameters.memory_limit);
-      guided.n_threads     = parameters.proof.n_threads;
+      guided.tolerance   = parameters.proof.tolerance * energy;
+      guided.n_threads   = parameters.proof.n_threads;
+      guided.proof_first = proof_first;
       return guided;
     }
 
@@ -207,10 +209,13 @@ namespace Debond
                         separable,
                         graph,
                         method,
-                        guided_search_parameters(parameters, energy),
+                        guided_search_parameters(parameters,
+                                                 energy,
+                                                 /*proof_first=*/false),
                         s,
                         may_go_on,
-                        look_at_coarser);
+                        look_at_coarser,
+                        make_guess());
         const bool rests_on_coarse = result.closed_nodes > 0;
         add_search(guided.search, s.size(), result);
         if (guided.proof && !rests_on_coarse)
@@ -253,12 +258,23 @@ namespace Debond
                           method,
                           moves,
                           s,
-                          may_go_on);
+                          may_go_on,
+                          make_guess());
         add_search(search, result.search_nodes, result);
         return result.search_improvements > before;
       }
 
     private:
+      /// Where starts from afar are in contact.
+      const ActiveSetGuess &
+      make_guess()
+      {
+        if (guess.empty())
+          guess = ActiveSetGuess(condensed.schur_complement(),
+                                 coarsen(boundary, coarse_look));
+        return guess;
+      }
+
       bool
       is_certified()
       {
@@ -312,7 +328,10 @@ namespace Debond
                            false,
                            coarse_neighbours(prolongations.back()),
                            method,
-                           guided_search_parameters(parameters, energy),
+                           guided_search_parameters(parameters,
+                                                    energy,
+                                                    coarse_s.size() <=
+                                                      coarse_look),
                            coarse_s,
                            may_go_on);
                          add_search(guided.search, coarse_s.size(), result);
@@ -359,6 +378,7 @@ namespace Debond
       const SeparableBranches      lumped;
       const double                 energy; ///< of bonds
       const bool                   separable;
+      ActiveSetGuess               guess;
     };
 
 

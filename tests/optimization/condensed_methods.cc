@@ -8,6 +8,7 @@
 #include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/bundle/metric_direction.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
+#include <debond/optimization/majorise/active_set_guess.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
@@ -460,6 +461,76 @@ namespace
 
 
 
+  /// The square root of the second differences on 255 nodes, which resembles
+  /// the elastic half plane, with bonds on a part of them and forces that
+  /// change their sign: from a guess by coarser spaces one or two systems do
+  /// where from no contact it takes more.
+  void
+  test_active_set_guess()
+  {
+    const unsigned int n           = 255;
+    Eigen::MatrixXd    differences = Eigen::MatrixXd::Zero(n, n);
+    differences.diagonal().setConstant(2.);
+    differences.diagonal<1>().setConstant(-1.);
+    differences.diagonal<-1>().setConstant(-1.);
+    const Eigen::MatrixXd root =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(differences)
+        .operatorSqrt();
+    dealii::FullMatrix<double> S(n, n);
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = 0; j < n; ++j)
+        S(i, j) = 0.5 * (root(i, j) + root(j, i));
+
+    std::vector<Eigen::SparseMatrix<double>> prolongations;
+    for (unsigned int fine = n; fine > 20; fine /= 2)
+      {
+        Eigen::SparseMatrix<double> P(fine, fine / 2);
+        for (unsigned int j = 0; j < fine / 2; ++j)
+          {
+            P.insert(2 * j, j)     = 0.5;
+            P.insert(2 * j + 1, j) = 1.;
+            P.insert(2 * j + 2, j) = 0.5;
+          }
+        prolongations.push_back(P);
+      }
+    const ActiveSetGuess guess(S, prolongations);
+
+    bool         same = true;
+    unsigned int most = 0, fewest_without = n;
+    for (unsigned int waves = 1; waves <= 4; ++waves)
+      for (const double stiffness : {0., 1e-2, 1.})
+        {
+          Eigen::SparseMatrix<double> E(n, n);
+          Eigen::VectorXd             r(n);
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              E.insert(i, i) = i < n / 3 ? stiffness : 0.;
+              r(i)           = std::sin(6.3 * waves * (i + 0.3) / n) - 0.2;
+            }
+          Eigen::MatrixXd M = eigen_view(S);
+          M += E;
+          const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
+          ActiveSet             active(n, 0);
+          const BoundQPResult   without = solve_bound_qp(M, r, zero, active);
+          ActiveSet             guessed = guess.active_set(M, E, r);
+          const BoundQPResult   with    = solve_bound_qp(M, r, zero, guessed);
+          same = same && with.status == SolverStatus::success &&
+                 (with.x - without.x).norm() <= 1e-12 * without.x.norm();
+          most           = std::max(most, with.steps);
+          fewest_without = std::min(fewest_without, without.steps);
+        }
+    std::cout << "active sets guessed by coarser spaces: the same minima: "
+              << verdict(same)
+              << ", in at most two systems: " << verdict(most <= 2)
+              << ", in place of at least three: "
+              << verdict(fewest_without >= 3) << '\n';
+    if (print_figures)
+      std::cout << "  at most " << most << ", without a guess at least "
+                << fewest_without << '\n';
+  }
+
+
+
   /// Only a matrix that is not symmetric tells rows from columns.
   void
   test_view()
@@ -490,4 +561,5 @@ main(int argc, char *[])
   test_beam_qp();
   test_minimisers(engine);
   test_coarse_start(engine);
+  test_active_set_guess();
 }

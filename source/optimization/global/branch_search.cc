@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 
@@ -12,6 +13,11 @@ namespace Debond
     /// Of majorise-minimise, where the method's own was not reached: what
     /// rounding leaves of a body of 100 x 1 is about 1e-8.
     constexpr double second_tolerance = 1e-6;
+
+
+
+    /// Relative differences of majorants that are the same.
+    constexpr double majorant_noise = 1e-12;
 
 
 
@@ -203,6 +209,16 @@ namespace Debond
 
 
 
+    /// Of a minimum: 1/2 s'(S + E)s - r's + const, of which it is the minimum.
+    struct KnownMajorant
+    {
+      Eigen::SparseMatrix<double> E;
+      Eigen::VectorXd             r;
+      double                      functional;
+    };
+
+
+
     class StateSearch
     {
     public:
@@ -212,6 +228,7 @@ namespace Debond
                   const SeparableBranches          &lumped,
                   const MajoriseMinimise           &method,
                   const BranchSearchParameters     &parameters,
+                  const ActiveSetGuess             &guess,
                   dealii::Vector<double>           &s)
         : S(S)
         , g(g)
@@ -219,6 +236,7 @@ namespace Debond
         , lumped(lumped)
         , method(method)
         , parameters(parameters)
+        , guess(guess)
         , s(s)
       {
         const auto state  = CondensedProblem(S, g, phi, s).evaluate();
@@ -226,6 +244,8 @@ namespace Debond
         result.functional = state.functional;
         rounding          = state.functional_rounding;
         tried.insert(state_of(s));
+        if (method.has_converged(state))
+          known.push_back(majorant(s, state.functional));
       }
 
       BranchState
@@ -264,14 +284,26 @@ namespace Debond
           return false;
 
         ++result.trials[static_cast<unsigned int>(trial.move)];
-        const BranchState            start = state_of(next);
-        CondensedProblem             problem(S, g, phi, next);
-        const MajoriseMinimiseResult minimum = minimise_trial(method, problem);
+        const BranchState start = state_of(next);
+        CondensedProblem  problem(S, g, phi, next);
+        if (trial.move != BranchMove::shift)
+          problem.guess_by(guess);
+        bool                         ends_at_known = false;
+        const MajoriseMinimiseResult minimum =
+          minimise_trial(method,
+                         problem,
+                         [&](const MajoriseMinimiseIteration &) {
+                           ends_at_known = leads_to_known(next, trial.move);
+                           return !ends_at_known;
+                         });
+        if (ends_at_known)
+          return false;
         if (minimum.status != SolverStatus::success)
           {
             ++result.failures;
             return false;
           }
+        known.push_back(majorant(next, minimum.functional));
         // What led to another known state leads nowhere new.
         const BranchState end    = state_of(next);
         const bool        is_new = end == start || tried.insert(end).second;
@@ -311,17 +343,47 @@ namespace Debond
       BranchSearchResult result;
 
     private:
+      KnownMajorant
+      majorant(const dealii::Vector<double> &point, const double value) const
+      {
+        dealii::Vector<double> xi(point.size());
+        phi.subgradient(point, xi);
+        const Eigen::SparseMatrix<double> E = phi.curvature(point);
+        return {E,
+                eigen_view(g) - eigen_view(xi) + E * eigen_view(point),
+                value};
+      }
+
+      /// Whether the descent from @p point ends at a known minimum that is no
+      /// better than where moves start.
+      bool
+      leads_to_known(const dealii::Vector<double> &point,
+                     const BranchMove              move) const
+      {
+        const KnownMajorant own = majorant(point, functional);
+        return std::any_of(
+          known.begin(), known.end(), [&](const KnownMajorant &other) {
+            return (move == BranchMove::start ||
+                    other.functional >= functional - rounding) &&
+                   (own.r - other.r).lpNorm<Eigen::Infinity>() <=
+                     majorant_noise * own.r.lpNorm<Eigen::Infinity>() &&
+                   (own.E - other.E).norm() <= majorant_noise * own.E.norm();
+          });
+      }
+
       const dealii::FullMatrix<double> &S;
       const dealii::Vector<double>     &g;
       const PiecewiseQuadratic         &phi;
       const SeparableBranches          &lumped;
       const MajoriseMinimise           &method;
       const BranchSearchParameters     &parameters;
+      const ActiveSetGuess             &guess;
       dealii::Vector<double>           &s;
       double                            given_functional;
       double                            functional; ///< where moves start
       double                            rounding;
       std::set<BranchState>             tried;
+      std::vector<KnownMajorant>        known;
     };
   } // namespace
 
@@ -352,10 +414,11 @@ namespace Debond
                   const MajoriseMinimise           &method,
                   const BranchSearchParameters     &parameters,
                   dealii::Vector<double>           &s,
-                  const std::function<bool()>      &monitor)
+                  const std::function<bool()>      &monitor,
+                  const ActiveSetGuess             &guess)
   {
     const unsigned int n_pieces = number_of_pieces(lumped);
-    StateSearch        search(S, g, phi, lumped, method, parameters, s);
+    StateSearch        search(S, g, phi, lumped, method, parameters, guess, s);
     const Moves        moves(parameters, neighbours);
     const auto         descend = [&](dealii::Vector<double> point) {
       bool fell = true;

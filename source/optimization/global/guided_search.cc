@@ -28,7 +28,8 @@ namespace Debond
                    const NeighbourGraph             &neighbours,
                    const MajoriseMinimise           &method,
                    const GuidedSearchParameters     &parameters,
-                   const std::function<bool()>      &monitor)
+                   const std::function<bool()>      &monitor,
+                   const ActiveSetGuess             &guess)
         : S(S)
         , g(g)
         , phi(phi)
@@ -38,25 +39,32 @@ namespace Debond
         , method(method)
         , parameters(parameters)
         , monitor(monitor)
+        , guess(guess)
       {}
 
       GuidedSearchResult
       run(const std::function<bool(bool, dealii::Vector<double> &)> &may_end,
           dealii::Vector<double>                                    &s)
       {
-        if (is_separable && is_proved(s, 0))
+        const bool has_tried = is_separable || parameters.proof_first;
+        const dealii::Vector<double> given = s;
+        if (has_tried && (is_proved(s, parameters.proof_first ? 1 : 0) ||
+                          (s != given && is_proved(s, 0))))
           return result;
         BranchSearchParameters quick;
         quick.maximum_shift = 1;
         quick.flips         = false;
         quick.splits        = false;
         search(quick, s);
-        if (!monitor() || is_proved(s, 0))
-          return result;
         bool found = false;
         for (const unsigned int improvements : result.search.improvements)
           found = found || improvements > 0;
-        if ((may_end && may_end(found, s)) || !monitor() || is_proved(s, 1))
+        // The same point has the same bounds.
+        const bool is_same = has_tried && !found;
+        if (!monitor() || (!is_same && is_proved(s, 0)))
+          return result;
+        if ((may_end && may_end(found, s)) || !monitor() ||
+            (!(is_same && parameters.proof_first) && is_proved(s, 1)))
           return result;
         search({}, s);
         const double n = s.size();
@@ -72,7 +80,7 @@ namespace Debond
       search(const BranchSearchParameters &moves, dealii::Vector<double> &s)
       {
         add(search_branches(
-              S, g, phi, lumped, neighbours, method, moves, s, monitor),
+              S, g, phi, lumped, neighbours, method, moves, s, monitor, guess),
             result.search);
       }
 
@@ -86,7 +94,6 @@ namespace Debond
         BranchAndBoundParameters limits;
         limits.tolerance                 = parameters.tolerance;
         limits.maximum_nodes             = maximum_nodes;
-        limits.maximum_bytes             = parameters.maximum_bytes;
         limits.n_threads                 = parameters.n_threads;
         const BranchAndBoundResult proof = BranchAndBound(limits).minimize(
           S, g, lumped, s, [this](const ProofProgress &) { return monitor(); });
@@ -116,6 +123,7 @@ namespace Debond
       const MajoriseMinimise           &method;
       const GuidedSearchParameters     &parameters;
       const std::function<bool()>      &monitor;
+      const ActiveSetGuess             &guess;
       GuidedSearchResult                result;
     };
   } // namespace
@@ -167,7 +175,8 @@ namespace Debond
     const GuidedSearchParameters                              &parameters,
     dealii::Vector<double>                                    &s,
     const std::function<bool()>                               &monitor,
-    const std::function<bool(bool, dealii::Vector<double> &)> &may_end)
+    const std::function<bool(bool, dealii::Vector<double> &)> &may_end,
+    const ActiveSetGuess                                      &guess)
   {
     return GuidedSearch(S,
                         g,
@@ -177,7 +186,8 @@ namespace Debond
                         neighbours,
                         method,
                         parameters,
-                        monitor)
+                        monitor,
+                        guess)
       .run(may_end, s);
   }
 } // namespace Debond

@@ -6,6 +6,7 @@
 #include <debond/optimization/majorise/bound_qp.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace Debond
 {
@@ -65,8 +66,9 @@ namespace Debond
         return;
       dealii::LAPACKFullMatrix<double> M_free(
         static_cast<unsigned int>(free.size()));
+      // LAPACK reads the lower triangle.
       for (unsigned int l = 0; l < free.size(); ++l)
-        for (unsigned int k = 0; k < free.size(); ++k)
+        for (unsigned int k = l; k < free.size(); ++k)
           M_free(k, l) = M(free[k], free[l]);
       M_free.set_property(dealii::LAPACKSupport::symmetric);
       M_free.compute_cholesky_factorization();
@@ -149,9 +151,12 @@ namespace Debond
       double
       force_noise(const Eigen::VectorXd &x) const
       {
+        Eigen::VectorXd terms = Eigen::VectorXd::Zero(n);
+        for (unsigned int j = 0; j < n; ++j)
+          if (x(j) != 0.)
+            terms += M.col(j).cwiseAbs() * std::abs(x(j));
         return active_set_noise *
-               (r.lpNorm<Eigen::Infinity>() +
-                (M.cwiseAbs() * x.cwiseAbs()).lpNorm<Eigen::Infinity>());
+               (r.lpNorm<Eigen::Infinity>() + terms.lpNorm<Eigen::Infinity>());
       }
 
       static double

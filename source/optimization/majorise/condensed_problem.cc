@@ -92,6 +92,14 @@ namespace Debond
 
 
 
+  void
+  CondensedProblem::guess_by(const ActiveSetGuess &other)
+  {
+    guess = &other;
+  }
+
+
+
   MajorantProblem::State
   CondensedProblem::evaluate()
   {
@@ -165,7 +173,7 @@ namespace Debond
           return false;
       }
     majorised = true;
-    M         = eigen_view(S);
+    M         = eigen_view(S).transpose(); // of a symmetric matrix
     M += E;
     return true;
   }
@@ -177,6 +185,8 @@ namespace Debond
   {
     if (const Eigen::MatrixXd Z = motions_without_stiffness(); Z.cols() > 0)
       return minimise_along(Z);
+    if (guess != nullptr && !guess->empty())
+      active = guess->active_set(M, E, r);
     const BoundQPResult qp =
       solve_bound_qp(M, r, Eigen::VectorXd::Zero(s.size()), active);
     std::copy(qp.x.begin(), qp.x.end(), s.begin());

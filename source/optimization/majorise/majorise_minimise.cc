@@ -36,6 +36,15 @@ namespace Debond
 
 
 
+  bool
+  MajoriseMinimise::has_converged(const MajorantProblem::State &state) const
+  {
+    return state.residual <=
+           std::max(parameters.tolerance, state.residual_rounding);
+  }
+
+
+
   MajoriseMinimiseResult
   MajoriseMinimise::minimize(MajorantProblem &problem,
                              const Monitor   &monitor) const
@@ -55,9 +64,7 @@ namespace Debond
               "not a finite number. Check the data of the scene.";
             return result;
           }
-        const double tolerance =
-          std::max(parameters.tolerance, state.residual_rounding);
-        if (state.residual <= tolerance)
+        if (has_converged(state))
           {
             result.status = SolverStatus::success;
             return result;
@@ -75,6 +82,8 @@ namespace Debond
         iteration.iteration =
           static_cast<unsigned int>(result.history.size()) + 1;
 
+        const double tolerance =
+          std::max(parameters.tolerance, state.residual_rounding);
         // As long as the majorant changes it needs no exact minimum.
         double     inner_tolerance = 0.5 * tolerance;
         const bool new_majorant    = problem.majorise();
@@ -120,12 +129,9 @@ namespace Debond
         while (state.functional > upper + state.functional_rounding &&
                inner_tolerance > 0.01 * tolerance);
         // Where the optimality conditions hold, J has no more to fall.
-        const bool has_converged =
-          state.residual <=
-          std::max(parameters.tolerance, state.residual_rounding);
+        const bool is_converged = has_converged(state);
         const bool risen =
-          state.functional > upper + state.functional_rounding &&
-          !has_converged;
+          state.functional > upper + state.functional_rounding && !is_converged;
 
         iteration.functional = result.functional = state.functional;
         iteration.residual = result.residual = state.residual;
@@ -146,7 +152,7 @@ namespace Debond
           }
         // The minimum of the same majorant once more, and no better: this is
         // what rounding leaves.
-        if (!new_majorant && !has_converged &&
+        if (!new_majorant && !is_converged &&
             state.residual > 0.5 * previous_residual)
           {
             result.status  = SolverStatus::stagnated;

@@ -5,6 +5,7 @@
 #include <deal.II/lac/full_matrix.h>
 
 #include <debond/optimization/global/separable_branches.h>
+#include <debond/optimization/majorise/active_set_guess.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
@@ -86,7 +87,9 @@ namespace Debond
    *
    * @p lumped says on which branch a node is (lumped_branches()); all its terms
    * have to have the same number of pieces. @p s has to be <= 0. The monitor
-   * returns false to end.
+   * returns false to end. What comes to the majorant of a minimum that is known
+   * is not followed further: it ends there. @p guess is for states that are far
+   * from the point that they are made from.
    */
   BranchSearchResult
   search_branches(const dealii::FullMatrix<double> &S,
@@ -97,7 +100,8 @@ namespace Debond
                   const MajoriseMinimise           &method,
                   const BranchSearchParameters     &parameters,
                   dealii::Vector<double>           &s,
-                  const std::function<bool()>      &monitor = {});
+                  const std::function<bool()>      &monitor = {},
+                  const ActiveSetGuess             &guess   = {});
 } // namespace Debond
 
 #endif

@@ -23,8 +23,11 @@ namespace Debond
   {
     double tolerance = 0.; ///< of the gap, an energy
 
-    double       maximum_bytes = 0.; ///< of the proof's open nodes
-    unsigned int n_threads     = 1;
+    unsigned int n_threads = 1;
+
+    /// Not only the certificate but the first node of branch and bound is
+    /// tried before the search, whether Phi is separable or not.
+    bool proof_first = false;
   };
 
 
@@ -52,7 +55,8 @@ namespace Debond
   /**
    * Improves a minimum of 1/2 s'S s - g's + Phi(s), s <= 0, with as much effort
    * as it takes to prove it, up to a limit: nothing if its certificate does
-   * (NodeBound::certificate), else a search that starts from rest and from all
+   * (NodeBound::certificate) or, with proof_first, the first node of branch
+   * and bound, else a search that starts from rest and from all
    * bonds broken and moves edges by one node; if the certificate of what that
    * finds is not enough, the first node of branch and bound; then the full
    * search, and branch and bound with a number of nodes that depends on n only,
@@ -63,7 +67,7 @@ namespace Debond
    * If Phi is not separable, the proof is for the lumped one and says where
    * to look: the minimum that it finds is a start for the true Phi.
    *
-   * Arguments as for search_branches().
+   * Other arguments as for search_branches().
    */
   GuidedSearchResult
   guided_search(
@@ -77,7 +81,8 @@ namespace Debond
     const GuidedSearchParameters                              &parameters,
     dealii::Vector<double>                                    &s,
     const std::function<bool()>                               &monitor,
-    const std::function<bool(bool, dealii::Vector<double> &)> &may_end = {});
+    const std::function<bool(bool, dealii::Vector<double> &)> &may_end = {},
+    const ActiveSetGuess                                      &guess   = {});
 } // namespace Debond
 
 #endif

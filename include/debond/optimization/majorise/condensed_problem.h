@@ -2,6 +2,7 @@
 #ifndef debond_optimization_majorise_condensed_problem_h
 #define debond_optimization_majorise_condensed_problem_h
 
+#include <debond/optimization/majorise/active_set_guess.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/majorise/majorant_problem.h>
 #include <debond/optimization/piecewise_quadratic.h>
@@ -32,6 +33,11 @@ namespace Debond
                      dealii::Vector<double>           &s,
                      const Eigen::MatrixXd            &free_motions = {},
                      const double                      stiffness    = 0.);
+
+    /// From now on a majorant's active set starts from this guess, of which a
+    /// reference is kept, in place of the one before.
+    void
+    guess_by(const ActiveSetGuess &guess);
 
     State
     evaluate() override;
@@ -67,6 +73,7 @@ namespace Debond
     Eigen::MatrixXd             M;
     Eigen::VectorXd             r;
     ActiveSet                   active;
+    const ActiveSetGuess       *guess = nullptr;
   };
 } // namespace Debond
 

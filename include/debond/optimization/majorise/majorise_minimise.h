@@ -71,6 +71,10 @@ namespace Debond
     MajoriseMinimiseResult
     minimize(MajorantProblem &problem, const Monitor &monitor = {}) const;
 
+    /// Whether a point in this state ends the method with success.
+    bool
+    has_converged(const MajorantProblem::State &state) const;
+
   private:
     MajoriseMinimiseParameters parameters;
   };
