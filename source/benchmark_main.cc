@@ -13,10 +13,12 @@ main(int argc, char *argv[])
 {
   using Debond::ExitCode;
   const std::string name = "debond-benchmark";
-  if (argc != 2 || argv[1][0] == '-')
+  if (argc < 3 || argv[1][0] == '-')
     {
-      std::cerr << "Usage: debond-benchmark SUITE.json\n\n"
-                   "Measures what the file lists, see prm/benchmarks/.\n";
+      std::cerr
+        << "Usage: debond-benchmark DIRECTORY STUDY.prm...\n\n"
+           "Measures the cases of the studies, see prm/benchmarks/, and "
+           "writes tables into\nthe directory.\n";
       return static_cast<int>(ExitCode::bad_input);
     }
 
@@ -24,6 +26,6 @@ main(int argc, char *argv[])
   dealii::MultithreadInfo::set_thread_limit(1);
   Debond::use_one_blas_thread_by_default();
   return static_cast<int>(Debond::report_errors(name, [&]() {
-    return Debond::run_benchmarks(argv[1]);
+    return Debond::run_benchmarks(argv[1], {argv + 2, argv + argc});
   }));
 }

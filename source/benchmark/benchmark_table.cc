@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/atomic_file.h>
+#include <debond/base/data_table.h>
 #include <debond/benchmark/benchmark_table.h>
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace Debond
 {
@@ -33,13 +33,17 @@ namespace Debond
 
 
 
-    std::string
-    number_text(const double value, const int digits)
+    Cell
+    cell_of(const BenchmarkRow &row, const std::string &name)
     {
-      std::ostringstream text;
-      text.precision(digits);
-      text << value;
-      return text.str();
+      if (!has(row, name))
+        return {};
+      const BenchmarkRow &value = row[name];
+      if (value.is_number_integer())
+        return value.get<long>();
+      if (value.is_number())
+        return value.get<double>();
+      return value_text(value);
     }
   } // namespace
 
@@ -68,10 +72,11 @@ namespace Debond
   BenchmarkColumn
   number_column(const std::string &title,
                 const std::string &name,
-                const int          digits)
+                const unsigned int digits)
   {
     return {title, [name, digits](const BenchmarkRow &row) {
-              return has(row, name) ? number_text(row[name], digits) : absent;
+              return has(row, name) ? readable_number(row[name], digits) :
+                                      absent;
             }};
   }
 
@@ -80,14 +85,14 @@ namespace Debond
   BenchmarkColumn
   spread_column(const std::string &title,
                 const std::string &name,
-                const int          digits)
+                const unsigned int digits)
   {
     return {title, [name, digits](const BenchmarkRow &row) -> std::string {
               if (!has(row, name))
                 return absent;
-              return number_text(row[name], digits) + " (" +
-                     number_text(row[name + "_min"], digits) + " to " +
-                     number_text(row[name + "_max"], digits) + ")";
+              return readable_number(row[name], digits) + " (" +
+                     readable_number(row[name + "_min"], digits) + " to " +
+                     readable_number(row[name + "_max"], digits) + ")";
             }};
   }
 
@@ -102,25 +107,17 @@ namespace Debond
         if (std::find(names.begin(), names.end(), name) == names.end())
           names.push_back(name);
 
-    write_atomically(file_name, [&](std::ostream &out) {
-      const char *separator = "";
-      for (const std::string &name : names)
-        {
-          out << separator << name;
-          separator = ",";
-        }
-      out << '\n';
-      for (const BenchmarkRow &row : rows)
-        {
-          separator = "";
-          for (const std::string &name : names)
-            {
-              out << separator << (has(row, name) ? value_text(row[name]) : "");
-              separator = ",";
-            }
-          out << '\n';
-        }
-    });
+    DataTable table;
+    for (const std::string &name : names)
+      table.add_column(name);
+    for (const BenchmarkRow &row : rows)
+      {
+        std::vector<Cell> cells;
+        for (const std::string &name : names)
+          cells.push_back(cell_of(row, name));
+        table.add_row(cells);
+      }
+    table.write_csv(file_name);
   }
 
 
@@ -131,21 +128,18 @@ namespace Debond
                  const std::vector<BenchmarkRow>    &rows,
                  const std::string                  &file_name)
   {
+    DataTable table;
+    for (const BenchmarkColumn &column : columns)
+      table.add_column(column.title);
+    for (const BenchmarkRow &row : rows)
+      {
+        std::vector<Cell> cells;
+        for (const BenchmarkColumn &column : columns)
+          cells.emplace_back(column.text(row));
+        table.add_row(cells);
+      }
     write_atomically(file_name, [&](std::ostream &out) {
-      out << heading << "\n\n|";
-      for (const BenchmarkColumn &column : columns)
-        out << ' ' << column.title << " |";
-      out << "\n|";
-      for (std::size_t k = 0; k < columns.size(); ++k)
-        out << "---|";
-      out << '\n';
-      for (const BenchmarkRow &row : rows)
-        {
-          out << '|';
-          for (const BenchmarkColumn &column : columns)
-            out << ' ' << column.text(row) << " |";
-          out << '\n';
-        }
+      out << heading << "\n\n" << table.markdown();
     });
   }
 } // namespace Debond

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <debond/benchmark/benchmark_study.h>
 #include <debond/benchmark/benchmarks.h>
 #include <debond/benchmark/contact_against_linear.h>
 #include <debond/benchmark/machine.h>
-#include <debond/benchmark/speed_against_error.h>
 #include <debond/benchmark/start_up.h>
 
 #include <filesystem>
@@ -54,12 +54,12 @@ namespace Debond
 
 
     void
-    run_start_up(const BenchmarkSuite &suite, const Writer &writer)
+    run_start_up(const BenchmarkStudy &study, const Writer &writer)
     {
       std::cout << "Start of the program" << std::endl;
-      const BenchmarkRow row = measure_start_up(suite.start_up,
+      const BenchmarkRow row = measure_start_up(study.scenes.front(),
                                                 writer.path("start-up"),
-                                                suite.start_up_repetitions);
+                                                study.repetitions);
       writer.write("start_up",
                    {plain_column("scene", "scene"),
                     spread_column("over an empty program", "ratio", 3),
@@ -88,17 +88,24 @@ namespace Debond
 
 
     ExitCode
-    run_contact_solves(const BenchmarkSuite &suite, const Writer &writer)
+    run_contact_solves(const std::vector<BenchmarkStudy> &studies,
+                       const Writer                      &writer)
     {
       std::cout << "Contact solve beside one linear solve" << std::endl;
       std::vector<BenchmarkRow> rows;
-      for (const BenchmarkSuite::ContactSolve &contact : suite.contact_solves)
-        {
-          std::cout << "  " << contact.scene.name << std::endl;
-          rows.push_back(contact.scene.parameters().dimension == 2 ?
-                           measure_contact_against_linear<2>(contact) :
-                           measure_contact_against_linear<3>(contact));
-        }
+      for (const BenchmarkStudy &study : studies)
+        for (const BenchmarkScene &scene : study.scenes)
+          {
+            std::cout << "  " << scene.name << std::endl;
+            const Parameters parameters = scene.parameters();
+            rows.push_back(parameters.dimension == 2 ?
+                             measure_contact_against_linear<2>(scene.name,
+                                                               parameters,
+                                                               study) :
+                             measure_contact_against_linear<3>(scene.name,
+                                                               parameters,
+                                                               study));
+          }
 
       writer.write(
         "contact_solve",
@@ -126,74 +133,28 @@ namespace Debond
                    fit_growth(rows, smallest_for_growth));
       return report_failures(rows);
     }
-
-
-
-    ExitCode
-    run_speed_against_error(const BenchmarkSuite &suite, const Writer &writer)
-    {
-      std::cout << "Speed against error" << std::endl;
-      const SpeedAgainstError result =
-        suite.meshes.front().scene.parameters().dimension == 2 ?
-          measure_speed_against_error<2>(suite.meshes) :
-          measure_speed_against_error<3>(suite.meshes);
-
-      writer.write(
-        "methods",
-        {plain_column("mesh", "mesh"),
-         plain_column("method", "method"),
-         spread_column("time / last method", "time_over_last_method", 3),
-         plain_column("iterations", "iterations"),
-         number_column("J - J_min", "J_optimisation_error", 2),
-         number_column("law violation", "law_violation", 2),
-         spread_column("time, s", "seconds", 3)},
-        result.methods);
-      writer.write("speed_against_error",
-                   {plain_column("mesh", "mesh"),
-                    plain_column("unknowns", "unknowns"),
-                    plain_column("method", "method"),
-                    number_column("J - J_min", "J_optimisation_error", 2),
-                    number_column("\\|u - u_min\\|_A / \\|u_min\\|_A",
-                                  "energy_optimisation_error",
-                                  2),
-                    number_column("J_min - J", "J_discretisation_error", 3),
-                    number_column("\\|u_min - u_ref\\|_A / \\|u_ref\\|_A",
-                                  "energy_discretisation_error",
-                                  3),
-                    plain_column("iterations", "iterations"),
-                    plain_column("of them useful", "iteration_good_enough"),
-                    number_column("time, s", "seconds", 3),
-                    number_column("of it useful", "seconds_good_enough", 3)},
-                   result.methods);
-      writer.write("meshes",
-                   {plain_column("mesh", "mesh"),
-                    plain_column("unknowns", "unknowns"),
-                    number_column("J_min", "J_min", 11),
-                    number_column("J_min - J", "J_discretisation_error", 4),
-                    number_column("\\|u_min - u_ref\\|_A / \\|u_ref\\|_A",
-                                  "energy_discretisation_error",
-                                  4)},
-                   result.meshes);
-      write_csv(result.convergence, writer.path("convergence.csv"));
-      return report_failures(result.methods);
-    }
   } // namespace
 
 
 
   ExitCode
-  run_benchmarks(const std::string &file)
+  run_benchmarks(const std::string              &directory,
+                 const std::vector<std::string> &files)
   {
-    const BenchmarkSuite suite = read_benchmark_suite(file);
-    const Writer         writer(suite.output);
+    std::vector<BenchmarkStudy> studies;
+    for (const std::string &file : files)
+      {
+        BenchmarkTable table;
+        read_scene(file, table);
+        studies.push_back(table.benchmark(file));
+      }
+    const Writer writer(directory);
     // In its own process, and before the environment has traces of MPI.
-    run_start_up(suite, writer);
+    run_start_up(studies.front(), writer);
 
     int                                      argc = 0;
     char                                   **argv = nullptr;
     dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-    const ExitCode contact = run_contact_solves(suite, writer);
-    const ExitCode speed   = run_speed_against_error(suite, writer);
-    return contact == ExitCode::success ? speed : contact;
+    return run_contact_solves(studies, writer);
   }
 } // namespace Debond

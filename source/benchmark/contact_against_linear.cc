@@ -63,10 +63,11 @@ namespace Debond
 
   template <int dim>
   BenchmarkRow
-  measure_contact_against_linear(const BenchmarkSuite::ContactSolve &contact)
+  measure_contact_against_linear(const std::string    &name,
+                                 const Parameters     &parameters,
+                                 const BenchmarkStudy &study)
   {
-    const Parameters   parameters = contact.scene.parameters();
-    const MethodChoice choice     = choose_method(parameters);
+    const MethodChoice choice = choose_method(parameters);
 
     // The same scene once or twice, as the solvers need its matrix.
     std::map<MatrixStorage, std::unique_ptr<Scene<dim>>> scenes;
@@ -80,17 +81,17 @@ namespace Debond
 
     std::vector<Job> jobs = {
       contact_job(choice, parameters, scene(matrix_storage(choice)))};
-    for (const std::string &solver : contact.linear_solvers)
+    for (const std::string &solver : study.linear_solvers)
       jobs.push_back(
         linear_job(solver,
                    scene(solver == "cholesky" ? MatrixStorage::serial :
                                                 MatrixStorage::trilinos)));
     for (Job &job : jobs)
-      job.name = contact.scene.name + ", " + job.name;
-    const auto results = measure_alternating(jobs, contact.repetitions);
+      job.name = name + ", " + job.name;
+    const auto results = measure_alternating(jobs, study.repetitions);
 
     BenchmarkRow row;
-    row["scene"]    = contact.scene.name;
+    row["scene"]    = name;
     row["path"]     = choice.linear_solver + " " + std::to_string(dim) + "D";
     row["method"]   = choice.method;
     row["unknowns"] = problem.unknowns().n_free_dofs();
@@ -99,32 +100,32 @@ namespace Debond
     row["iterations"]    = results[0].front().facts["iterations"];
     row["cg_steps"]      = results[0].front().facts["cg_steps"];
     row["J"]             = results[0].front().facts["J"];
-    for (unsigned int k = 0; k < contact.linear_solvers.size(); ++k)
+    auto linear_results  = results.begin() + 1;
+    for (const std::string &solver : study.linear_solvers)
       {
-        const auto        &linear = results[k + 1];
-        const std::string &name   = contact.linear_solvers[k];
-        add_spread("time_over_" + name,
+        const auto &linear = *linear_results++;
+        add_spread("time_over_" + solver,
                    spread_of_ratios(results[0], linear, &Measurement::seconds),
                    row);
-        add_spread("cpu_time_over_" + name,
+        add_spread("cpu_time_over_" + solver,
                    spread_of_ratios(results[0],
                                     linear,
                                     &Measurement::cpu_seconds),
                    row);
-        add_spread("memory_over_" + name,
+        add_spread("memory_over_" + solver,
                    spread_of_ratios(results[0],
                                     linear,
                                     &Measurement::peak_bytes),
                    row);
-        row[name + "_iterations"] = linear.front().facts["iterations"];
-        row[name + "_energy"]     = linear.front().facts["energy"];
-        add_spread(name + "_seconds",
+        row[solver + "_iterations"] = linear.front().facts["iterations"];
+        row[solver + "_energy"]     = linear.front().facts["energy"];
+        add_spread(solver + "_seconds",
                    spread(linear, &Measurement::seconds),
                    row);
-        add_spread(name + "_cpu_seconds",
+        add_spread(solver + "_cpu_seconds",
                    spread(linear, &Measurement::cpu_seconds),
                    row);
-        add_spread(name + "_peak_bytes",
+        add_spread(solver + "_peak_bytes",
                    spread(linear, &Measurement::peak_bytes),
                    row);
       }
@@ -179,7 +180,11 @@ namespace Debond
 
 
   template BenchmarkRow
-  measure_contact_against_linear<2>(const BenchmarkSuite::ContactSolve &);
+  measure_contact_against_linear<2>(const std::string &,
+                                    const Parameters &,
+                                    const BenchmarkStudy &);
   template BenchmarkRow
-  measure_contact_against_linear<3>(const BenchmarkSuite::ContactSolve &);
+  measure_contact_against_linear<3>(const std::string &,
+                                    const Parameters &,
+                                    const BenchmarkStudy &);
 } // namespace Debond

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
+#include <debond/base/text.h>
 #include <debond/check/error_estimate.h>
 #include <debond/contact/field_value.h>
 #include <debond/elasticity/linear_simplex.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace Debond
 {
@@ -20,6 +22,14 @@ namespace Debond
     {
       return degree == 1 ? (dim == 2 ? 0.97 : 2.65) : (dim == 2 ? 0.41 : 1.05);
     }
+
+    /// Beyond this lambda / mu, that of nu = 0.45 in plane strain, the ratio of
+    /// estimate and error depends on the mesh.
+    constexpr double largest_calibrated_lambda = 9.;
+
+    /// Of the longest edge of a cell to the shortest one, in 3D: three halves
+    /// of that of a cube's.
+    constexpr double largest_calibrated_stretch = 3.;
 
     /// J that is less than so much of the energy of the stresses is what large
     /// terms leave.
@@ -563,6 +573,27 @@ namespace Debond
       std::vector<CellStress> cells;
       unsigned int            n_contact_faces = 0;
     };
+
+
+
+    template <int dim>
+    std::string
+    outside_calibration(const ElasticProblem<dim> &problem)
+    {
+      std::set<std::string> reasons;
+      for (const auto &cell :
+           problem.unknowns().dof_handler().active_cell_iterators())
+        {
+          const Material &material = problem.fields().material(cell);
+          if (material.template lame_lambda<dim>() >
+              largest_calibrated_lambda * material.shear_modulus())
+            reasons.insert("nearly incompressible materials");
+          if (dim == 3 && cell->diameter() > largest_calibrated_stretch *
+                                               cell->minimum_vertex_distance())
+            reasons.insert("cells that are stretched");
+        }
+      return join({reasons.begin(), reasons.end()}, " and ");
+    }
   } // namespace
 
 
@@ -596,6 +627,7 @@ namespace Debond
         part *= calibration<dim>(problem.unknowns().degree());
         result.functional += part;
       }
+    result.outside_calibration = outside_calibration(problem);
     result.is_of_J =
       std::abs(functional) >= least_part_of_energy * residuals.stress_energy;
     result.scale =

@@ -180,6 +180,12 @@ namespace Debond
                                            result.solve.functional,
                                            result.solve.load_factor,
                                            &scene.dead_loads());
+          if (const std::string &reason = result.estimate->outside_calibration;
+              !reason.empty())
+            result.notes.push_back(
+              "the error of the mesh may be from two thirds to three times the "
+              "estimate, which was not calibrated for " +
+              reason);
         }
       catch (const std::invalid_argument &error)
         {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/utilities.h>
-
+#include <debond/base/data_table.h>
 #include <debond/study/case_result.h>
 
 #include <nlohmann/json.hpp>
@@ -56,25 +55,15 @@ namespace Debond
     std::vector<double>
     read_functionals(const std::string &file_name)
     {
-      std::ifstream       file(file_name);
       std::vector<double> functionals;
-      std::string         line;
-      if (!std::getline(file, line))
+      if (!std::filesystem::exists(file_name))
         return functionals;
-      const std::vector<std::string> titles =
-        dealii::Utilities::split_string_list(line, ',');
-      const std::size_t column =
-        std::find(titles.begin(), titles.end(), "functional") - titles.begin();
-      while (std::getline(file, line))
-        {
-          const std::vector<std::string> entries =
-            dealii::Utilities::split_string_list(line, ',');
-          // The last row may have nothing but J, see write_history().
-          if (entries.size() > titles.size() || column >= entries.size())
-            throw std::runtime_error("Cannot read " + file_name +
-                                     ": its rows do not fit its titles");
-          functionals.push_back(std::stod(entries[column]));
-        }
+      const CsvFile file   = read_csv(file_name);
+      const auto    column = file.column("functional");
+      if (!column)
+        throw std::runtime_error(file_name + ": there is no column functional");
+      for (const std::vector<std::string> &row : file.rows)
+        functionals.push_back(std::stod(row[*column]));
       return functionals;
     }
   } // namespace

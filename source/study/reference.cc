@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/utilities.h>
-
 #include <debond/input/parameters.h>
 #include <debond/study/reference.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <stdexcept>
 
 namespace Debond
 {
@@ -28,25 +26,20 @@ namespace Debond
   Reference::Reference(const ReferenceParameters &parameters)
     : parameters(parameters)
   {
-    std::ifstream file(parameters.file);
-    if (!file)
-      throw BadInput({parameters.file + ": cannot be read"});
-    std::vector<std::string> titles;
-    for (std::string line; std::getline(file, line);)
+    CsvFile file;
+    try
       {
-        if (line.empty() || line[0] == '#')
-          continue;
-        const std::vector<std::string> entries =
-          dealii::Utilities::split_string_list(line, ',');
-        if (titles.empty())
-          {
-            titles = entries;
-            continue;
-          }
-        // An empty last entry is none to split_string_list().
+        file = read_csv(parameters.file);
+      }
+    catch (const std::runtime_error &error)
+      {
+        throw BadInput({error.what()});
+      }
+    for (const std::vector<std::string> &entries : file.rows)
+      {
         Row row;
-        for (std::size_t i = 0; i < titles.size(); ++i)
-          row[titles[i]] = i < entries.size() ? entries[i] : "";
+        for (std::size_t i = 0; i < file.titles.size(); ++i)
+          row[file.titles[i]] = entries[i];
         if (std::all_of(parameters.rows.begin(),
                         parameters.rows.end(),
                         [&row](const auto &wanted) {
@@ -61,7 +54,7 @@ namespace Debond
         {parameters.file + ": has no rows with what Reference/Rows asks for"});
 
     const auto require = [&](const std::string &title) {
-      if (std::find(titles.begin(), titles.end(), title) == titles.end())
+      if (!file.column(title))
         throw BadInput({parameters.file + ": there is no column " + title});
     };
     require(parameters.key);

@@ -142,7 +142,7 @@ namespace
       -1e-3,
       "history.csv");
     check("also after majorise-minimise",
-          contents("history.csv").find("\n2,-1.0000000000000000e-03,,,,\n") !=
+          contents("history.csv").find("\n2,-0.001,,,,\n") !=
             std::string::npos);
   }
 

@@ -4,10 +4,10 @@
 // of exact power laws, tables with all that their formats treat specially, and
 // reference results.
 
+#include <debond/base/data_table.h>
 #include <debond/input/parameters.h>
 #include <debond/study/best_values.h>
 #include <debond/study/convergence.h>
-#include <debond/study/data_table.h>
 #include <debond/study/reference.h>
 
 #include <cmath>

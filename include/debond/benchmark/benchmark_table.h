@@ -36,13 +36,13 @@ namespace Debond
   BenchmarkColumn
   number_column(const std::string &title,
                 const std::string &name,
-                const int          digits);
+                const unsigned int digits);
 
   /// "median (minimum to maximum)".
   BenchmarkColumn
   spread_column(const std::string &title,
                 const std::string &name,
-                const int          digits);
+                const unsigned int digits);
 
 
 

@@ -5,13 +5,16 @@
 #include <debond/program/exit_code.h>
 
 #include <string>
+#include <vector>
 
 namespace Debond
 {
-  /// Measures what the file of prm/benchmarks/ asks for, and writes results as
-  /// CSV and Markdown tables into its output directory. Throws BadInput.
+  /// Measures the cases of the studies in @p files, see prm/benchmarks/, at
+  /// least one file, and writes results as CSV and Markdown tables into @p
+  /// directory. Throws BadInput.
   ExitCode
-  run_benchmarks(const std::string &file);
+  run_benchmarks(const std::string              &directory,
+                 const std::vector<std::string> &files);
 } // namespace Debond
 
 #endif

@@ -2,18 +2,21 @@
 #ifndef debond_benchmark_contact_against_linear_h
 #define debond_benchmark_contact_against_linear_h
 
-#include <debond/benchmark/benchmark_suite.h>
+#include <debond/benchmark/benchmark_study.h>
 #include <debond/benchmark/benchmark_table.h>
 
 namespace Debond
 {
   /**
    * Time and memory of the whole contact solve, from the assembled A and f to
-   * u, beside linear solves of A u = f, which start from the same A and f.
+   * u, beside the linear solves of A u = f that the study asks for, which start
+   * from the same A and f, as often as it says. @p name: of the scene.
    */
   template <int dim>
   BenchmarkRow
-  measure_contact_against_linear(const BenchmarkSuite::ContactSolve &contact);
+  measure_contact_against_linear(const std::string    &name,
+                                 const Parameters     &parameters,
+                                 const BenchmarkStudy &study);
 
   /**
    * The growth exponents p of time and memory, fitted by least squares to

@@ -2,7 +2,7 @@
 #ifndef debond_benchmark_start_up_h
 #define debond_benchmark_start_up_h
 
-#include <debond/benchmark/benchmark_suite.h>
+#include <debond/benchmark/benchmark_study.h>
 #include <debond/benchmark/benchmark_table.h>
 
 namespace Debond

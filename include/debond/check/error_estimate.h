@@ -7,6 +7,7 @@
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
 
+#include <string>
 #include <vector>
 
 namespace Debond
@@ -21,6 +22,10 @@ namespace Debond
     /// stresses.
     double scale   = 0.;
     bool   is_of_J = true;
+
+    /// What the constant of the estimate was not measured for, in words; empty
+    /// if the body is like those of doc/notes/error-estimate.md.
+    std::string outside_calibration;
 
     /// The parts of the active cells, which add up to `functional`.
     std::vector<double> cells;

@@ -2,9 +2,9 @@
 #ifndef debond_study_columns_h
 #define debond_study_columns_h
 
+#include <debond/base/data_table.h>
 #include <debond/study/case_result.h>
 #include <debond/study/convergence.h>
-#include <debond/study/data_table.h>
 
 #include <optional>
 #include <string>

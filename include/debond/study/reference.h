@@ -2,7 +2,7 @@
 #ifndef debond_study_reference_h
 #define debond_study_reference_h
 
-#include <debond/study/data_table.h>
+#include <debond/base/data_table.h>
 #include <debond/study/study_parameters.h>
 
 #include <map>

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/table_handler.h>
+#include <deal.II/base/utilities.h>
 
 #include <debond/base/atomic_file.h>
+#include <debond/base/data_table.h>
 #include <debond/base/number_text.h>
-#include <debond/study/data_table.h>
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <iomanip>
 #include <sstream>
+#include <stdexcept>
 
 namespace Debond
 {
@@ -30,21 +34,6 @@ namespace Debond
 
 
     std::string
-    readable_number(const double number, const unsigned int digits)
-    {
-      if (digits == all_digits)
-        return shortest_text(number);
-      std::ostringstream text;
-      if (is_handy(number))
-        text << std::setprecision(digits) << number;
-      else
-        text << std::scientific << std::setprecision(digits - 1) << number;
-      return text.str();
-    }
-
-
-
-    std::string
     cell_text(const Cell &cell, const unsigned int digits)
     {
       if (const auto *const words = std::get_if<std::string>(&cell))
@@ -52,7 +41,8 @@ namespace Debond
       if (const auto *const count = std::get_if<long>(&cell))
         return std::to_string(*count);
       if (const auto *const number = std::get_if<double>(&cell))
-        return readable_number(*number, digits);
+        return digits == all_digits ? shortest_text(*number) :
+                                      readable_number(*number, digits);
       return "";
     }
 
@@ -138,6 +128,19 @@ namespace Debond
 
 
 
+  std::string
+  readable_number(const double number, const unsigned int digits)
+  {
+    std::ostringstream text;
+    if (is_handy(number))
+      text << std::setprecision(digits) << number;
+    else
+      text << std::scientific << std::setprecision(digits - 1) << number;
+    return text.str();
+  }
+
+
+
   void
   DataTable::add_column(const std::string &title, const unsigned int n_digits)
   {
@@ -208,5 +211,45 @@ namespace Debond
       table_handler(titles, digits, rows, escaped_for_latex)
         .write_tex(out, false);
     });
+  }
+
+
+
+  std::optional<std::size_t>
+  CsvFile::column(const std::string &title) const
+  {
+    const auto entry = std::find(titles.begin(), titles.end(), title);
+    if (entry == titles.end())
+      return {};
+    return entry - titles.begin();
+  }
+
+
+
+  CsvFile
+  read_csv(const std::string &file_name)
+  {
+    std::ifstream file(file_name);
+    if (!file)
+      throw std::runtime_error(file_name + ": cannot be read");
+    CsvFile result;
+    for (std::string line; std::getline(file, line);)
+      {
+        if (line.empty() || line[0] == '#')
+          continue;
+        std::vector<std::string> entries =
+          dealii::Utilities::split_string_list(line, ',');
+        if (result.titles.empty())
+          {
+            result.titles = entries;
+            continue;
+          }
+        if (entries.size() > result.titles.size())
+          throw std::runtime_error(file_name +
+                                   ": its rows do not fit its titles");
+        entries.resize(result.titles.size());
+        result.rows.push_back(entries);
+      }
+    return result;
   }
 } // namespace Debond
