@@ -62,8 +62,8 @@ grep -q "^  J from start  *-7.35454955..e-05, " log ||
   fail "J of the state that was followed: $(cat log)"
 grep -q '"functional_from_start": -7.35454955' found/summary.json ||
   fail "not in the summary"
-[ "$(column found/history.csv functional | tail -n 2 | cut -c 1-12 | tr '\n' ' ')" = \
-  "-7.354549556 -2.397312753 " ] || fail "history: $(cat found/history.csv)"
+[ "$(column found/history.csv functional | tail -n 2 |
+  xargs printf '%.9e ')" = "-7.354549556e-05 -2.397312753e-04 " ] || fail "history: $(cat found/history.csv)"
 
 # What is suspicious is noted, and nothing else.
 notes() {
