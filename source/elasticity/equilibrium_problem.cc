@@ -5,6 +5,7 @@
 #include <debond/contact/field_value.h>
 #include <debond/elasticity/equilibrium_problem.h>
 #include <debond/elasticity/linear_simplex.h>
+#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -637,13 +638,14 @@ namespace Debond
 
   Eigen::VectorXd
   EquilibriumProblem::stress_of(const unsigned int            element,
-                                const dealii::Vector<double> &unknowns) const
+                                const dealii::Vector<double> &unknowns,
+                                const double                  weight) const
   {
     const std::vector<unsigned int> numbers = unknowns_of(element);
     Eigen::VectorXd                 own(numbers.size());
     for (unsigned int i = 0; i < numbers.size(); ++i)
       own(i) = unknowns(numbers[i]);
-    return all_elements[element].stress(to_element(element) * own);
+    return all_elements[element].stress(to_element(element) * own, weight);
   }
 
 
@@ -690,6 +692,42 @@ namespace Debond
           }
       }
     return gaps;
+  }
+
+
+
+  double
+  EquilibriumProblem::rounding_of(const Condensation        &condensed,
+                                  const Eigen::VectorXd     &kept,
+                                  const std::vector<double> &weights) const
+  {
+    const dealii::Vector<double> unknowns =
+      condensed.expand(dealii::Vector<double>(kept.begin(), kept.end()));
+    double energy = 0.;
+    for (unsigned int element = 0; element < places.size(); ++element)
+      {
+        const Place          &place  = places[element];
+        const double          weight = weights.empty() ? 1. : weights[element];
+        const Eigen::VectorXd stress = stress_of(element, unknowns, weight);
+        const double          share  = place.vertices.size() == 3 ? 3. : 1.;
+        for (unsigned int i = 0; i < place.cells.size(); ++i)
+          {
+            const Triangle             &cell  = place.cells[i];
+            Eigen::Matrix<double, 9, 1> total = stress.segment<9>(9 * i);
+            for (unsigned int corner = 0; corner < 3; ++corner)
+              total.segment<2>(3 * corner).array() += thermal_stress(cell);
+            energy +=
+              0.5 / weight *
+              complementary_energy(total,
+                                   std::abs(LinearSimplex<2>(cell).volume) /
+                                     share,
+                                   materials(cell->material_id()));
+          }
+      }
+    const auto S = eigen_view(condensed.schur_complement());
+    // It may be more at other displacements.
+    return 4. * std::abs(condensed.energy_at_zero() - 0.5 * kept.dot(S * kept) +
+                         energy);
   }
 
 

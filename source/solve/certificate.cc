@@ -254,8 +254,9 @@ namespace Debond
           std::max(largest_traction,
                    (std::abs(moments(i)) + 3. * std::abs(moments(n + i))) /
                      sides[i].length);
-      certificate.lower = condensed->energy_at_zero() - 0.5 * x.dot(S * x);
-      certificate.upper = equilibrium.elastic_functional(displacement);
+      certificate.lower   = condensed->energy_at_zero() - 0.5 * x.dot(S * x);
+      certificate.reserve = equilibrium.rounding_of(*condensed, x);
+      certificate.upper   = equilibrium.elastic_functional(displacement);
       const dealii::Vector<double> kept(x.begin(), x.end());
       const dealii::Vector<double> unknowns = condensed->expand(kept);
       certificate.gaps = equilibrium.constitutive_gaps(displacement, unknowns);
@@ -379,7 +380,7 @@ namespace Debond
     certificate.n_sides =
       static_cast<unsigned int>(equilibrium.contact_sides().size());
     const double strain_energy = solved.problem().fields().strain_energy(u);
-    const auto   reserve       = [&]() {
+    const auto   rounding      = [&]() {
       return certificate_rounding *
              std::max(std::abs(certificate.upper), strain_energy);
     };
@@ -387,9 +388,10 @@ namespace Debond
       try
         {
           bound_fixed_state(equilibrium, law, displacement, certificate);
-          certificate.reserve = reserve();
-          certificate.upper += certificate.reserve;
-          certificate.lower -= certificate.reserve;
+          const double own = rounding();
+          certificate.upper += own;
+          certificate.lower -= certificate.reserve + own;
+          certificate.reserve += 2. * own;
         }
       catch (const std::runtime_error &error)
         {
@@ -414,8 +416,8 @@ namespace Debond
           elastic_functional(solved, displacement) +
           AdhesionIntegral<2>(contact.boundary(), scene->law(), quadrature)
             .energy(contact.trace(u));
-        certificate.reserve = reserve();
-        certificate.upper += certificate.reserve;
+        const double own = rounding();
+        certificate.upper += own;
         GlobalBound bound        = bound_global(equilibrium,
                                          trace_constants,
                                          law,
@@ -425,7 +427,8 @@ namespace Debond
                                          certificate.upper,
                                          proof,
                                          may_go_on);
-        certificate.lower        = bound.lower - certificate.reserve;
+        certificate.lower        = bound.lower - own;
+        certificate.reserve      = bound.rounding + 2. * own;
         certificate.proof_status = bound.status;
         certificate.proof_nodes  = bound.nodes;
         if (!certificate.gaps.empty())

@@ -87,7 +87,7 @@ namespace Debond
     /// with the slopes k = offset + slopes m that belong to them.
     struct MeanProblem
     {
-      double                             constant;
+      double                             constant, rounding;
       dealii::FullMatrix<double>         S;
       dealii::Vector<double>             g;
       std::unique_ptr<SeparableBranches> phi;
@@ -133,13 +133,16 @@ namespace Debond
       n_certain(const std::vector<SideRange> &ranges,
                 const std::vector<double>    &D) const;
 
+      /// At @p means it measures its rounding.
       MeanProblem
       mean_problem(const std::vector<SideRange> &ranges,
+                   const Eigen::VectorXd        &means,
                    std::vector<double>          &D) const;
 
     private:
       std::optional<MeanProblem>
       try_mean_problem(const std::vector<SideRange> &ranges,
+                       const Eigen::VectorXd        &means,
                        const std::vector<double>    &D) const;
 
       /// The largest shift of a side: at least a tenth of an element's
@@ -220,6 +223,7 @@ namespace Debond
     /// the stresses.
     std::optional<MeanProblem>
     Sides::try_mean_problem(const std::vector<SideRange> &ranges,
+                            const Eigen::VectorXd        &means,
                             const std::vector<double>    &D) const
     {
       std::vector<double> weights(equilibrium.elements().size(), 1.);
@@ -282,6 +286,10 @@ namespace Debond
             result.S(i, j) = 0.5 * (S(i, j) + S(j, i));
         }
       result.phi = std::make_unique<SeparableBranches>(laws);
+
+      Eigen::VectorXd kept(2 * n);
+      kept << means, result.offset + result.slopes * means;
+      result.rounding = equilibrium.rounding_of(*condensed, kept, weights);
       return result;
     }
 
@@ -291,12 +299,13 @@ namespace Debond
     /// does not help.
     MeanProblem
     Sides::mean_problem(const std::vector<SideRange> &ranges,
+                        const Eigen::VectorXd        &means,
                         std::vector<double>          &D) const
     {
       constexpr unsigned int trials = 12;
       for (unsigned int trial = 0; trial < trials; ++trial)
         {
-          if (auto problem = try_mean_problem(ranges, D))
+          if (auto problem = try_mean_problem(ranges, means, D))
             return std::move(*problem);
           for (double &shift : D)
             shift *= 0.5;
@@ -370,7 +379,7 @@ namespace Debond
            const std::function<bool()> &may_go_on,
            std::vector<SideRange>      &ranges)
     {
-      const double           best = upper - problem.constant;
+      const double           best = upper - problem.constant + problem.rounding;
       const NodeBound        bound(problem.S, problem.g, *problem.phi);
       std::vector<ProofNode> open;
       if (auto root = bound.root(best))
@@ -523,11 +532,12 @@ namespace Debond
       result.nodes += proof.nodes;
       const double lower = proof.status == ProofStatus::no_bound ?
                              -infinity :
-                             problem.constant + proof.lower;
+                             problem.constant + proof.lower - problem.rounding;
       if (lower > result.lower)
         {
-          result.lower  = lower;
-          result.status = proof.status;
+          result.lower    = lower;
+          result.rounding = problem.rounding;
+          result.status   = proof.status;
         }
       return lower;
     };
@@ -537,7 +547,7 @@ namespace Debond
     for (const double multiple : first_shifts)
       {
         std::vector<double> D       = sides.shifts_for_means(means, multiple);
-        MeanProblem         problem = sides.mean_problem(ranges, D);
+        MeanProblem         problem = sides.mean_problem(ranges, means, D);
         const double        lower   = add_bound(problem);
         if (!best || lower > best_lower)
           {
@@ -556,7 +566,7 @@ namespace Debond
         // Even if no side is certain, the first new shifts are better ones.
         if (stage > 0 && n_certain <= before)
           break;
-        best = sides.mean_problem(ranges, D);
+        best = sides.mean_problem(ranges, means, D);
         add_bound(*best);
       }
 

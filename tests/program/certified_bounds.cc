@@ -182,7 +182,7 @@ namespace
   struct Counts
   {
     unsigned int        refused = 0, unsolved = 0, above = 0, negative = 0;
-    double              sum_error = 0.;
+    unsigned int        inexact = 0, beyond_reserve = 0; ///< sums of gaps
     std::vector<double> distances;
   };
 
@@ -227,10 +227,10 @@ namespace
         sum += gap;
         counts.negative += gap < -1e-12 * scale;
       }
-    counts.sum_error = std::max(counts.sum_error,
-                                std::abs(certificate.upper - certificate.lower -
-                                         2. * certificate.reserve - sum) /
-                                  scale);
+    const double error = std::abs(certificate.upper - certificate.lower -
+                                  certificate.reserve - sum);
+    counts.inexact += error > 1e-10 * scale;
+    counts.beyond_reserve += error > certificate.reserve;
   }
 
 
@@ -301,13 +301,18 @@ main(int argc, char *argv[])
   Counts counts;
   for (unsigned int number = first; number < first + n; ++number)
     test(number, counts);
+  // Of a body of 40:1, in which elimination loses 3e-7 of J.
+  if (argc == 1)
+    test(1628, counts);
   check("bounds above what a search finds", counts.above, 0);
   check("parts of a gap below zero", counts.negative, 0);
-  check("their sum beside the gap, relative to J", counts.sum_error, 1e-10);
+  check("their sum is the gap but for the reserve for rounding",
+        counts.beyond_reserve,
+        0);
+  check("more than 1e-10 of J beside it", counts.inexact, n / 20);
   check("most scenes have one", counts.distances.size() > n / 2);
   if (argc > 1)
     {
-      std::cout << "largest error of a sum " << counts.sum_error << '\n';
       std::sort(counts.distances.begin(), counts.distances.end());
       std::cout << counts.distances.size() << " bounds, " << counts.refused
                 << " refused, " << counts.unsolved << " not solved; below by "

@@ -129,6 +129,15 @@ namespace Debond
     constitutive_gaps(const std::vector<CellDisplacement> &u,
                       const dealii::Vector<double>        &unknowns) const;
 
+    /// What elimination may have lost of
+    ///     c_0 - 1/2 s'S s = -1/2 int (sigma + p 1) : C^{-1} (sigma + p 1)
+    /// of a condensation with @p weights to rounding: four times by how much
+    /// this fails at @p kept for the stress that belongs to it.
+    double
+    rounding_of(const Condensation        &condensed,
+                const Eigen::VectorXd     &kept,
+                const std::vector<double> &weights = {}) const;
+
     /// Of each active cell the mean of the same stress without p.
     std::vector<dealii::SymmetricTensor<2, 2>>
     mean_stresses(const dealii::Vector<double> &unknowns) const;
@@ -179,7 +188,8 @@ namespace Debond
     /// EquilibriumElement::stress() for all unknowns.
     Eigen::VectorXd
     stress_of(const unsigned int            element,
-              const dealii::Vector<double> &unknowns) const;
+              const dealii::Vector<double> &unknowns,
+              const double                  weight = 1.) const;
 
     double
     thermal_stress(const dealii::Triangulation<2>::cell_iterator &cell) const;

@@ -55,12 +55,12 @@ namespace Debond
     ProofStatus  proof_status = ProofStatus::proved;
     unsigned int proof_nodes  = 0;
 
-    /// What each of the two numbers has as a reserve for rounding.
+    /// What upper - lower has as a reserve for rounding.
     double reserve = 0.;
 
     /// Of each active cell with the contact sides below it, in their order,
     /// unless the stresses are of another mesh: the parts of upper - lower -
-    /// 2 reserve of the bonds' branches as they are, none of them below zero;
+    /// reserve of the bonds' branches as they are, none of them below zero;
     /// if branches may change, with what the bound for that loses at the sides.
     std::vector<double> gaps;
 

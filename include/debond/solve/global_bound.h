@@ -40,6 +40,9 @@ namespace Debond
   {
     double lower = -std::numeric_limits<double>::infinity();
 
+    /// What it is smaller by for what elimination may have lost to rounding.
+    double rounding = 0.;
+
     /// Of the branch and bound that has it.
     ProofStatus  status = ProofStatus::no_bound;
     unsigned int nodes  = 0; ///< of all
