@@ -20,6 +20,30 @@ namespace Debond
           name += '_';
       return name;
     }
+
+
+
+    /// LoadPathState::unit_displacement_work.
+    template <int dim>
+    double
+    work_of_supports(const ElasticProblem<dim>    &problem,
+                     const AdhesionIntegral<dim>  &adhesion,
+                     const LoadFactors             factors,
+                     const dealii::Vector<double> &u,
+                     const dealii::Vector<double> &s)
+    {
+      const ElasticUnknowns<dim> &unknowns = problem.unknowns();
+      if (!unknowns.has_prescribed_displacements())
+        return 0.;
+      dealii::Vector<double> displacement = unknowns.lifting({0., 1.});
+      displacement -= unknowns.lifting({0., 0.});
+      double sum = problem.fields().residual(u, factors) * displacement;
+      const std::vector<double> forces = adhesion.held_forces(s);
+      const auto &held = unknowns.contact().boundary().held_vertices;
+      for (unsigned int k = 0; k < held.size(); ++k)
+        sum += forces[k] * held[k].normal_displacement;
+      return sum;
+    }
   } // namespace
 
 
@@ -85,6 +109,8 @@ namespace Debond
     state.elastic_energy  = problem.fields().strain_energy(u, factors);
     state.adhesion_energy = adhesion.energy(s);
     state.unit_load_work  = problem.fields().load_work(u, factors);
+    state.unit_displacement_work =
+      work_of_supports(problem, adhesion, factors, u, s);
     state.functional =
       problem.fields().elastic_functional(u, factors) + state.adhesion_energy;
 

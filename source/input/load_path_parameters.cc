@@ -142,6 +142,10 @@ namespace Debond
        {"search", GlobalBranch::search},
        {"prove", GlobalBranch::prove}},
       "What is computed beside the states that the load path leads to: search is the lowest minimum that a search finds at each factor (full, unless Solver/Search is quick), prove has it proved as well, with the limits of Solver/Proof for each factor, and needs nodal quadrature");
+    table.bind(
+      "Load path/Arc",
+      load_path.arc,
+      "Whether load_path_arc.csv has the curve of all stationary states that starts at the first factor, from break to break of a bond, with the unstable ones between a snap and the state that it leads to. Needs nodal quadrature and one factor that varies");
   }
 
 
@@ -174,6 +178,19 @@ namespace Debond
                          std::to_string(factors.size()),
                        {"Load path/Factors"});
       }
+    const auto vary = [](const std::vector<double> &list) {
+      return std::any_of(list.begin(), list.end(), [&](const double factor) {
+        return factor != list[0];
+      });
+    };
+    if (load_path.arc && !factors.empty() && !others.empty() && vary(factors) &&
+        vary(others))
+      table.reject("Load path/Arc",
+                   "is for one factor: that of the loads, or of prescribed "
+                   "displacements, has to stay the same",
+                   {"Load path/Factors", "Load path/Displacement factors"});
+    if (load_path.arc && factors.empty())
+      table.reject("Load path/Arc", "the scene has no load path");
     for (const std::string &name : load_path.dead_loads)
       if (name == "body force" ? loads.body_force.empty() :
                                  loads.tractions.count(name) == 0)

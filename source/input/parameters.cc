@@ -213,12 +213,15 @@ namespace Debond
           if (table.is_set(threshold + " " + name))
             check(threshold + " " + name, bonds.threshold);
         }
-      if (!p.load_path.bonds_heal &&
-          p.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
-        table.reject("Load path/Bonds heal",
-                     "needs Contact law/Quadrature = nodal, which gives each "
-                     "node a bond of its own",
-                     {"Contact law/Quadrature"});
+      for (const auto &[entry, is_set] :
+           {std::make_pair("Load path/Bonds heal", !p.load_path.bonds_heal),
+            std::make_pair("Load path/Arc", p.load_path.arc)})
+        if (is_set &&
+            p.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
+          table.reject(entry,
+                       "needs Contact law/Quadrature = nodal, which gives each "
+                       "node a bond of its own",
+                       {"Contact law/Quadrature"});
     }
 
 

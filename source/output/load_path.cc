@@ -19,6 +19,7 @@ namespace Debond
                                 "elastic_energy",
                                 "adhesion_energy",
                                 "unit_load_work",
+                                "unit_displacement_work",
                                 "contact_part",
                                 "bonded_part",
                                 "broken_part",
@@ -53,6 +54,7 @@ namespace Debond
                                   state.elastic_energy,
                                   state.adhesion_energy,
                                   state.unit_load_work,
+                                  state.unit_displacement_work,
                                   state.contact_part,
                                   state.bonded_part,
                                   state.broken_part,
@@ -98,7 +100,7 @@ namespace Debond
     const LoadPathState<dim> first =
       steps.empty() ? LoadPathState<dim>() : steps[0].state;
     const std::size_t n_columns_of_state =
-      16 + 2 * dim + first.other_parts.size() + dim * first.vectors.size();
+      17 + 2 * dim + first.other_parts.size() + dim * first.vectors.size();
     write_atomically(file_name, [&](std::ostream &out) {
       out << "step,factor,displacement_factor,status";
       write_titles(first, "", out);

@@ -25,10 +25,12 @@ namespace Debond
     const OutputParameters               &output,
     const ElasticProblem<dim>            &problem,
     const std::vector<LoadPathStep<dim>> &steps,
+    const std::vector<LoadPathStep<dim>> &arc,
     std::string                          &note)
     : output(output)
     , problem(problem)
     , steps(steps)
+    , arc(arc)
     , note(note)
   {}
 
@@ -96,6 +98,9 @@ namespace Debond
     return {{{"load_path.csv"},
              has_steps,
              [this](const std::string &file) { write_load_path(steps, file); }},
+            {{"load_path_arc.csv"},
+             [this]() { return !arc.empty(); },
+             [this](const std::string &file) { write_load_path(arc, file); }},
             series_file("load_path_body.pvd", bodies),
             series_file("load_path_contact.pvd", contacts),
             {plot_files(load_path_plot_names()),
@@ -129,7 +134,7 @@ namespace Debond
   void
   LoadPathOutput<dim>::draw() const
   {
-    for (const Plot &plot : load_path_plots(steps))
+    for (const Plot &plot : load_path_plots(steps, arc))
       {
         write_gnuplot(plot, output.directory);
         if (output.path_plots && note.empty())

@@ -26,16 +26,41 @@ namespace Debond
 
 
 
+    template <int dim>
+    bool
+    has_constant_loads(const std::vector<LoadPathStep<dim>> &steps)
+    {
+      return std::all_of(steps.begin(), steps.end(), [&](const auto &step) {
+        return step.factor == steps[0].factor;
+      });
+    }
+
+
+
+    /// Whether the body is moved and its loads do no work that grows.
+    template <int dim>
+    bool
+    is_moved_alone(const std::vector<LoadPathStep<dim>> &steps)
+    {
+      const auto any = [&](const double LoadPathState<dim>::*const number) {
+        return std::any_of(steps.begin(), steps.end(), [&](const auto &step) {
+          return step.state.*number != 0.;
+        });
+      };
+      return any(&LoadPathState<dim>::unit_displacement_work) &&
+             (has_constant_loads(steps) ||
+              !any(&LoadPathState<dim>::unit_load_work));
+    }
+
+
+
     /// The factor of the loads by step, or that of prescribed displacements if
     /// the loads are constant.
     template <int dim>
     std::vector<double>
-    factors_of(const std::vector<LoadPathStep<dim>> &steps)
+    factors_of(const std::vector<LoadPathStep<dim>> &steps,
+               const bool                            constant_loads)
     {
-      const bool constant_loads =
-        std::all_of(steps.begin(), steps.end(), [&](const auto &step) {
-          return step.factor == steps[0].factor;
-        });
       std::vector<double> factors;
       for (const LoadPathStep<dim> &step : steps)
         factors.push_back(constant_loads ? step.displacement_factor :
@@ -50,9 +75,14 @@ namespace Debond
     turning_points(const std::vector<double> &factors)
     {
       std::vector<unsigned int> turns = {0};
-      for (unsigned int k = 1; k + 1 < factors.size(); ++k)
-        if ((factors[k + 1] - factors[k]) * (factors[k] - factors[k - 1]) < 0.)
-          turns.push_back(k);
+      double                    last  = 0.; // change that was one
+      for (unsigned int k = 1; k < factors.size(); ++k)
+        if (const double change = factors[k] - factors[k - 1]; change != 0.)
+          {
+            if (change * last < 0.)
+              turns.push_back(k - 1);
+            last = change;
+          }
       turns.push_back(static_cast<unsigned int>(factors.size() - 1));
       return turns;
     }
@@ -62,11 +92,13 @@ namespace Debond
     template <int dim>
     std::vector<Curve>
     curves(const std::vector<LoadPathStep<dim>> &steps,
+           const std::vector<LoadPathStep<dim>> &arc,
            const PointOfState<dim>               point)
     {
-      std::vector<Curve>              result;
-      const std::vector<double>       factors = factors_of(steps);
-      const std::vector<unsigned int> turns   = turning_points(factors);
+      std::vector<Curve>        result;
+      const bool                constant_loads = has_constant_loads(steps);
+      const std::vector<double> factors     = factors_of(steps, constant_loads);
+      const std::vector<unsigned int> turns = turning_points(factors);
       for (unsigned int t = 0; t + 1 < turns.size(); ++t)
         {
           Curve curve{curve_title(factors[turns[t]], factors[turns[t + 1]]),
@@ -88,6 +120,15 @@ namespace Debond
             curve.points.push_back(values);
           result.push_back(curve);
         }
+
+      if (!arc.empty())
+        {
+          Curve                     curve{"arc", {}};
+          const std::vector<double> of_arc = factors_of(arc, constant_loads);
+          for (unsigned int k = 0; k < arc.size(); ++k)
+            curve.points.push_back(point(of_arc[k], arc[k].state));
+          result.push_back(curve);
+        }
       return result;
     }
   } // namespace
@@ -107,16 +148,17 @@ namespace Debond
 
   template <int dim>
   std::vector<Plot>
-  load_path_plots(const std::vector<LoadPathStep<dim>> &steps)
+  load_path_plots(const std::vector<LoadPathStep<dim>> &steps,
+                  const std::vector<LoadPathStep<dim>> &arc)
   {
     using State     = LoadPathState<dim>;
-    const auto make = [&steps](const std::string      &name,
-                               const std::string      &caption,
-                               const std::string      &x_label,
-                               const std::string      &y_label,
-                               const PointOfState<dim> point) {
+    const auto make = [&steps, &arc](const std::string      &name,
+                                     const std::string      &caption,
+                                     const std::string      &x_label,
+                                     const std::string      &y_label,
+                                     const PointOfState<dim> point) {
       Plot plot{name, caption, x_label, y_label};
-      plot.curves = curves(steps, point);
+      plot.curves = curves(steps, arc, point);
       return plot;
     };
     const std::vector<std::string> names = load_path_plot_names();
@@ -141,19 +183,31 @@ namespace Debond
                  [](const double factor, const State &state) {
                    return std::make_pair(factor, state.normal_force);
                  }),
-            make(names[3],
-                 "The loads over the displacement that belongs to them.",
-                 "<f, u>",
-                 "factor",
-                 [](const double factor, const State &state) {
-                   return std::make_pair(state.unit_load_work, factor);
-                 })};
+            is_moved_alone(steps) ?
+              make(names[3],
+                   "The forces of the supports over the displacement that they "
+                   "prescribe.",
+                   "factor",
+                   "work of the supports on the unit displacement",
+                   [](const double factor, const State &state) {
+                     return std::make_pair(factor,
+                                           state.unit_displacement_work);
+                   }) :
+              make(names[3],
+                   "The loads over the displacement that belongs to them.",
+                   "<f, u>",
+                   "factor",
+                   [](const double factor, const State &state) {
+                     return std::make_pair(state.unit_load_work, factor);
+                   })};
   }
 
 
 
   template std::vector<Plot>
-  load_path_plots(const std::vector<LoadPathStep<2>> &);
+  load_path_plots(const std::vector<LoadPathStep<2>> &,
+                  const std::vector<LoadPathStep<2>> &);
   template std::vector<Plot>
-  load_path_plots(const std::vector<LoadPathStep<3>> &);
+  load_path_plots(const std::vector<LoadPathStep<3>> &,
+                  const std::vector<LoadPathStep<3>> &);
 } // namespace Debond

@@ -101,6 +101,56 @@ namespace Debond
 
 
 
+    /// The curve of stationary states and the longest way on which its factor
+    /// goes back.
+    template <int dim>
+    void
+    report_arc(const std::vector<LoadPathStep<dim>> &arc,
+               const bool                            wanted,
+               Record                               &record)
+    {
+      if (!wanted || arc.size() < 2)
+        {
+          record.add("/load_path/arc", nullptr);
+          return;
+        }
+      const bool of_loads = arc.front().factor != arc.back().factor ||
+                            arc[0].factor != arc[1].factor;
+      const auto factor = [&](const std::size_t k) {
+        return of_loads ? arc[k].factor : arc[k].displacement_factor;
+      };
+      const double sign     = factor(1) >= factor(0) ? 1. : -1.;
+      std::size_t  unstable = 0, start = 0, from = 0, to = 0;
+      for (std::size_t k = 1; k < arc.size(); ++k)
+        {
+          unstable += arc[k].status == "unstable" ? 1 : 0;
+          if (sign * (factor(k) - factor(k - 1)) > 0.)
+            start = k;
+          else if (sign * (factor(start) - factor(k)) >
+                   sign * (factor(from) - factor(to)))
+            {
+              from = start;
+              to   = k;
+            }
+        }
+      record.add("/load_path/arc",
+                 {{"states", arc.size()},
+                  {"unstable", unstable},
+                  {"back_from",
+                   from == to ? Json(nullptr) : Json(factor(from))},
+                  {"back_to", from == to ? Json(nullptr) : Json(factor(to))}});
+      record.line("arc",
+                  words(arc.size(), " states, ", unstable, " unstable") +
+                    (from == to ? "" :
+                                  words(", the longest way back from ",
+                                        std::setprecision(10),
+                                        factor(from),
+                                        " to ",
+                                        factor(to))));
+    }
+
+
+
     /// The steps at which most bonds break and close, and how far the path is
     /// from the global branch.
     void
@@ -672,11 +722,15 @@ namespace Debond
                 Record               &record)
   {
     if (!result.path.empty())
-      report_load_path(load_path_totals(result.path,
-                                        static_cast<unsigned int>(
-                                          parameters.load_path.factors.size())),
-                       result.solve.comes_off_at,
-                       record);
+      {
+        report_load_path(
+          load_path_totals(result.path,
+                           static_cast<unsigned int>(
+                             parameters.load_path.factors.size())),
+          result.solve.comes_off_at,
+          record);
+        report_arc(result.arc, parameters.load_path.arc, record);
+      }
     if (!result.levels.empty())
       {
         // Of the first mesh before.

@@ -501,6 +501,7 @@ namespace Debond
     LoadPathOutput<dim> path_output(parameters.output,
                                     scene->problem(),
                                     result.path,
+                                    result.arc,
                                     no_pictures);
     append(path_output.files(), files);
     std::optional<DirectoryLock> lock;
@@ -579,7 +580,8 @@ namespace Debond
           path_output.add(step, u, verification);
         },
         record.has_details() ? &out : nullptr,
-        result.path);
+        result.path,
+        result.arc);
     result.times.emplace_back("solve", timer.wall_time());
     check_result(parameters, *scene, shortfall, result);
     if (certifier && result.is_success() && !result.certificate)

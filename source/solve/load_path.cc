@@ -5,9 +5,11 @@
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/elasticity/refinement.h>
 #include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/optimization/stationary_path.h>
 #include <debond/solve/global_branch.h>
 #include <debond/solve/load_path.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <limits>
@@ -121,6 +123,117 @@ namespace Debond
         result.parts["global branch"] = timer.wall_time();
       }
 
+      /// From the state of the first factor.
+      void
+      find_arc(std::vector<LoadPathStep<dim>> &arc)
+      {
+        timer.restart();
+        const auto [least, largest] =
+          std::minmax_element(parameters.factors.begin(),
+                              parameters.factors.end());
+        const bool  is_of_loads = *least != *largest;
+        const auto &varied =
+          is_of_loads ? parameters.factors : parameters.displacement_factors;
+        const auto other =
+          std::find_if(varied.begin(), varied.end(), [&](const double factor) {
+            return factor != varied[0];
+          });
+        if (other == varied.end())
+          {
+            result.notes.push_back("There is no arc: the factor stays the "
+                                   "same.");
+            return;
+          }
+        const auto factors_at = [&](const double factor) {
+          LoadFactors factors = parameters.at(0);
+          (is_of_loads ? factors.loads : factors.displacements) = factor;
+          if (parameters.displacement_factors.empty())
+            factors.displacements = factor;
+          return factors;
+        };
+
+        // By t, which rises to begin with.
+        const double sign  = *other > varied[0] ? 1. : -1.;
+        const auto   ends  = std::minmax_element(varied.begin(), varied.end());
+        const double lower = std::min(sign * *ends.first, sign * *ends.second),
+                     upper = std::max(sign * *ends.first, sign * *ends.second);
+        AdhesionIntegral<dim>        bonds(scene.adhesion());
+        const dealii::Vector<double> load  = load_at(factors_at(varied[0]));
+        dealii::Vector<double>       slope = load_at(factors_at(*other));
+        slope -= load;
+        slope /= std::abs(*other - varied[0]);
+        StationaryPath path(condensed.schur_complement(),
+                            load,
+                            slope,
+                            scene.law().branches(),
+                            bonds_of_nodes(bonds),
+                            parameters.bonds_heal,
+                            points[0],
+                            sign * varied[0]);
+        const auto     add = [&](const bool is_stable) {
+          const LoadFactors factors = factors_at(sign * path.t());
+          if (!parameters.bonds_heal)
+            bonds.break_for_good(path.point_before_kinks());
+          bonds.scale_load(factors.displacements);
+          scale_load(factors);
+          const dealii::Vector<double> u = condensed.expand(path.point());
+          const Verification<dim>      verification =
+            Debond::verify(scene.problem(), bonds, scene.law(), u, factors);
+          LoadPathStep<dim> step = {};
+          step.step   = static_cast<unsigned int>(arc.size() + 1);
+          step.factor = factors.loads;
+          step.displacement_factor = factors.displacements;
+          step.status              = is_stable ? "stable" : "unstable";
+          step.state               = load_path_state(scene.problem(),
+                                       bonds,
+                                       scene.means(),
+                                       scene.probes(),
+                                       factors,
+                                       u,
+                                       verification);
+          if (!is_verified(verification))
+            {
+              step.status = "not verified";
+              result.notes.push_back("The arc ends: " + location(step) +
+                                     failure(verification));
+            }
+          arc.push_back(step);
+          return step.status != "not verified";
+        };
+
+        using Event                 = StationaryPath::Event;
+        Event              last     = Event::contact;
+        const unsigned int most     = 100 + 20 * s.size();
+        bool               is_going = add(true);
+        for (unsigned int k = 0; is_going && last != Event::end; ++k)
+          {
+            if (guard.requested())
+              {
+                interrupt("the arc is not complete");
+                break;
+              }
+            const double before = path.t();
+            last                = path.advance(lower, upper);
+            is_going            = false;
+            if (last == Event::no_stiffness)
+              result.notes.push_back(
+                "The arc ends where the bonds that hold the body have "
+                "broken.");
+            else if (last == Event::degenerate)
+              result.notes.push_back(
+                "The arc ends where it branches, or rounding hides how it "
+                "goes on.");
+            else if (k == most)
+              result.notes.push_back("The arc ends after " +
+                                     std::to_string(most) +
+                                     " changes of nodes.");
+            else
+              // Nodes of a body at rest change one after the other.
+              is_going = path.t() == before || add(!path.was_at_kink());
+          }
+        result.parts["arc"] = timer.wall_time();
+      }
+
       SolveResult
       take_result()
       {
@@ -155,7 +268,6 @@ namespace Debond
       {
         const dealii::Vector<double> last   = s;
         const double                 factor = factors.loads;
-        const double last_factor = steps.empty() ? 0. : steps.back().factor;
 
         scale_load(factors);
         CondensedProblem             problem(condensed.schur_complement(),
@@ -191,8 +303,10 @@ namespace Debond
         step.step                = static_cast<unsigned int>(steps.size() + 1);
         step.factor              = factor;
         step.displacement_factor = factors.displacements;
-        step.iterations    = static_cast<unsigned int>(minimum.history.size());
-        step.change_factor = change_factor(last_factor, last, factor);
+        step.iterations = static_cast<unsigned int>(minimum.history.size());
+        if (!steps.empty())
+          step.change_factor =
+            change_factor(steps.back().factors(), last, factors);
         if (!parameters.bonds_heal)
           {
             adhesion.break_for_good(s);
@@ -292,27 +406,88 @@ namespace Debond
       }
 
 
+      /// g of the condensed problem.
+      dealii::Vector<double>
+      load_at(const LoadFactors factors)
+      {
+        condensed.scale_load(factors.loads, factors.displacements);
+        return condensed.load();
+      }
+
+      std::vector<StationaryPath::Bond>
+      bonds_of_nodes(const AdhesionIntegral<dim> &integral) const
+      {
+        std::vector<StationaryPath::Bond> bonds;
+        const auto                       &nodes =
+          scene.problem().unknowns().contact().boundary().nodes;
+        for (unsigned int i = 0; i < nodes.size(); ++i)
+          {
+            const BondScale scale = integral.bonds_at(i);
+            bonds.push_back({nodes[i].measure * scale.energy,
+                             scale.stretch,
+                             integral.least_piece(i)});
+          }
+        return bonds;
+      }
+
       /// See LoadPathStep::change_factor.
       std::optional<double>
-      change_factor(const double                  last_factor,
+      change_factor(const LoadFactors             last_factors,
                     const dealii::Vector<double> &last,
-                    const double                  factor) const
+                    const LoadFactors             factors)
       {
-        // Without a slope, gaps and other factors displacements are
-        // proportional to the factor.
         const BranchMinimum &branches  = scene.law().branches();
         bool                 has_slope = false;
         for (unsigned int k = 0; k < branches.size(); ++k)
           has_slope = has_slope || branches[k].slope != 0.;
-        if (branches.size() == 1 || has_slope || last_factor == 0. ||
-            scene.problem().unknowns().has_gap() || !adhesion.is_separable() ||
-            !parameters.displacement_factors.empty() ||
-            !parameters.dead_loads.empty())
+        if (branches.size() == 1 || !adhesion.is_separable())
           return {};
+        // Without a slope, gaps and other factors displacements are
+        // proportional to the factor.
+        if (last_factors.loads != 0. && !has_slope &&
+            !scene.problem().unknowns().has_gap() &&
+            parameters.displacement_factors.empty() &&
+            parameters.dead_loads.empty())
+          return proportional_change(last_factors.loads, last, factors.loads);
 
-        double     first     = factor / last_factor;
-        const bool increases = first > 1.;
-        bool       changes   = false;
+        const dealii::Vector<double> load  = load_at(last_factors);
+        dealii::Vector<double>       slope = load_at(factors);
+        slope -= load;
+        StationaryPath path(condensed.schur_complement(),
+                            load,
+                            slope,
+                            branches,
+                            bonds_of_nodes(adhesion),
+                            parameters.bonds_heal,
+                            last,
+                            0.);
+        // Contact that comes and goes.
+        using Event = StationaryPath::Event;
+        Event event = Event::contact;
+        for (unsigned int k = 0; event == Event::contact && k < 2 * s.size();
+             ++k)
+          event = path.advance(0., 1.);
+        if (event != Event::bond)
+          return {};
+        const double first = factors.loads != last_factors.loads ?
+                               last_factors.loads :
+                               last_factors.displacements;
+        const double end   = factors.loads != last_factors.loads ?
+                               factors.loads :
+                               factors.displacements;
+        return first + path.t() * (end - first);
+      }
+
+      /// The same if displacements are proportional to the factor.
+      std::optional<double>
+      proportional_change(const double                  last_factor,
+                          const dealii::Vector<double> &last,
+                          const double                  factor) const
+      {
+        const BranchMinimum &branches  = scene.law().branches();
+        double               first     = factor / last_factor;
+        const bool           increases = first > 1.;
+        bool                 changes   = false;
         for (unsigned int i = 0; i < last.size(); ++i)
           if (last(i) < 0.)
             {
@@ -425,7 +600,8 @@ namespace Debond
                    const Scene<dim>               &scene,
                    const LoadPathObserver<dim>    &observer,
                    std::ostream                   *out,
-                   std::vector<LoadPathStep<dim>> &steps)
+                   std::vector<LoadPathStep<dim>> &steps,
+                   std::vector<LoadPathStep<dim>> &arc)
   {
     PathFollower<dim> path(
       parameters, solver, verification_tolerance, scene, out, steps);
@@ -438,6 +614,8 @@ namespace Debond
     if (is_wanted && has_branch && !steps.empty() &&
         steps.back().message.empty())
       path.find_global_branch();
+    if (parameters.arc && !steps.empty() && steps.back().message.empty())
+      path.find_arc(arc);
     SolveResult result = path.take_result();
     if (is_wanted && !has_branch)
       result.notes.push_back(
@@ -455,6 +633,7 @@ namespace Debond
                    const Scene<2> &,
                    const LoadPathObserver<2> &,
                    std::ostream *,
+                   std::vector<LoadPathStep<2>> &,
                    std::vector<LoadPathStep<2>> &);
   template SolveResult
   follow_load_path(const LoadPathParameters &,
@@ -463,5 +642,6 @@ namespace Debond
                    const Scene<3> &,
                    const LoadPathObserver<3> &,
                    std::ostream *,
+                   std::vector<LoadPathStep<3>> &,
                    std::vector<LoadPathStep<3>> &);
 } // namespace Debond

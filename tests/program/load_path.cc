@@ -10,6 +10,7 @@
 #include <debond/solve/load_path.h>
 #include <debond/solve/solve.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <sstream>
@@ -26,7 +27,7 @@ namespace
   template <int dim>
   struct Path
   {
-    Steps<dim>  steps;
+    Steps<dim>  steps, arc;
     SolveResult result;
   };
 
@@ -59,7 +60,8 @@ namespace
       scene,
       [](const auto &...) {},
       nullptr,
-      path.steps);
+      path.steps,
+      path.arc);
     return path;
   }
 
@@ -73,6 +75,34 @@ namespace
       "Contact law/Bond stiffness=690"};
     assignments.insert(assignments.end(), others.begin(), others.end());
     return assignments;
+  }
+
+
+
+  /// Along a curve of stationary states the derivative of J by the factor is
+  /// the work on the unit load or displacement, which is linear between
+  /// breakpoints. The largest difference, relative to J's own largest one.
+  template <int dim>
+  double
+  derivative_error(const Steps<dim> &arc)
+  {
+    double error = 0., largest = 0.;
+    for (unsigned int k = 1; k < arc.size(); ++k)
+      {
+        const auto  &before = arc[k - 1], &after = arc[k];
+        const double change =
+          (after.displacement_factor - before.displacement_factor) *
+            (before.state.unit_displacement_work +
+             after.state.unit_displacement_work) /
+            2. -
+          (after.factor - before.factor) *
+            (before.state.unit_load_work + after.state.unit_load_work) / 2.;
+        error   = std::max(error,
+                         std::abs(after.state.functional -
+                                  before.state.functional - change));
+        largest = std::max(largest, std::abs(change));
+      }
+    return error / largest;
   }
 
 
@@ -434,6 +464,171 @@ namespace
               << unverified.steps.back().status << ", "
               << unverified.steps.back().message.substr(0, 43) << '\n';
   }
+
+
+  /// The same column, pulled by a traction or by its top: from 0 along the
+  /// bonded states to the snap, then with the gap M and a falling pull of the
+  /// bonds back to where they close, then along the broken states.
+  template <int dim>
+  void
+  test_column_arc(const bool is_moved)
+  {
+    const double E = 10., H = 0.2, a = 150., M = 0.01, k = E / H;
+    const double area    = dim == 2 ? 0.3 : 0.3 * 0.1;
+    const double snap    = is_moved ? M * (1. + a / k) : M * (k + a),
+                 closing = is_moved ? M : M * k, end = 1.4 * snap;
+
+    std::vector<std::string> scene = {
+      "Material/Young modulus=10",
+      "Material/Poisson ratio=0",
+      "Boundary conditions/Contact boundary=bottom",
+      "Contact law/Bond stiffness=150",
+      "Contact law/Bond threshold=0.01",
+      "Contact law/Tangential displacement=free",
+      "Load path/Global branch=none",
+      "Load path/Arc=true"};
+    const std::string factors =
+      "0:" + std::to_string(end / 20.) + ":" + std::to_string(end);
+    if (is_moved)
+      scene.insert(scene.end(),
+                   {"Boundary conditions/Clamped boundaries=",
+                    std::string("Boundary conditions/Displacement top=0; 1") +
+                      (dim == 3 ? "; 0" : ""),
+                    "Load path/Displacement factors=" + factors});
+    else
+      scene.insert(scene.end(),
+                   {"Boundary conditions/Clamped boundaries=top",
+                    std::string("Loads/Traction bottom=0; 1") +
+                      (dim == 3 ? "; 0" : ""),
+                    "Load path/Factors=" + factors});
+    if (dim == 2)
+      scene.insert(scene.end(), {"Mesh/Lengths=0.3, 0.2", "Mesh/Cells=3, 2"});
+    else
+      scene.insert(scene.end(),
+                   {"Dimension=3",
+                    "Mesh/Lengths=0.3, 0.2, 0.1",
+                    "Mesh/Cells=2, 2, 1"});
+    const Path<dim> path = follow<dim>(scene);
+
+    std::cout << "Arc of the column in " << dim << "D, "
+              << (is_moved ? "moved" : "loaded") << '\n';
+    const auto &arc = path.arc;
+    // From rest the body leaves the foundation at once.
+    unsigned int first = 0;
+    while (first + 1 < arc.size() && arc[first + 1].state.largest_gap == 0.)
+      ++first;
+    check("  rest, snap, closing and end", arc.size() == first + 4);
+    if (arc.size() != first + 4)
+      return;
+    const std::vector<double>      where = {0., snap, closing, end};
+    const std::vector<double>      gaps  = {0., M, M, is_moved ? end : end / k};
+    const std::vector<std::string> words = {"stable",
+                                            "stable",
+                                            "unstable",
+                                            "stable"};
+    double factor_error = 0., gap_error = 0., energy_error = 0.,
+           work_error = 0., law_violation = 0.;
+    bool named = true;
+    for (unsigned int i = 0; i < 4; ++i)
+      {
+        const auto  &step   = arc[first + i];
+        const double factor = is_moved ? step.displacement_factor : step.factor;
+        const double w      = gaps[i];
+        const double bonds  = 0.5 * a * std::min(w, M) * std::min(w, M);
+        const double energy =
+          area * (is_moved ? 0.5 * k * (where[i] - w) * (where[i] - w) + bonds :
+                             0.5 * k * w * w + bonds - where[i] * w);
+        const double work = is_moved ? area * k * (where[i] - w) : area * w;
+        factor_error =
+          std::max(factor_error, std::abs(factor - where[i]) / snap);
+        gap_error    = std::max({gap_error,
+                                 std::abs(step.state.mean_gap - w) / M,
+                                 std::abs(step.state.largest_gap - w) / M});
+        energy_error = std::max(energy_error,
+                                std::abs(step.state.functional - energy) /
+                                  (area * a * M * M));
+        work_error =
+          std::max(work_error,
+                   std::abs((is_moved ? step.state.unit_displacement_work :
+                                        step.state.unit_load_work) -
+                            work) /
+                     (area * (is_moved ? a * M : M)));
+        law_violation = std::max(law_violation, step.state.law_violation);
+        named         = named && step.status == words[i];
+      }
+    check("  factors", factor_error, 1e-12);
+    check("  gaps", gap_error, 1e-12);
+    check("  J", energy_error, 1e-12);
+    check("  work on the unit load or displacement", work_error, 1e-12);
+    check("  contact law", law_violation, 1e-9);
+    check("  the way back is unstable", named);
+    double error = 1.;
+    for (const auto &step : path.steps)
+      if (step.change_factor)
+        error = std::abs(*step.change_factor - snap) / snap;
+    check("  the followed path snaps there", error, 1e-12);
+  }
+
+
+
+  void
+  test_arcs()
+  {
+    std::cout << "Arcs of the benchmark\n";
+    const std::vector<std::string> loaded = {"Load path/Factors=0:0.5:2.5",
+                                             "Load path/Global branch=none",
+                                             "Load path/Arc=true"};
+    const std::vector<std::string> moved  = {
+       "Loads/Traction top=",
+       "Boundary conditions/Displacement right=free; 0.02",
+       "Boundary conditions/Clamped boundaries=left",
+       "Load path/Displacement factors=0:0.25:1",
+       "Load path/Global branch=none",
+       "Load path/Arc=true"};
+    std::vector<std::string> for_good = moved;
+    for_good.emplace_back("Load path/Bonds heal=false");
+    for (const auto &[name, scene] :
+         {std::make_pair("loaded", loaded),
+          std::make_pair("moved", moved),
+          std::make_pair("moved, bonds do not heal", for_good)})
+      {
+        const Path<2> path  = follow<2>(benchmark(scene));
+        const auto   &arc   = path.arc;
+        const auto    count = [&](const std::string &word) {
+          return std::count_if(arc.begin(), arc.end(), [&](const auto &step) {
+            return step.status == word;
+          });
+        };
+        std::cout << "  " << name << '\n';
+        check("  ends where the path ends",
+              !arc.empty() && arc.back().factor == path.steps.back().factor &&
+                arc.back().displacement_factor ==
+                  path.steps.back().displacement_factor);
+        check("  has unstable states", count("unstable") > 2);
+        check("  and no others",
+              count("stable") + count("unstable") ==
+                static_cast<long>(arc.size()));
+        check("  J is the integral of the work", derivative_error(arc), 1e-10);
+        double violation = 0., error = 1.;
+        for (const auto &step : arc)
+          violation = std::max(violation, step.state.law_violation);
+        check("  contact law", violation, 1e-9);
+        // The first break of the path is where a bond of the arc comes to its
+        // kink.
+        for (const auto &step : path.steps)
+          if (step.change_factor)
+            {
+              for (const auto &state : arc)
+                error = std::min(error,
+                                 std::abs(*step.change_factor -
+                                          (name == std::string("loaded") ?
+                                             state.factor :
+                                             state.displacement_factor)));
+              break;
+            }
+        check("  the first break of the path is on it", error, 1e-10);
+      }
+  }
 } // namespace
 
 
@@ -445,6 +640,11 @@ main(int argc, char *[])
   test_factors();
   test_column<2>();
   test_column<3>();
+  test_column_arc<2>(false);
+  test_column_arc<3>(false);
+  test_column_arc<2>(true);
+  test_column_arc<3>(true);
+  test_arcs();
   test_benchmark();
   test_single_factor();
   test_other_laws();

@@ -175,7 +175,7 @@ namespace
                      "Load path/Global branch=prove"});
     const MethodChoice           choice = choose_method(parameters);
     const Scene<2>               scene(parameters, matrix_storage(choice));
-    std::vector<LoadPathStep<2>> steps;
+    std::vector<LoadPathStep<2>> steps, arc;
     const SolveResult            result = follow_load_path<2>(
       parameters.load_path,
       parameters.solver,
@@ -183,7 +183,8 @@ namespace
       scene,
       [](const auto &...) {},
       nullptr,
-      steps);
+      steps,
+      arc);
 
     double       gap = 0., sum = 0.;
     bool         all_global = true, partly_broken = false, named = true;

@@ -26,6 +26,11 @@ namespace Debond
     /// to the factor, since dJ/d(factor) = -<f, u> along a branch.
     double unit_load_work;
 
+    /// The same for prescribed displacements: the work of the supports' forces
+    /// on what they prescribe with factor 1, the derivative of J by their
+    /// factor. If that is one displacement of 1, its reaction.
+    double unit_displacement_work;
+
     /// Parts of the contact boundary by its nodes' measures. Open boundary
     /// counts as broken, if there is no adhesion.
     double contact_part;

@@ -49,6 +49,10 @@ namespace Debond
     at(const unsigned int step) const;
 
     GlobalBranch global_branch = GlobalBranch::search;
+
+    /// Whether the unstable states between those that the path leads to are
+    /// wanted.
+    bool arc = false;
   };
 
   /// Reads numbers and ranges FIRST:STEP:LAST, separated by commas, such as

@@ -21,11 +21,12 @@ namespace Debond
   class LoadPathOutput
   {
   public:
-    /// Keeps references: the @p steps need not be there yet. What hinders
-    /// gnuplot, if it is wanted, is told in @p note.
+    /// Keeps references: the @p steps and the @p arc need not be there yet.
+    /// What hinders gnuplot, if it is wanted, is told in @p note.
     LoadPathOutput(const OutputParameters               &output,
                    const ElasticProblem<dim>            &problem,
                    const std::vector<LoadPathStep<dim>> &steps,
+                   const std::vector<LoadPathStep<dim>> &arc,
                    std::string                          &note);
 
     /// Those that an earlier run left in load_path/.
@@ -63,6 +64,7 @@ namespace Debond
     const OutputParameters               &output;
     const ElasticProblem<dim>            &problem;
     const std::vector<LoadPathStep<dim>> &steps;
+    const std::vector<LoadPathStep<dim>> &arc;
     std::string                          &note;
     Series                                bodies;
     Series                                contacts;

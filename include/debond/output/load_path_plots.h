@@ -15,11 +15,13 @@ namespace Debond
   load_path_plot_names();
 
   /// Broken part, J and normal force over the factor and the factor over
-  /// <f, u>: a curve for each time that the factor rises or falls, and one for
-  /// the global branch. There has to be one step at least.
+  /// <f, u>, or if prescribed displacements alone have one, their forces over
+  /// it: a curve for each time that the factor rises or falls, one for
+  /// the global branch and one for the arc. There has to be one step at least.
   template <int dim>
   std::vector<Plot>
-  load_path_plots(const std::vector<LoadPathStep<dim>> &steps);
+  load_path_plots(const std::vector<LoadPathStep<dim>> &steps,
+                  const std::vector<LoadPathStep<dim>> &arc);
 } // namespace Debond
 
 #endif

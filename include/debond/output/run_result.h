@@ -48,6 +48,7 @@ namespace Debond
 
     /// If the scene has a load path; all the rest is of its last step.
     std::vector<LoadPathStep<dim>> path;
+    std::vector<LoadPathStep<dim>> arc; ///< see follow_load_path()
 
     /// Wall seconds of the parts of the run, in their order.
     std::vector<std::pair<std::string, double>> times;

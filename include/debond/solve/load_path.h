@@ -31,6 +31,12 @@ namespace Debond
    * global branch. The result is that of the last factor; its status is success
    * if all factors were solved, whether or not all of them are verified. A
    * table of the factors is printed to @p out unless that is null.
+   *
+   * If the scene wants it, @p arc gets the curve of stationary states on which
+   * that of the first factor is, a step for each breakpoint (StationaryPath),
+   * until the factor leaves the interval of those of the path: `status` is
+   * "stable" if the states between the last breakpoint and this one are minima,
+   * else "unstable".
    */
   template <int dim>
   SolveResult
@@ -40,7 +46,8 @@ namespace Debond
                    const Scene<dim>               &scene,
                    const LoadPathObserver<dim>    &observer,
                    std::ostream                   *out,
-                   std::vector<LoadPathStep<dim>> &steps);
+                   std::vector<LoadPathStep<dim>> &steps,
+                   std::vector<LoadPathStep<dim>> &arc);
 } // namespace Debond
 
 #endif

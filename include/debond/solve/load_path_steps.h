@@ -22,8 +22,9 @@ namespace Debond
     unsigned int       iterations; ///< of majorise-minimise
 
     /// Where on the way from the last factor the first bond broke or closed,
-    /// if one did: displacements are proportional to the factor as long as none
-    /// does. Known with nodal quadrature, unless the step begins at zero.
+    /// if one did: on straight pieces of the way displacements are linear in
+    /// the factor. That of prescribed displacements if the loads' factor stayed
+    /// the same. Known with nodal quadrature, but for the first step.
     std::optional<double> change_factor;
 
     /// The global branch at this factor, if it was computed.

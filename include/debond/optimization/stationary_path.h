@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_stationary_path_h
+#define debond_optimization_stationary_path_h
+
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/optimization/branch_minimum.h>
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace Debond
+{
+  /**
+   * The stationary points, in Clarke's sense, of
+   *
+   *     1/2 s'S s - g(t)'s + sum_i w_i f(s_i / l_i),  s <= 0,
+   *
+   * g being affine in t, f a BranchMinimum and S positive definite where pieces
+   * of f have no curvature. Each s_i together with its force r_i, r = g - S s,
+   * is on a curve of straight segments: contact (s_i = 0), a piece of f, the
+   * kink after it, at which s_i stays and r_i goes from the derivative of one
+   * piece to that of the next, and so on. So the stationary points form a curve
+   * in (s, t) that is straight between breakpoints, at which one s_i comes to
+   * its next segment; t may turn there, and only there. It goes on beyond the
+   * end of a minimum: points with an s_i at a kink are no minima, as f is
+   * concave there.
+   *
+   * See Eaves, "On solving equations with piecewise linear functions", in:
+   * Math. Oper. Res. 1 (1976).
+   */
+  class StationaryPath
+  {
+  public:
+    struct Bond
+    {
+      double       energy;  ///< w_i
+      double       stretch; ///< l_i
+      unsigned int least;   ///< pieces of f before this one do not return
+    };
+
+    /// Starts at a minimum @p s for @p t, where @p load is g, in the direction
+    /// of rising t, @p slope being the derivative of g. Keeps references to
+    /// @p S and @p f. If not @p returns, s_i does not come back to a piece
+    /// that it has left.
+    StationaryPath(const dealii::FullMatrix<double> &S,
+                   const dealii::Vector<double>     &load,
+                   const dealii::Vector<double>     &slope,
+                   const BranchMinimum              &f,
+                   const std::vector<Bond>          &bonds,
+                   const bool                        returns,
+                   const dealii::Vector<double>     &s,
+                   const double                      t);
+
+    enum class Event
+    {
+      contact,      ///< some s_i came to zero or left it
+      bond,         ///< some s_i came to a kink or left it
+      end,          ///< of the interval
+      no_stiffness, ///< the curve goes to infinity
+      degenerate    ///< the curve branches, or rounding hides where it goes on
+    };
+
+    /// Goes on to the next breakpoint, or to where t leaves [lower, upper].
+    Event
+    advance(const double lower, const double upper);
+
+    double
+    t() const;
+
+    const dealii::Vector<double> &
+    point() const;
+
+    /// Whether some s_i was at a kink between the last two points.
+    bool
+    was_at_kink() const;
+
+    /// The point with each s_i that is at a kink inside the piece that it
+    /// has not left.
+    dealii::Vector<double>
+    point_before_kinks() const;
+
+  private:
+    /// 0 is contact, 2 k + 1 the k-th piece, 2 k + 2 the kink after it.
+    using Segment = unsigned int;
+
+    /// An s_i that has come to an end of its segment.
+    struct Change
+    {
+      unsigned int i;
+      bool         opens; ///< whether the way to greater segments
+      Segment      from;
+      unsigned int least; ///< of its bond
+    };
+
+    bool
+    is_free(const unsigned int i) const;
+
+    const BranchMinimum::Piece &
+    piece(const unsigned int i) const;
+
+    double
+    derivative(const unsigned int i, const unsigned int piece) const;
+
+    /// How fast s_i goes to greater segments as t rises.
+    double
+    opening(const unsigned int i) const;
+
+    /// What is left of the segment of s_i on the way to greater ones or back,
+    /// in terms of s_i or its force.
+    double
+    distance(const unsigned int i, const bool opens) const;
+
+    /// Puts s_i on its next segment.
+    void
+    change(const Change &change);
+
+    /// Takes the velocities of s and r from S. Returns whether S is definite
+    /// enough.
+    bool
+    solve();
+
+    const dealii::FullMatrix<double> &S;
+    const Eigen::VectorXd             load, slope;
+    const double                      first_t;
+    const BranchMinimum              &f;
+    std::vector<Bond>                 bonds;
+    const bool                        returns;
+
+    double                    parameter;
+    dealii::Vector<double>    s;
+    Eigen::VectorXd           r;
+    std::vector<Segment>      segments;
+    std::vector<Change>       changes;        ///< at the point
+    double                    direction = 1.; ///< of t
+    bool                      had_kink  = false;
+    std::vector<unsigned int> free;
+    Eigen::VectorXd           ds, dr; ///< by t
+  };
+} // namespace Debond
+
+#endif

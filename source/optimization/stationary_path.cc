@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/linear_algebra/eigen_view.h>
+#include <debond/optimization/stationary_path.h>
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Debond
+{
+  StationaryPath::StationaryPath(const dealii::FullMatrix<double> &S,
+                                 const dealii::Vector<double>     &load,
+                                 const dealii::Vector<double>     &slope,
+                                 const BranchMinimum              &f,
+                                 const std::vector<Bond>          &bonds,
+                                 const bool                        returns,
+                                 const dealii::Vector<double>     &s,
+                                 const double                      t)
+    : S(S)
+    , load(eigen_view(load))
+    , slope(eigen_view(slope))
+    , first_t(t)
+    , f(f)
+    , bonds(bonds)
+    , returns(returns)
+    , parameter(t)
+    , s(s)
+    , r(this->load - eigen_view(S) * eigen_view(s))
+    , ds(Eigen::VectorXd::Zero(s.size()))
+    , dr(Eigen::VectorXd::Zero(s.size()))
+  {
+    for (unsigned int i = 0; i < s.size(); ++i)
+      {
+        // What has no bonds is on one piece, whichever.
+        if (bonds[i].energy == 0.)
+          this->bonds[i].least = f.size() - 1;
+        segments.push_back(s(i) < 0. ?
+                             2 * std::max(this->bonds[i].least,
+                                          f.index(s(i) / bonds[i].stretch)) +
+                               1 :
+                             0);
+      }
+  }
+
+
+
+  bool
+  StationaryPath::is_free(const unsigned int i) const
+  {
+    return segments[i] % 2 == 1;
+  }
+
+
+
+  double
+  StationaryPath::derivative(const unsigned int i, const unsigned int k) const
+  {
+    // At the end of the piece towards 0 for contact, at the kink else.
+    const double at = segments[i] == 0 ? 0. : f[(segments[i] - 1) / 2].lower;
+    return bonds[i].energy / bonds[i].stretch * f[k].derivative(at);
+  }
+
+
+
+  double
+  StationaryPath::opening(const unsigned int i) const
+  {
+    return is_free(i) ? -ds(i) : segments[i] == 0 ? -dr(i) : dr(i);
+  }
+
+
+
+  double
+  StationaryPath::distance(const unsigned int i, const bool opens) const
+  {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const Bond      &bond     = bonds[i];
+    if (segments[i] == 0)
+      return opens ? r(i) - derivative(i, bond.least) : infinity;
+    const unsigned int k = (segments[i] - 1) / 2;
+    if (is_free(i))
+      return opens ? s(i) - bond.stretch * f[k].lower :
+                     (k == bond.least ? 0. : bond.stretch * f[k].upper) - s(i);
+    return opens ? derivative(i, k + 1) - r(i) : r(i) - derivative(i, k);
+  }
+
+
+
+  void
+  StationaryPath::change(const Change &change)
+  {
+    const unsigned int i     = change.i;
+    const Segment      first = 2 * bonds[i].least + 1;
+    Segment           &here  = segments[i];
+    if (change.opens)
+      here = here == 0 ? first : here + 1;
+    else
+      here = here == first ? 0 : here - 1;
+    if (here == 0)
+      s(i) = 0.;
+    else if (!is_free(i))
+      s(i) = bonds[i].stretch * f[(here - 1) / 2].lower;
+    else if (!returns && change.opens)
+      bonds[i].least = (here - 1) / 2;
+  }
+
+
+
+  bool
+  StationaryPath::solve()
+  {
+    free.clear();
+    for (unsigned int i = 0; i < s.size(); ++i)
+      if (is_free(i))
+        free.push_back(i);
+    const Eigen::Index n = static_cast<Eigen::Index>(free.size());
+
+    // Of s at t: S s + r = load + (t - first_t) slope, r known by s_i on
+    // pieces.
+    Eigen::MatrixXd M(n, n);
+    Eigen::MatrixXd right(n, 2);
+    const auto      matrix = eigen_view(S);
+    Eigen::VectorXd held   = eigen_view(s);
+    for (const unsigned int i : free)
+      held(i) = 0.;
+    const Eigen::VectorXd rest =
+      load + (parameter - first_t) * slope - matrix * held;
+    for (Eigen::Index k = 0; k < n; ++k)
+      {
+        const unsigned int i    = free[k];
+        const Bond        &bond = bonds[i];
+        const auto        &p    = f[(segments[i] - 1) / 2];
+        for (Eigen::Index l = 0; l < n; ++l)
+          M(k, l) = matrix(i, free[l]);
+        M(k, k) += bond.energy / (bond.stretch * bond.stretch) * p.curvature;
+        right(k, 0) = slope(i);
+        right(k, 1) = rest(i) - bond.energy / bond.stretch * p.slope;
+      }
+    const Eigen::LLT<Eigen::MatrixXd> factor(M);
+    constexpr double                  noise = 1e-13;
+    if (n > 0 && (factor.info() != Eigen::Success || factor.rcond() < noise))
+      return false;
+    const Eigen::MatrixXd x = factor.solve(right);
+    ds.setZero();
+    for (Eigen::Index k = 0; k < n; ++k)
+      {
+        ds(free[k]) = x(k, 0);
+        s(free[k])  = x(k, 1);
+      }
+    dr = slope - matrix * ds;
+    r  = load + (parameter - first_t) * slope - matrix * eigen_view(s);
+    return true;
+  }
+
+
+
+  StationaryPath::Event
+  StationaryPath::advance(const double lower, const double upper)
+  {
+    if (!solve())
+      return Event::no_stiffness;
+    // All go on to their next segments, or if t had to rise for some of them
+    // and to fall for others, the first one does.
+    const auto sense = [this](const Change &change) {
+      const double speed = opening(change.i);
+      return speed == 0. ? 0. : (speed > 0.) == change.opens ? 1. : -1.;
+    };
+    if (!changes.empty())
+      {
+        const auto first = sense(changes[0]);
+        if (std::any_of(changes.begin(), changes.end(), [&](const Change &c) {
+              return sense(c) != first;
+            }))
+          {
+            for (unsigned int k = 1; k < changes.size(); ++k)
+              {
+                segments[changes[k].i]    = changes[k].from;
+                bonds[changes[k].i].least = changes[k].least;
+              }
+            changes.resize(1);
+            if (!solve())
+              return Event::no_stiffness;
+          }
+        direction = sense(changes[0]);
+        if (direction == 0.)
+          return Event::degenerate;
+      }
+
+    const double        end  = direction > 0. ? upper : lower;
+    double              step = std::max(0., direction * (end - parameter));
+    std::vector<double> steps(s.size(),
+                              std::numeric_limits<double>::infinity());
+    bool                reaches_end = true;
+    for (unsigned int i = 0; i < s.size(); ++i)
+      if (const double speed = direction * opening(i); speed != 0.)
+        {
+          steps[i] = std::max(0., distance(i, speed > 0.)) / std::abs(speed);
+          if (steps[i] <= step)
+            {
+              step        = steps[i];
+              reaches_end = false;
+            }
+        }
+
+    constexpr double rounding = 1e-11;
+    const double     tie      = step + rounding * (upper - lower);
+    had_kink                  = false;
+    for (unsigned int i = 0; i < s.size(); ++i)
+      had_kink = had_kink || (segments[i] > 0 && !is_free(i));
+    changes.clear();
+    if (!reaches_end)
+      for (unsigned int i = 0; i < s.size(); ++i)
+        if (steps[i] <= tie)
+          changes.push_back(
+            {i, direction * opening(i) > 0., segments[i], bonds[i].least});
+    parameter += direction * step;
+    if (!solve())
+      return Event::no_stiffness;
+    if (reaches_end)
+      return Event::end;
+    bool has_bonds = false;
+    for (const Change &one : changes)
+      {
+        change(one);
+        has_bonds = has_bonds || (one.from > 0 && segments[one.i] > 0);
+      }
+    return has_bonds ? Event::bond : Event::contact;
+  }
+
+
+
+  double
+  StationaryPath::t() const
+  {
+    return parameter;
+  }
+
+
+
+  const dealii::Vector<double> &
+  StationaryPath::point() const
+  {
+    return s;
+  }
+
+
+
+  bool
+  StationaryPath::was_at_kink() const
+  {
+    return had_kink;
+  }
+
+
+
+  dealii::Vector<double>
+  StationaryPath::point_before_kinks() const
+  {
+    dealii::Vector<double> result = s;
+    for (unsigned int i = 0; i < s.size(); ++i)
+      if (segments[i] > 0 && !is_free(i))
+        result(i) = bonds[i].stretch * f.point_inside((segments[i] - 1) / 2);
+    return result;
+  }
+} // namespace Debond
