@@ -44,6 +44,10 @@ namespace Debond
     : file_name((std::filesystem::path(directory) / ".lock").string())
   {
     std::error_code error;
+    for (std::filesystem::path path(directory);
+         path.has_relative_path() && !std::filesystem::exists(path, error);
+         path = path.parent_path())
+      created.push_back(path.string());
     std::filesystem::create_directories(directory, error);
     if (error)
       throw std::runtime_error("cannot create the output directory " +
@@ -87,7 +91,22 @@ namespace Debond
 
   DirectoryLock::~DirectoryLock()
   {
+    if (descriptor < 0)
+      return;
     unlink(file_name.c_str());
     close(descriptor);
+  }
+
+
+
+  void
+  DirectoryLock::withdraw()
+  {
+    unlink(file_name.c_str());
+    close(descriptor);
+    descriptor = -1;
+    std::error_code not_empty;
+    for (const std::string &directory : created)
+      std::filesystem::remove(directory, not_empty);
   }
 } // namespace Debond

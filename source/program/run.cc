@@ -545,11 +545,9 @@ namespace Debond
         catch (const BadInput &)
           {
             // A load that only the finer mesh shows to have no integral.
-            std::error_code not_empty;
             for (const std::string &file : written)
               std::filesystem::remove(file);
-            lock.reset();
-            std::filesystem::remove(parameters.output.directory, not_empty);
+            lock->withdraw();
             throw;
           }
         result.solve       = std::move(adaptive.solve);

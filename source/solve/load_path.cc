@@ -172,9 +172,9 @@ namespace Debond
                             sign * varied[0]);
         const auto     add = [&](const bool is_stable) {
           const LoadFactors factors = factors_at(sign * path.t());
+          bonds.scale_load(factors.displacements);
           if (!parameters.bonds_heal)
             bonds.break_for_good(path.point_before_kinks());
-          bonds.scale_load(factors.displacements);
           scale_load(factors);
           const dealii::Vector<double> u = condensed.expand(path.point());
           const Verification<dim>      verification =

@@ -4,6 +4,7 @@
 
 #include <debond/base/number_text.h>
 #include <debond/base/text.h>
+#include <debond/check/error_estimate.h>
 #include <debond/contact/field_value.h>
 #include <debond/elasticity/temperature_load.h>
 #include <debond/input/expression.h>
@@ -587,6 +588,15 @@ namespace Debond
       make_functional(elastic_problem->matrix());
     else
       make_functional(elastic_problem->trilinos_matrix());
+    // Asks for the bonds at points of its own, where they may be wrong.
+    if (bond_field)
+      estimate_error(*elastic_problem,
+                     *adhesion_integral,
+                     boundary_conditions,
+                     body_supports,
+                     Loads<dim>(),
+                     Vector(elastic_problem->unknowns().n_dofs()),
+                     0.);
   }
 
 

@@ -553,8 +553,10 @@ namespace
                                         step.state.unit_load_work) -
                             work) /
                      (area * (is_moved ? a * M : M)));
-        law_violation = std::max(law_violation, step.state.law_violation);
-        named         = named && step.status == words[i];
+        // Of a column that moves without bonds all forces are rounding.
+        if (work != 0.)
+          law_violation = std::max(law_violation, step.state.law_violation);
+        named = named && step.status == words[i];
       }
     check("  factors", factor_error, 1e-12);
     check("  gaps", gap_error, 1e-12);
@@ -578,13 +580,17 @@ namespace
     const std::vector<std::string> loaded = {"Load path/Factors=0:0.5:2.5",
                                              "Load path/Global branch=none",
                                              "Load path/Arc=true"};
-    const std::vector<std::string> moved  = {
-       "Loads/Traction top=",
-       "Boundary conditions/Displacement right=free; 0.02",
-       "Boundary conditions/Clamped boundaries=left",
-       "Load path/Displacement factors=0:0.25:1",
-       "Load path/Global branch=none",
-       "Load path/Arc=true"};
+    // Without bonds at the corner that is moved: they break between
+    // breakpoints.
+    const std::vector<std::string> moved = {
+      "Loads/Traction top=",
+      "Parts/Glued=bottom: x < 0.39",
+      "Boundary conditions/Contact boundary=Glued",
+      "Boundary conditions/Displacement right=free; 0.02",
+      "Boundary conditions/Clamped boundaries=left",
+      "Load path/Displacement factors=0:0.25:1",
+      "Load path/Global branch=none",
+      "Load path/Arc=true"};
     std::vector<std::string> for_good = moved;
     for_good.emplace_back("Load path/Bonds heal=false");
     for (const auto &[name, scene] :

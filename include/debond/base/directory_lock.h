@@ -3,6 +3,7 @@
 #define debond_base_directory_lock_h
 
 #include <string>
+#include <vector>
 
 namespace Debond
 {
@@ -24,9 +25,18 @@ namespace Debond
 
     DirectoryLock(const DirectoryLock &) = delete;
 
+    /// Takes back what the constructor did: the lock, and the directories that
+    /// it created, if nothing is in them.
+    void
+    withdraw();
+
   private:
     const std::string file_name;
-    int               descriptor = -1;
+
+    /// The innermost one first.
+    std::vector<std::string> created;
+
+    int descriptor = -1;
   };
 } // namespace Debond
 
