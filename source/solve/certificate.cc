@@ -23,7 +23,8 @@ namespace Debond
     /// energy.
     constexpr double certificate_rounding = 1e-9;
 
-    /// Of tractions, relative to the largest one.
+    /// Of tractions, relative to the largest one, or that of the boundary if it
+    /// were held.
     constexpr double traction_rounding = 1e-9;
 
 
@@ -250,10 +251,11 @@ namespace Debond
       const Eigen::VectorXd moments          = S * x - g;
       double                largest_traction = 0.;
       for (Eigen::Index i = 0; i < n; ++i)
-        largest_traction =
-          std::max(largest_traction,
-                   (std::abs(moments(i)) + 3. * std::abs(moments(n + i))) /
-                     sides[i].length);
+        for (const Eigen::VectorXd *f : {&moments, &g})
+          largest_traction =
+            std::max(largest_traction,
+                     (std::abs((*f)(i)) + 3. * std::abs((*f)(n + i))) /
+                       sides[i].length);
       certificate.lower   = condensed->energy_at_zero() - 0.5 * x.dot(S * x);
       certificate.reserve = equilibrium.rounding_of(*condensed, x);
       certificate.upper   = equilibrium.elastic_functional(displacement);
@@ -275,6 +277,12 @@ namespace Debond
           const Trace  trace(sides[i], displacement);
           const double of_bonds = trace.integral(
             [&](double, const double s) { return pieces[i].value(s); });
+          // Nothing may pull there: what rounding pulls costs this much at the
+          // displacement, and is reserved four times.
+          if (pieces[i].curvature == 0.)
+            certificate.reserve +=
+              4. * std::max(mean + std::abs(slope) + pieces[i].slope, 0.) *
+              length * std::abs(trace.mean());
           certificate.lower += bonds;
           certificate.upper += of_bonds;
           certificate.gaps[sides[i].cell] +=

@@ -275,6 +275,9 @@ namespace Debond
       result.constant -= 0.5 * b.tail(n).dot(result.offset);
       const Eigen::MatrixXd S =
         A.topLeftCorner(n, n) + A.topRightCorner(n, n) * result.slopes;
+      // What shifts take may be more than what the bonds of stiff laws leave.
+      if (!is_safely_positive_definite(0.5 * (S + S.transpose())))
+        return {};
       const Eigen::VectorXd g =
         b.head(n) + result.slopes.transpose() * b.tail(n);
       result.S.reinit(n, n);
