@@ -103,10 +103,10 @@ namespace Debond
 
   template <int dim>
   double
-  broken_zone(const ContactBoundary<dim>   &boundary,
-              const AdhesiveLaw            &law,
-              const AdhesionIntegral<dim>  &adhesion,
-              const dealii::Vector<double> &s)
+  broken_zone(const ContactBoundary<dim>  &boundary,
+              const AdhesiveLaw           &law,
+              const AdhesionIntegral<dim> &adhesion,
+              const VectorView            &s)
   {
     const unsigned int last = law.branches().size() - 1;
     // Bonds that hold at any distance are never broken.
@@ -156,10 +156,10 @@ namespace Debond
   broken_zone(const ContactBoundary<2> &,
               const AdhesiveLaw &,
               const AdhesionIntegral<2> &,
-              const dealii::Vector<double> &);
+              const VectorView &);
   template double
   broken_zone(const ContactBoundary<3> &,
               const AdhesiveLaw &,
               const AdhesionIntegral<3> &,
-              const dealii::Vector<double> &);
+              const VectorView &);
 } // namespace Debond

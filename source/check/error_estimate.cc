@@ -5,6 +5,7 @@
 #include <debond/check/error_estimate.h>
 #include <debond/contact/field_value.h>
 #include <debond/elasticity/linear_simplex.h>
+#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -525,8 +526,9 @@ namespace Debond
       {
         // Displacements of iterative methods may be off by so much.
         constexpr double tolerance = 1e-6;
-        double r_nu      = r * normal - adhesion.traction(face, barycentric, s);
-        bool   is_closed = true;
+        double           r_nu =
+          r * normal - adhesion.traction(face, barycentric, eigen_view(s));
+        bool is_closed = true;
         for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
           is_closed = is_closed &&
                       (face.node(k) == dealii::numbers::invalid_unsigned_int ||

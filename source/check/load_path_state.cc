@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/check/load_path_state.h>
+#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
 #include <cctype>
@@ -38,7 +39,7 @@ namespace Debond
       dealii::Vector<double> displacement = unknowns.lifting({0., 1.});
       displacement -= unknowns.lifting({0., 0.});
       double sum = problem.fields().residual(u, factors) * displacement;
-      const std::vector<double> forces = adhesion.held_forces(s);
+      const std::vector<double> forces = adhesion.held_forces(eigen_view(s));
       const auto &held = unknowns.contact().boundary().held_vertices;
       for (unsigned int k = 0; k < held.size(); ++k)
         sum += forces[k] * held[k].normal_displacement;
@@ -107,7 +108,7 @@ namespace Debond
       }
 
     state.elastic_energy  = problem.fields().strain_energy(u, factors);
-    state.adhesion_energy = adhesion.energy(s);
+    state.adhesion_energy = adhesion.energy(eigen_view(s));
     state.unit_load_work  = problem.fields().load_work(u, factors);
     state.unit_displacement_work =
       work_of_supports(problem, adhesion, factors, u, s);

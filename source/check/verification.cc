@@ -2,6 +2,7 @@
 #include <debond/check/broken_zone.h>
 #include <debond/check/verification.h>
 #include <debond/elasticity/cell_nodes.h>
+#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -249,7 +250,7 @@ namespace Debond
               radius[i] = delta[i] * scales[i].length;
             }
           const std::vector<Interval> intervals =
-            adhesion.force_intervals(s, radius);
+            adhesion.force_intervals(eigen_view(s), radius);
           for (unsigned int i = 0; i < n; ++i)
             {
               const Interval allowed =
@@ -493,13 +494,14 @@ namespace Debond
 
     const dealii::Vector<double> s               = trace(u);
     const dealii::Vector<double> normal_residual = trace(residual);
-    const std::vector<Interval>  forces = adhesion.force_intervals(s, 0.);
+    const std::vector<Interval>  forces =
+      adhesion.force_intervals(eigen_view(s), 0.);
 
     Verification<dim> result;
     result.state_names     = state_names(law);
     result.penetration     = 0.;
     result.largest_opening = 0.;
-    result.broken_zone     = broken_zone(boundary, law, adhesion, s);
+    result.broken_zone = broken_zone(boundary, law, adhesion, eigen_view(s));
     for (unsigned int i = 0; i < s.size(); ++i)
       {
         ContactNodeState node;
@@ -555,7 +557,7 @@ namespace Debond
         0.;
     compute_force_balance(problem,
                           residual,
-                          adhesion.held_forces(s),
+                          adhesion.held_forces(eigen_view(s)),
                           factors,
                           resolved,
                           piece,

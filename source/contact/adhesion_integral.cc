@@ -97,8 +97,7 @@ namespace Debond
   void
   AdhesionIntegral<dim>::update_points()
   {
-    const dealii::Vector<double> zero(
-      static_cast<unsigned int>(boundary.nodes.size()));
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(boundary.nodes.size());
     if (!quadrature.depends_on_trace())
       {
         collect_points(zero);
@@ -112,7 +111,7 @@ namespace Debond
 
   template <int dim>
   void
-  AdhesionIntegral<dim>::break_for_good(const dealii::Vector<double> &s)
+  AdhesionIntegral<dim>::break_for_good(const VectorView &s)
   {
     Assert(is_separable(), dealii::ExcInternalError());
     least_of_nodes.resize(boundary.nodes.size(), 0);
@@ -176,7 +175,7 @@ namespace Debond
   AdhesionIntegral<dim>::trace_at(
     const typename ContactBoundary<dim>::Face &face,
     const unsigned int                         vertex,
-    const dealii::Vector<double>              &s) const
+    const VectorView                          &s) const
   {
     return face.nodes[vertex] == dealii::numbers::invalid_unsigned_int ?
              held_trace(face, vertex) :
@@ -232,7 +231,7 @@ namespace Debond
 
   template <int dim>
   double
-  AdhesionIntegral<dim>::energy(const dealii::Vector<double> &s) const
+  AdhesionIntegral<dim>::energy(const VectorView &s) const
   {
     double sum = 0.;
     for (const Point &point : points(s))
@@ -245,7 +244,7 @@ namespace Debond
 
   template <int dim>
   double
-  AdhesionIntegral<dim>::value(const dealii::Vector<double> &s) const
+  AdhesionIntegral<dim>::value(const VectorView &s) const
   {
     return energy(s) - phi_at_zero;
   }
@@ -253,13 +252,10 @@ namespace Debond
 
 
   template <int dim>
-  void
-  AdhesionIntegral<dim>::subgradient(const dealii::Vector<double> &s,
-                                     dealii::Vector<double>       &xi) const
+  Eigen::VectorXd
+  AdhesionIntegral<dim>::subgradient(const VectorView &s) const
   {
-    AssertDimension(xi.size(), boundary.nodes.size());
-
-    xi = 0.;
+    Eigen::VectorXd xi = Eigen::VectorXd::Zero(s.size());
     for (const Point &point : points(s))
       {
         const double force =
@@ -269,13 +265,14 @@ namespace Debond
         for (unsigned int k = 0; k < point.n_nodes; ++k)
           xi(point.nodes[k]) += point.shape[k] * force;
       }
+    return xi;
   }
 
 
 
   template <int dim>
   Eigen::SparseMatrix<double>
-  AdhesionIntegral<dim>::curvature(const dealii::Vector<double> &s) const
+  AdhesionIntegral<dim>::curvature(const VectorView &s) const
   {
     std::vector<Eigen::Triplet<double>> entries;
     for (const Point &point : points(s))
@@ -300,8 +297,8 @@ namespace Debond
 
   template <int dim>
   std::vector<Interval>
-  AdhesionIntegral<dim>::force_intervals(const dealii::Vector<double> &s,
-                                         const double delta) const
+  AdhesionIntegral<dim>::force_intervals(const VectorView &s,
+                                         const double      delta) const
   {
     return force_intervals(s,
                            std::vector<double>(boundary.nodes.size(), delta));
@@ -311,7 +308,7 @@ namespace Debond
 
   template <int dim>
   std::vector<Interval>
-  AdhesionIntegral<dim>::force_intervals(const dealii::Vector<double> &s,
+  AdhesionIntegral<dim>::force_intervals(const VectorView          &s,
                                          const std::vector<double> &delta) const
   {
     AssertDimension(delta.size(), boundary.nodes.size());
@@ -341,7 +338,7 @@ namespace Debond
 
   template <int dim>
   double
-  AdhesionIntegral<dim>::Point::trace(const dealii::Vector<double> &s) const
+  AdhesionIntegral<dim>::Point::trace(const VectorView &s) const
   {
     double sum = offset;
     for (unsigned int k = 0; k < n_nodes; ++k)
@@ -353,9 +350,9 @@ namespace Debond
 
   template <int dim>
   const std::vector<typename AdhesionIntegral<dim>::Point> &
-  AdhesionIntegral<dim>::points(const dealii::Vector<double> &s) const
+  AdhesionIntegral<dim>::points(const VectorView &s) const
   {
-    AssertDimension(s.size(), boundary.nodes.size());
+    AssertDimension(static_cast<std::size_t>(s.size()), boundary.nodes.size());
 
     if (quadrature.depends_on_trace())
       collect_points(s);
@@ -385,7 +382,7 @@ namespace Debond
 
   template <int dim>
   void
-  AdhesionIntegral<dim>::collect_points(const dealii::Vector<double> &s) const
+  AdhesionIntegral<dim>::collect_points(const VectorView &s) const
   {
     const unsigned int n_face_nodes = boundary.n_face_nodes();
     point_list.clear();
@@ -517,7 +514,7 @@ namespace Debond
   double
   AdhesionIntegral<dim>::trace(const typename ContactBoundary<dim>::Face &face,
                                const std::array<double, dim> &barycentric,
-                               const dealii::Vector<double>  &s) const
+                               const VectorView              &s) const
   {
     const Trace coefficients = trace_on(face, s);
     const Trace shape        = bernstein(barycentric, boundary.degree);
@@ -533,7 +530,7 @@ namespace Debond
   typename ContactQuadrature<dim>::Trace
   AdhesionIntegral<dim>::trace_on(
     const typename ContactBoundary<dim>::Face &face,
-    const dealii::Vector<double>              &s) const
+    const VectorView                          &s) const
   {
     Trace trace = {};
     for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
@@ -550,7 +547,7 @@ namespace Debond
   AdhesionIntegral<dim>::traction(
     const typename ContactBoundary<dim>::Face &face,
     const std::array<double, dim>             &barycentric,
-    const dealii::Vector<double>              &s) const
+    const VectorView                          &s) const
   {
     const BondScale bonds = bonds_of(face, barycentric);
     return bonds.energy / bonds.stretch *
@@ -579,7 +576,7 @@ namespace Debond
 
   template <int dim>
   std::vector<double>
-  AdhesionIntegral<dim>::held_forces(const dealii::Vector<double> &s) const
+  AdhesionIntegral<dim>::held_forces(const VectorView &s) const
   {
     std::vector<double> forces(boundary.held_vertices.size(), 0.);
     if (forces.empty())

@@ -59,8 +59,8 @@ namespace Debond
 
   template <int dim>
   void
-  ContactSpace<dim>::add_normal(const dealii::Vector<double> &s,
-                                dealii::Vector<double>       &u) const
+  ContactSpace<dim>::add_normal(const VectorView       &s,
+                                dealii::Vector<double> &u) const
   {
     for (unsigned int i = 0; i < size(); ++i)
       u(normal_dofs[i]) += s(i);

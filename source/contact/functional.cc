@@ -6,6 +6,7 @@
 #include <deal.II/lac/vector_memory.h>
 
 #include <debond/contact/functional.h>
+#include <debond/linear_algebra/eigen_view.h>
 
 namespace Debond
 {
@@ -20,10 +21,8 @@ namespace Debond
       : functional(functional)
       , gradient(memory)
       , A_d(memory)
-      , s(functional.contact.trace(x))
-      , s_d(functional.contact.trace(d))
-      , s_t(s)
-      , xi(s)
+      , s(eigen_view(functional.contact.trace(x)))
+      , s_d(eigen_view(functional.contact.trace(d)))
       , adhesion_at_x(functional.adhesion.value(s))
     {
       gradient->reinit(x, true);
@@ -47,17 +46,15 @@ namespace Debond
     {
       eta = *gradient;
       eta.add(t, *A_d);
-      functional.adhesion.subgradient(trace(t), xi);
-      functional.contact.add_normal(xi, eta);
+      functional.contact.add_normal(functional.adhesion.subgradient(trace(t)),
+                                    eta);
     }
 
   private:
-    const dealii::Vector<double> &
+    Eigen::VectorXd
     trace(const double t) const
     {
-      s_t = s;
-      s_t.add(t, s_d);
-      return s_t;
+      return s + t * s_d;
     }
 
     const Functional &functional;
@@ -67,13 +64,11 @@ namespace Debond
     typename dealii::VectorMemory<VectorType>::Pointer gradient; ///< A x - f
     typename dealii::VectorMemory<VectorType>::Pointer A_d;
 
-    dealii::Vector<double>         s;
-    dealii::Vector<double>         s_d;
-    mutable dealii::Vector<double> s_t;
-    mutable dealii::Vector<double> xi;
-    double                         adhesion_at_x;
-    double                         slope;
-    double                         curvature;
+    Eigen::VectorXd s;
+    Eigen::VectorXd s_d;
+    double          adhesion_at_x;
+    double          slope;
+    double          curvature;
   };
 
 
@@ -98,7 +93,8 @@ namespace Debond
   {
     VectorType A_v(v);
     A.vmult(A_v, v);
-    return 0.5 * (A_v * v) - f * v + adhesion.value(contact.trace(v));
+    return 0.5 * (A_v * v) - f * v +
+           adhesion.value(eigen_view(contact.trace(v)));
   }
 
 
@@ -110,9 +106,7 @@ namespace Debond
   {
     A.vmult(eta, v);
     eta -= f;
-    dealii::Vector<double> xi(contact.size());
-    adhesion.subgradient(contact.trace(v), xi);
-    contact.add_normal(xi, eta);
+    contact.add_normal(adhesion.subgradient(eigen_view(contact.trace(v))), eta);
   }
 
 

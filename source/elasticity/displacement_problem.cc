@@ -63,14 +63,13 @@ namespace Debond
   {
     dealii::Vector<double> internal(u.size());
     multiply(internal, u);
-    const dealii::Vector<double> s = trace(u);
-    dealii::Vector<double>       xi(s.size());
-    phi.subgradient(s, xi);
+    const dealii::Vector<double> s  = trace(u);
+    const Eigen::VectorXd        xi = phi.subgradient(eigen_view(s));
 
     State        state;
     const double energy   = 0.5 * product(internal, u);
     const double work     = product(f, u);
-    const double adhesion = phi.value(s);
+    const double adhesion = phi.value(eigen_view(s));
     state.functional      = energy - work + adhesion;
 
     // The terms of a row of A u are as large as diagonal times displacement,
@@ -82,9 +81,7 @@ namespace Debond
 
     dealii::Vector<double> violation = f;
     violation -= internal;
-    // Vectors without entries have no norm in deal.II.
-    const double adhesive_force = xi.size() == 0 ? 0. : xi.l2_norm();
-    largest_force  = std::max({norm(f), norm(internal), adhesive_force});
+    largest_force  = std::max({norm(f), norm(internal), xi.norm()});
     state.n_active = 0;
     for (unsigned int i = 0; i < normals.size(); ++i)
       {
@@ -110,14 +107,13 @@ namespace Debond
   DisplacementProblem::majorise()
   {
     // Phi <= Phi(s_k) + xi'(s - s_k) + 1/2 (s - s_k)'E (s - s_k).
-    const dealii::Vector<double> s = trace(u);
-    dealii::Vector<double>       xi(s.size());
-    phi.subgradient(s, xi);
+    const dealii::Vector<double>      point        = trace(u);
+    const auto                        s            = eigen_view(point);
     const Eigen::SparseMatrix<double> previous_E   = E;
     const Eigen::VectorXd             previous_b_c = b_c;
     E                                              = phi.curvature(s);
-    const Eigen::VectorXd E_s                      = E * eigen_view(s);
-    b_c                                            = E_s - eigen_view(xi);
+    const Eigen::VectorXd E_s                      = E * s;
+    b_c                                            = E_s - phi.subgradient(s);
     if (previous_b_c.size() != b_c.size())
       return true;
     constexpr double noise = 1e-12;

@@ -724,7 +724,7 @@ namespace Debond
                                    materials(cell->material_id()));
           }
       }
-    const auto S = eigen_view(condensed.schur_complement());
+    const auto S = symmetric_view(condensed.schur_complement());
     // It may be more at other displacements.
     return 4. * std::abs(condensed.energy_at_zero() - 0.5 * kept.dot(S * kept) +
                          energy);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/mesh_transfer.h>
+#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
 #include <vector>
@@ -58,7 +59,7 @@ namespace Debond
         dealii::Vector<double>   excess  = contact.trace(result);
         for (double &s : excess)
           s = -std::max(s, 0.);
-        contact.add_normal(excess, result);
+        contact.add_normal(eigen_view(excess), result);
       }
     return result;
   }

@@ -3,6 +3,7 @@
 
 #include <debond/elasticity/extended_operator.h>
 #include <debond/elasticity/refinement.h>
+#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -198,9 +199,8 @@ namespace Debond
       }
     double energy = problem.load_at(factors) * u;
 
-    const dealii::Vector<double> s = problem.unknowns().contact().trace(u);
-    dealii::Vector<double>       xi(s.size());
-    phi.subgradient(s, xi);
+    const dealii::Vector<double> s  = problem.unknowns().contact().trace(u);
+    const Eigen::VectorXd        xi = phi.subgradient(eigen_view(s));
     for (unsigned int i = 0; i < s.size(); ++i)
       energy -= xi(i) * s(i);
     // Where nothing of the energy is known there is every reason to refine.
@@ -244,17 +244,14 @@ namespace Debond
       bool
       majorise()
       {
-        dealii::Vector<double> s(static_cast<unsigned int>(normals.size())),
-          xi(s);
+        Eigen::VectorXd s(normals.size());
         for (unsigned int i = 0; i < s.size(); ++i)
           s(i) = static_cast<double>(u(normals[i]));
-        phi.subgradient(s, xi);
         const Eigen::SparseMatrix<double> previous_E   = E;
         const Eigen::VectorXd             previous_b_c = b_c;
         E                                              = phi.curvature(s);
-        const Eigen::VectorXd E_s =
-          E * Eigen::Map<const Eigen::VectorXd>(s.begin(), s.size());
-        b_c = E_s - Eigen::Map<const Eigen::VectorXd>(xi.begin(), xi.size());
+        const Eigen::VectorXd E_s                      = E * s;
+        b_c = E_s - phi.subgradient(s);
         if (previous_b_c.size() != b_c.size())
           return true;
         constexpr double noise = 1e-12;

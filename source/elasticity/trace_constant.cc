@@ -58,8 +58,8 @@ namespace Debond
           springs.emplace_back(sides[i].mean, spring * mass(i));
           springs.emplace_back(sides[i].slope, spring * mass(n + i));
         }
-      const auto condensed       = problem.condense(true, weights, springs);
-      const Eigen::MatrixXd S    = eigen_view(condensed->schur_complement());
+      const auto condensed    = problem.condense(true, weights, springs);
+      const Eigen::MatrixXd S = symmetric_view(condensed->schur_complement());
       const Eigen::VectorXd root = mass.cwiseSqrt();
       const Eigen::HouseholderQR<Eigen::MatrixXd> qr(root.asDiagonal() *
                                                      linear);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/stationary_path.h>
 
 #include <Eigen/Cholesky>
@@ -10,24 +9,24 @@
 
 namespace Debond
 {
-  StationaryPath::StationaryPath(const dealii::FullMatrix<double> &S,
-                                 const dealii::Vector<double>     &load,
-                                 const dealii::Vector<double>     &slope,
-                                 const BranchMinimum              &f,
-                                 const std::vector<Bond>          &bonds,
-                                 const bool                        returns,
-                                 const dealii::Vector<double>     &s,
-                                 const double                      t)
+  StationaryPath::StationaryPath(const MatrixView        &S,
+                                 const VectorView        &load,
+                                 const VectorView        &slope,
+                                 const BranchMinimum     &f,
+                                 const std::vector<Bond> &bonds,
+                                 const bool               returns,
+                                 const VectorView        &s,
+                                 const double             t)
     : S(S)
-    , load(eigen_view(load))
-    , slope(eigen_view(slope))
+    , load(load)
+    , slope(slope)
     , first_t(t)
     , f(f)
     , bonds(bonds)
     , returns(returns)
     , parameter(t)
     , s(s)
-    , r(this->load - eigen_view(S) * eigen_view(s))
+    , r(load - S * s)
     , ds(Eigen::VectorXd::Zero(s.size()))
     , dr(Eigen::VectorXd::Zero(s.size()))
   {
@@ -121,19 +120,18 @@ namespace Debond
     // pieces.
     Eigen::MatrixXd M(n, n);
     Eigen::MatrixXd right(n, 2);
-    const auto      matrix = eigen_view(S);
-    Eigen::VectorXd held   = eigen_view(s);
+    Eigen::VectorXd held = s;
     for (const unsigned int i : free)
       held(i) = 0.;
     const Eigen::VectorXd rest =
-      load + (parameter - first_t) * slope - matrix * held;
+      load + (parameter - first_t) * slope - S * held;
     for (Eigen::Index k = 0; k < n; ++k)
       {
         const unsigned int i    = free[k];
         const Bond        &bond = bonds[i];
         const auto        &p    = f[(segments[i] - 1) / 2];
         for (Eigen::Index l = 0; l < n; ++l)
-          M(k, l) = matrix(i, free[l]);
+          M(k, l) = S(i, free[l]);
         M(k, k) += bond.energy / (bond.stretch * bond.stretch) * p.curvature;
         right(k, 0) = slope(i);
         right(k, 1) = rest(i) - bond.energy / bond.stretch * p.slope;
@@ -149,8 +147,8 @@ namespace Debond
         ds(free[k]) = x(k, 0);
         s(free[k])  = x(k, 1);
       }
-    dr = slope - matrix * ds;
-    r  = load + (parameter - first_t) * slope - matrix * eigen_view(s);
+    dr = slope - S * ds;
+    r  = load + (parameter - first_t) * slope - S * s;
     return true;
   }
 
@@ -239,7 +237,7 @@ namespace Debond
 
 
 
-  const dealii::Vector<double> &
+  const Eigen::VectorXd &
   StationaryPath::point() const
   {
     return s;
@@ -255,10 +253,10 @@ namespace Debond
 
 
 
-  dealii::Vector<double>
+  Eigen::VectorXd
   StationaryPath::point_before_kinks() const
   {
-    dealii::Vector<double> result = s;
+    Eigen::VectorXd result = s;
     for (unsigned int i = 0; i < s.size(); ++i)
       if (segments[i] > 0 && !is_free(i))
         result(i) = bonds[i].stretch * f.point_inside((segments[i] - 1) / 2);

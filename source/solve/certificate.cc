@@ -213,7 +213,7 @@ namespace Debond
       const std::vector<ContactSide> &sides = equilibrium.contact_sides();
       const Eigen::Index    n         = static_cast<Eigen::Index>(sides.size());
       const auto            condensed = equilibrium.condense(true);
-      const Eigen::MatrixXd S = eigen_view(condensed->schur_complement());
+      const Eigen::MatrixXd S = symmetric_view(condensed->schur_complement());
       const Eigen::VectorXd g = eigen_view(condensed->load());
 
       // Means and slopes from mean +- slope / 3, which are <= 0 if the
@@ -423,7 +423,7 @@ namespace Debond
         certificate.upper =
           elastic_functional(solved, displacement) +
           AdhesionIntegral<2>(contact.boundary(), scene->law(), quadrature)
-            .energy(contact.trace(u));
+            .energy(eigen_view(contact.trace(u)));
         const double own = rounding();
         certificate.upper += own;
         GlobalBound bound        = bound_global(equilibrium,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/contact/boundary_graph.h>
 #include <debond/linear_algebra/condensation.h>
+#include <debond/linear_algebra/eigen_view.h>
 #include <debond/linear_algebra/window.h>
 #include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/majorise/partial_function.h>
@@ -50,9 +51,9 @@ namespace Debond
 
     /// The nodes with a neighbour on a lower branch of the law.
     std::vector<unsigned int>
-    front_nodes(const SeparableBranches      &lumped,
-                const NeighbourGraph         &graph,
-                const dealii::Vector<double> &s)
+    front_nodes(const SeparableBranches &lumped,
+                const NeighbourGraph    &graph,
+                const VectorView        &s)
     {
       std::vector<unsigned int> result;
       for (unsigned int i = 0; i < s.size(); ++i)
@@ -92,8 +93,8 @@ namespace Debond
       search()
       {
         std::set<unsigned int> covered;
-        for (const unsigned int node :
-             front_nodes(lumped, graph, unknowns.contact().trace(u)))
+        for (const unsigned int node : front_nodes(
+               lumped, graph, eigen_view(unknowns.contact().trace(u))))
           if (covered.count(node) == 0)
             {
               if (result.windows == most_windows || !may_go_on())
@@ -143,8 +144,8 @@ namespace Debond
             if (const auto found = local.find(j); found != local.end())
               local_graph[i].insert(found->second);
 
-        const dealii::Vector<double> s = unknowns.contact().trace(u);
-        dealii::Vector<double> part(static_cast<unsigned int>(nodes.size()));
+        const Eigen::VectorXd s = eigen_view(unknowns.contact().trace(u));
+        Eigen::VectorXd       part(nodes.size());
         for (unsigned int i = 0; i < nodes.size(); ++i)
           part(i) = s(nodes[i]);
         const Condensation condensed(window.matrix(),
@@ -158,8 +159,8 @@ namespace Debond
         moves.flips         = false;
         moves.splits        = false;
         const BranchSearchResult search =
-          search_branches(condensed.schur_complement(),
-                          condensed.load(),
+          search_branches(symmetric_view(condensed.schur_complement()),
+                          eigen_view(condensed.load()),
                           PartialFunction(scene.adhesion(), s, nodes),
                           SeparableBranches(f),
                           local_graph,
@@ -179,7 +180,7 @@ namespace Debond
         result.complete = result.complete && search.complete;
         if (improvements == 0)
           return;
-        const dealii::Vector<double> v = condensed.expand(part);
+        const dealii::Vector<double> v = condensed.expand(from_eigen(part));
         for (unsigned int k = 0; k < v.size(); ++k)
           u(window.unknowns()[k]) = v(k);
       }

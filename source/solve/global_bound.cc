@@ -88,8 +88,8 @@ namespace Debond
     struct MeanProblem
     {
       double                             constant, rounding;
-      dealii::FullMatrix<double>         S;
-      dealii::Vector<double>             g;
+      Eigen::MatrixXd                    S;
+      Eigen::VectorXd                    g;
       std::unique_ptr<SeparableBranches> phi;
 
       // Of the sides.
@@ -238,7 +238,7 @@ namespace Debond
         {
           return {};
         }
-      Eigen::MatrixXd A = eigen_view(condensed->schur_complement());
+      Eigen::MatrixXd A = symmetric_view(condensed->schur_complement());
       Eigen::VectorXd b = eigen_view(condensed->load());
 
       MeanProblem result;
@@ -275,19 +275,11 @@ namespace Debond
       result.constant -= 0.5 * b.tail(n).dot(result.offset);
       const Eigen::MatrixXd S =
         A.topLeftCorner(n, n) + A.topRightCorner(n, n) * result.slopes;
+      result.S = 0.5 * (S + S.transpose());
       // What shifts take may be more than what the bonds of stiff laws leave.
-      if (!is_safely_positive_definite(0.5 * (S + S.transpose())))
+      if (!is_safely_positive_definite(result.S))
         return {};
-      const Eigen::VectorXd g =
-        b.head(n) + result.slopes.transpose() * b.tail(n);
-      result.S.reinit(n, n);
-      result.g.reinit(n);
-      for (unsigned int i = 0; i < n; ++i)
-        {
-          result.g(i) = g(i);
-          for (unsigned int j = 0; j < n; ++j)
-            result.S(i, j) = 0.5 * (S(i, j) + S(j, i));
-        }
+      result.g   = b.head(n) + result.slopes.transpose() * b.tail(n);
       result.phi = std::make_unique<SeparableBranches>(laws);
 
       Eigen::VectorXd kept(2 * n);
@@ -521,8 +513,7 @@ namespace Debond
 
     BranchAndBoundParameters parameters = proof_parameters;
     parameters.tolerance                = proof_tolerance * std::abs(upper);
-    const dealii::Vector<double> start(means.begin(), means.end());
-    GlobalBound                  result;
+    GlobalBound result;
     /// Returns the bound.
     const auto add_bound = [&](const MeanProblem &problem) {
       const BranchAndBoundResult proof =
@@ -530,7 +521,7 @@ namespace Debond
           .minimize(problem.S,
                     problem.g,
                     *problem.phi,
-                    start,
+                    means,
                     [&](const ProofProgress &) { return may_go_on(); });
       result.nodes += proof.nodes;
       const double lower = proof.status == ProofStatus::no_bound ?

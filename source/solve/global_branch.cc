@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/solve/global_branch.h>
@@ -57,9 +58,9 @@ namespace Debond
                  BranchPoint       &point)
       {
         scale_load(factor);
-        dealii::Vector<double>       s = neighbour.s;
-        CondensedProblem             problem(condensed.schur_complement(),
-                                 condensed.load(),
+        Eigen::VectorXd  s = eigen_view(neighbour.s);
+        CondensedProblem problem(symmetric_view(condensed.schur_complement()),
+                                 eigen_view(condensed.load()),
                                  adhesion,
                                  s);
         const MajoriseMinimiseResult minimum =
@@ -68,7 +69,7 @@ namespace Debond
         if (!can_be_verified(minimum.status) ||
             minimum.functional >= point.functional - rounding)
           return false;
-        point.s          = s;
+        point.s          = from_eigen(s);
         point.functional = minimum.functional;
         return true;
       }
@@ -114,9 +115,9 @@ namespace Debond
                        const PiecewiseQuadratic     &adhesion,
                        const dealii::Vector<double> &s)
   {
-    dealii::Vector<double> point = s;
-    return CondensedProblem(condensed.schur_complement(),
-                            condensed.load(),
+    Eigen::VectorXd point = eigen_view(s);
+    return CondensedProblem(symmetric_view(condensed.schur_complement()),
+                            eigen_view(condensed.load()),
                             adhesion,
                             point)
       .evaluate()

@@ -4,6 +4,7 @@
 #include <debond/base/interrupt.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/elasticity/refinement.h>
+#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/stationary_path.h>
 #include <debond/solve/global_branch.h>
@@ -157,18 +158,17 @@ namespace Debond
         const auto   ends  = std::minmax_element(varied.begin(), varied.end());
         const double lower = std::min(sign * *ends.first, sign * *ends.second),
                      upper = std::max(sign * *ends.first, sign * *ends.second);
-        AdhesionIntegral<dim>        bonds(scene.adhesion());
-        const dealii::Vector<double> load  = load_at(factors_at(varied[0]));
-        dealii::Vector<double>       slope = load_at(factors_at(*other));
-        slope -= load;
-        slope /= std::abs(*other - varied[0]);
-        StationaryPath path(condensed.schur_complement(),
+        AdhesionIntegral<dim> bonds(scene.adhesion());
+        const Eigen::VectorXd load = load_at(factors_at(varied[0]));
+        const Eigen::VectorXd slope =
+          (load_at(factors_at(*other)) - load) / std::abs(*other - varied[0]);
+        StationaryPath path(symmetric_view(condensed.schur_complement()),
                             load,
                             slope,
                             scene.law().branches(),
                             bonds_of_nodes(bonds),
                             parameters.bonds_heal,
-                            points[0],
+                            eigen_view(points[0]),
                             sign * varied[0]);
         const auto     add = [&](const bool is_stable) {
           const LoadFactors factors = factors_at(sign * path.t());
@@ -176,8 +176,9 @@ namespace Debond
           if (!parameters.bonds_heal)
             bonds.break_for_good(path.point_before_kinks());
           scale_load(factors);
-          const dealii::Vector<double> u = condensed.expand(path.point());
-          const Verification<dim>      verification =
+          const dealii::Vector<double> u =
+            condensed.expand(from_eigen(path.point()));
+          const Verification<dim> verification =
             Debond::verify(scene.problem(), bonds, scene.law(), u, factors);
           LoadPathStep<dim> step = {};
           step.step   = static_cast<unsigned int>(arc.size() + 1);
@@ -270,15 +271,17 @@ namespace Debond
         const double                 factor = factors.loads;
 
         scale_load(factors);
-        CondensedProblem             problem(condensed.schur_complement(),
-                                 condensed.load(),
+        Eigen::VectorXd  point = eigen_view(s);
+        CondensedProblem problem(symmetric_view(condensed.schur_complement()),
+                                 eigen_view(condensed.load()),
                                  adhesion,
-                                 s,
+                                 point,
                                  free_motions,
                                  stiffness_at_contact(scene.problem()));
         const MajoriseMinimiseResult minimum =
           MajoriseMinimise(solver_parameters.majorise_minimise)
             .minimize(problem);
+        s                = from_eigen(point);
         result.status    = minimum.status;
         result.criterion = minimum.residual;
         for (MajoriseMinimiseIteration iteration : minimum.history)
@@ -309,7 +312,7 @@ namespace Debond
             change_factor(steps.back().factors(), last, factors);
         if (!parameters.bonds_heal)
           {
-            adhesion.break_for_good(s);
+            adhesion.break_for_good(eigen_view(s));
             scale_load(factors);
           }
         const dealii::Vector<double> u            = displacement(factors, s);
@@ -407,11 +410,11 @@ namespace Debond
 
 
       /// g of the condensed problem.
-      dealii::Vector<double>
+      Eigen::VectorXd
       load_at(const LoadFactors factors)
       {
         condensed.scale_load(factors.loads, factors.displacements);
-        return condensed.load();
+        return eigen_view(condensed.load());
       }
 
       std::vector<StationaryPath::Bond>
@@ -450,16 +453,15 @@ namespace Debond
             parameters.dead_loads.empty())
           return proportional_change(last_factors.loads, last, factors.loads);
 
-        const dealii::Vector<double> load  = load_at(last_factors);
-        dealii::Vector<double>       slope = load_at(factors);
-        slope -= load;
-        StationaryPath path(condensed.schur_complement(),
+        const Eigen::VectorXd load  = load_at(last_factors);
+        const Eigen::VectorXd slope = load_at(factors) - load;
+        StationaryPath        path(symmetric_view(condensed.schur_complement()),
                             load,
                             slope,
                             branches,
                             bonds_of_nodes(adhesion),
                             parameters.bonds_heal,
-                            last,
+                            eigen_view(last),
                             0.);
         // Contact that comes and goes.
         using Event = StationaryPath::Event;

@@ -9,6 +9,7 @@
 #include <debond/elasticity/temperature_load.h>
 #include <debond/input/expression.h>
 #include <debond/input/probe_parameters.h>
+#include <debond/linear_algebra/eigen_view.h>
 #include <debond/solve/displacement.h>
 #include <debond/solve/scene.h>
 
@@ -552,7 +553,7 @@ namespace Debond
         const ContactSpace<dim> &contact =
           elastic_problem->unknowns().contact();
         first_iterate.reinit(elastic_problem->unknowns().n_dofs());
-        contact.add_normal(contact.at_rest(), first_iterate);
+        contact.add_normal(eigen_view(contact.at_rest()), first_iterate);
       }
     else
       first_iterate = read_start(parameters.solver.start, *elastic_problem);

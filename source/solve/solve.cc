@@ -12,6 +12,7 @@
 #include <debond/elasticity/multigrid.h>
 #include <debond/elasticity/multigrid_problem.h>
 #include <debond/elasticity/refinement.h>
+#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/bundle/metric_direction.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
@@ -163,7 +164,7 @@ namespace Debond
                 problem.fields().elastic_functional(u) :
                 scene.piece()->elastic_functional(
                   problem.fields(), problem.unknowns().dof_handler(), u)) +
-             scene.adhesion().energy(scene.contact_trace(u));
+             scene.adhesion().energy(eigen_view(scene.contact_trace(u)));
     }
 
 
@@ -182,11 +183,9 @@ namespace Debond
                       0. :
                       scene.problem().diagonal_entry(i);
       const Vector s = scene.contact_trace(u);
-      Vector       xi(s.size());
-      scene.adhesion().subgradient(s, xi);
       const double energy =
         piece.nodes().product(scene.problem().load().begin(), u.begin()) -
-        (s.size() == 0 ? 0. : xi * s);
+        scene.adhesion().subgradient(eigen_view(s)).dot(eigen_view(s));
       const double rounding = std::numeric_limits<double>::epsilon() *
                               piece.nodes().product(terms.begin(), u.begin());
       if (rounding <= largest_energy_rounding * energy)
@@ -251,9 +250,10 @@ namespace Debond
       bundle.epsilon_s =
         std::max(bundle.epsilon_s * condensed.energy_without_contact(),
                  std::numeric_limits<double>::min());
-      MetricDirection direction(condensed.schur_complement(),
-                                scene.adhesion(),
-                                bundle.bundle_size);
+      MetricDirection<Vector> direction(symmetric_view(
+                                          condensed.schur_complement()),
+                                        scene.adhesion(),
+                                        bundle.bundle_size);
       add_bundle_result(ProximalBundle<Vector>(bundle).minimize(functional,
                                                                 direction,
                                                                 s,
@@ -303,28 +303,32 @@ namespace Debond
       const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
       const bool                  is_loose =
         unknowns.has_gap() || !unknowns.held_by_contact().motions.empty();
+      const MatrixView S     = symmetric_view(condensed.schur_complement());
+      const VectorView g     = eigen_view(condensed.load());
+      Eigen::VectorXd  point = eigen_view(s);
       if (!has_start && is_loose)
-        s = unknowns.contact().at_rest();
+        point = eigen_view(unknowns.contact().at_rest());
       else if (!has_start)
-        s = coarse_start(condensed.schur_complement(),
-                         condensed.load(),
-                         scene.adhesion(),
-                         coarsen(unknowns.contact().boundary(),
-                                 coarsest_contact_nodes),
-                         method,
-                         result.notes,
-                         [&watch](const MajoriseMinimiseIteration &) {
-                           return watch.may_go_on();
-                         });
-      CondensedProblem problem(condensed.schur_complement(),
-                               condensed.load(),
+        point = coarse_start(S,
+                             g,
+                             scene.adhesion(),
+                             coarsen(unknowns.contact().boundary(),
+                                     coarsest_contact_nodes),
+                             method,
+                             result.notes,
+                             [&watch](const MajoriseMinimiseIteration &) {
+                               return watch.may_go_on();
+                             });
+      CondensedProblem problem(S,
+                               g,
                                scene.adhesion(),
-                               s,
+                               point,
                                free_motions_of_contact(unknowns),
                                stiffness_at_contact(scene.problem()));
       add_majorise_result(method.minimize(problem, std::ref(watch)),
                           condensed.energy_at_zero(),
                           result);
+      s = from_eigen(point);
     }
 
 
@@ -360,8 +364,8 @@ namespace Debond
         result.notes.push_back(note);
       // The search knows other bonds than the result has.
       const Vector after = scene.problem().unknowns().contact().trace(result.u);
-      if (after.size() > 0 && (scene.adhesion().curvature(after) -
-                               scene.adhesion().curvature(before))
+      if (after.size() > 0 && (scene.adhesion().curvature(eigen_view(after)) -
+                               scene.adhesion().curvature(eigen_view(before)))
                                   .norm() > 0.)
         result.minimum.kind =
           kind_without_search(scene.law(), scene.adhesion(), after);

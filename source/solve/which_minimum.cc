@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
+#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/global/guided_search.h>
 #include <debond/optimization/majorise/coarse_start.h>
@@ -172,13 +173,15 @@ namespace Debond
                     const AdhesionIntegral<dim> &adhesion,
                     const Condensation          &condensed,
                     const std::function<bool()> &may_go_on,
-                    dealii::Vector<double>      &s,
+                    Eigen::VectorXd             &s,
                     WhichMinimum                &result)
         : parameters(parameters)
         , boundary(boundary)
         , law(law)
         , adhesion(adhesion)
         , condensed(condensed)
+        , S(symmetric_view(condensed.schur_complement()))
+        , g(eigen_view(condensed.load()))
         , may_go_on(may_go_on)
         , s(s)
         , result(result)
@@ -188,7 +191,7 @@ namespace Debond
         , energy(energy_of_bonds(condensed, lumped))
         , separable(adhesion.is_separable())
       {
-        result.search_nodes = s.size();
+        result.search_nodes = static_cast<unsigned int>(s.size());
       }
 
       /// Of Search = automatic: all on the contact nodes themselves, with a
@@ -196,14 +199,13 @@ namespace Debond
       void
       search_all_nodes()
       {
-        const auto look_at_coarser = [&](const bool found,
-                                         dealii::Vector<double> &) {
+        const auto look_at_coarser = [&](const bool found, Eigen::VectorXd &) {
           return s.size() > coarse_look && !found &&
                  look_on_coarse_mesh(coarse_look);
         };
         const GuidedSearchResult guided =
-          guided_search(condensed.schur_complement(),
-                        condensed.load(),
+          guided_search(S,
+                        g,
                         adhesion,
                         lumped,
                         separable,
@@ -217,7 +219,7 @@ namespace Debond
                         look_at_coarser,
                         make_guess());
         const bool rests_on_coarse = result.closed_nodes > 0;
-        add_search(guided.search, s.size(), result);
+        add_search(guided.search, static_cast<unsigned int>(s.size()), result);
         if (guided.proof && !rests_on_coarse)
           add_proof(*guided.proof, lumped, condensed, result);
       }
@@ -249,17 +251,16 @@ namespace Debond
       search_nodes(const BranchSearchParameters &moves)
       {
         const unsigned int       before = result.search_improvements;
-        const BranchSearchResult search =
-          search_branches(condensed.schur_complement(),
-                          condensed.load(),
-                          adhesion,
-                          lumped,
-                          graph,
-                          method,
-                          moves,
-                          s,
-                          may_go_on,
-                          make_guess());
+        const BranchSearchResult search = search_branches(S,
+                                                          g,
+                                                          adhesion,
+                                                          lumped,
+                                                          graph,
+                                                          method,
+                                                          moves,
+                                                          s,
+                                                          may_go_on,
+                                                          make_guess());
         add_search(search, result.search_nodes, result);
         return result.search_improvements > before;
       }
@@ -270,8 +271,7 @@ namespace Debond
       make_guess()
       {
         if (guess.empty())
-          guess = ActiveSetGuess(condensed.schur_complement(),
-                                 coarsen(boundary, coarse_look));
+          guess = ActiveSetGuess(S, coarsen(boundary, coarse_look));
         return guess;
       }
 
@@ -282,10 +282,7 @@ namespace Debond
         no_nodes.maximum_nodes = 0;
         no_nodes.tolerance     = parameters.proof.tolerance * energy;
         const BranchAndBoundResult certificate =
-          BranchAndBound(no_nodes).minimize(condensed.schur_complement(),
-                                            condensed.load(),
-                                            lumped,
-                                            s);
+          BranchAndBound(no_nodes).minimize(S, g, lumped, s);
         if (certificate.status != ProofStatus::proved)
           return false;
         add_proof(certificate, lumped, condensed, result);
@@ -304,50 +301,41 @@ namespace Debond
         bool       is_closed     = false;
 
         std::vector<std::string> failures;
-        dealii::Vector<double>   point =
-          coarse_start(condensed.schur_complement(),
-                       condensed.load(),
-                       adhesion,
-                       prolongations,
-                       method,
-                       failures,
-                       monitor,
-                       [&](const dealii::FullMatrix<double> &S,
-                           const dealii::Vector<double>     &g,
-                           const PiecewiseQuadratic         &phi,
-                           dealii::Vector<double>           &coarse_s) {
-                         const GuidedSearchResult guided = guided_search(
-                           S,
-                           g,
-                           phi,
-                           lumped_branches(phi,
-                                           coarse_s.size(),
-                                           law.branches(),
-                                           coarse_stretches(stretches(adhesion),
-                                                            prolongations)),
-                           false,
-                           coarse_neighbours(prolongations.back()),
-                           method,
-                           guided_search_parameters(parameters,
-                                                    energy,
-                                                    coarse_s.size() <=
-                                                      coarse_look),
-                           coarse_s,
-                           may_go_on);
-                         add_search(guided.search, coarse_s.size(), result);
-                         is_closed = guided.is_closed;
-                       });
-        CondensedProblem             problem(condensed.schur_complement(),
-                                 condensed.load(),
-                                 adhesion,
-                                 point);
+        Eigen::VectorXd          point = coarse_start(
+          S,
+          g,
+          adhesion,
+          prolongations,
+          method,
+          failures,
+          monitor,
+          [&](const MatrixView         &coarse_S,
+              const VectorView         &coarse_g,
+              const PiecewiseQuadratic &phi,
+              Eigen::VectorXd          &coarse_s) {
+            const unsigned int n = static_cast<unsigned int>(coarse_s.size());
+            const GuidedSearchResult guided = guided_search(
+              coarse_S,
+              coarse_g,
+              phi,
+              lumped_branches(phi,
+                              n,
+                              law.branches(),
+                              coarse_stretches(stretches(adhesion),
+                                               prolongations)),
+              false,
+              coarse_neighbours(prolongations.back()),
+              method,
+              guided_search_parameters(parameters, energy, n <= coarse_look),
+              coarse_s,
+              may_go_on);
+            add_search(guided.search, n, result);
+            is_closed = guided.is_closed;
+          });
+        CondensedProblem             problem(S, g, adhesion, point);
         const MajoriseMinimiseResult minimum =
           minimise_trial(method, problem, monitor);
-        const auto given = CondensedProblem(condensed.schur_complement(),
-                                            condensed.load(),
-                                            adhesion,
-                                            s)
-                             .evaluate();
+        const auto   given = CondensedProblem(S, g, adhesion, s).evaluate();
         const double above = minimum.functional - given.functional;
         if (minimum.status != SolverStatus::success)
           {
@@ -370,8 +358,10 @@ namespace Debond
       const AdhesiveLaw           &law;
       const AdhesionIntegral<dim> &adhesion;
       const Condensation          &condensed;
+      const MatrixView             S;
+      const VectorView             g;
       const std::function<bool()> &may_go_on;
-      dealii::Vector<double>      &s;
+      Eigen::VectorXd             &s;
       WhichMinimum                &result;
       const MajoriseMinimise       method;
       const NeighbourGraph         graph;
@@ -400,10 +390,10 @@ namespace Debond
       proof_parameters.maximum_bytes = memory_left(parameters.memory_limit);
       const BranchAndBoundResult proof =
         BranchAndBound(proof_parameters)
-          .minimize(condensed.schur_complement(),
-                    condensed.load(),
+          .minimize(symmetric_view(condensed.schur_complement()),
+                    eigen_view(condensed.load()),
                     lumped,
-                    s,
+                    eigen_view(s),
                     [&](const ProofProgress &) { return may_go_on(); });
       add_proof(proof, lumped, condensed, result);
       result.proof_history = proof.history;
@@ -414,7 +404,7 @@ namespace Debond
         }
       // A rounding in J is no better minimum.
       if (proof.upper < functional - proof_parameters.tolerance)
-        s = proof.s;
+        s = from_eigen(proof.s);
     }
   } // namespace
 
@@ -471,11 +461,10 @@ namespace Debond
       return MinimumKind::global;
 
     // No quadrature point is so close to the kink that it changes its branch.
-    dealii::Vector<double> more = s, less = s;
-    more *= 1. + kink_width;
-    less *= 1. - kink_width;
+    const auto                        point = eigen_view(s);
     const Eigen::SparseMatrix<double> difference =
-      adhesion.curvature(more) - adhesion.curvature(less);
+      adhesion.curvature((1. + kink_width) * point) -
+      adhesion.curvature((1. - kink_width) * point);
     return difference.norm() == 0. ? MinimumKind::local_minimum :
                                      MinimumKind::stationary;
   }
@@ -512,14 +501,22 @@ namespace Debond
 
     if (wants_search(parameters))
       {
-        MinimumSearch<dim> search(
-          parameters, boundary, law, adhesion, condensed, may_go_on, s, result);
+        Eigen::VectorXd    point = eigen_view(s);
+        MinimumSearch<dim> search(parameters,
+                                  boundary,
+                                  law,
+                                  adhesion,
+                                  condensed,
+                                  may_go_on,
+                                  point,
+                                  result);
         if (parameters.search != BondSearchChoice::automatic)
           search.search_nodes(search_parameters(parameters));
         else if (s.size() <= largest_automatic_search)
           search.search_all_nodes();
         else
           search.search_coarse_nodes();
+        s = from_eigen(point);
         if (result.kind != MinimumKind::best_known &&
             result.kind != MinimumKind::global)
           result.kind = kind_without_search(law, adhesion, s);

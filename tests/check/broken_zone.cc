@@ -46,7 +46,7 @@ namespace
   /// The part of the face where the opening is beyond @p threshold.
   template <int dim>
   double
-  sampled(const dealii::Vector<double> &s, const double threshold)
+  sampled(const Eigen::VectorXd &s, const double threshold)
   {
     const unsigned int n    = dim == 2 ? 100000 : 1000;
     unsigned int       open = 0, all = 0;
@@ -76,8 +76,8 @@ namespace
     double                       error = 0., error_for_good = 0.;
     for (unsigned int k = 0; k < 50; ++k)
       {
-        AdhesionIntegral<dim>  adhesion(boundary, law, nodal);
-        dealii::Vector<double> s(dim);
+        AdhesionIntegral<dim> adhesion(boundary, law, nodal);
+        Eigen::VectorXd       s(dim);
         for (unsigned int i = 0; i < dim; ++i)
           s(i) = -2. * M * (random() % 1000) / 1000.;
         error = std::max(error,
@@ -85,9 +85,7 @@ namespace
                                   sampled<dim>(s, M)));
 
         // Once all bonds are broken, all that is open counts.
-        dealii::Vector<double> far(dim);
-        far = -2. * M;
-        adhesion.break_for_good(far);
+        adhesion.break_for_good(Eigen::VectorXd::Constant(dim, -2. * M));
         s(0) = 0.;
         error_for_good =
           std::max(error_for_good,

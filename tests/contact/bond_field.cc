@@ -141,10 +141,10 @@ namespace
 
 
   template <int dim>
-  dealii::Vector<double>
+  Eigen::VectorXd
   varying_trace(const ContactBoundary<dim> &boundary)
   {
-    dealii::Vector<double> s(static_cast<unsigned int>(boundary.nodes.size()));
+    Eigen::VectorXd s(boundary.nodes.size());
     for (unsigned int i = 0; i < s.size(); ++i)
       {
         const auto &x = boundary.nodes[i].position;
@@ -158,10 +158,10 @@ namespace
   /// The energy by midpoints of n^(dim - 1) pieces of each face.
   template <int dim>
   double
-  sampled(const ContactBoundary<dim>   &boundary,
-          const dealii::Vector<double> &s,
-          const unsigned int            n,
-          const bool                    by_face)
+  sampled(const ContactBoundary<dim> &boundary,
+          const Eigen::VectorXd      &s,
+          const unsigned int          n,
+          const bool                  by_face)
   {
     double sum = 0.;
     for (const auto &face : boundary.faces)
@@ -216,10 +216,10 @@ namespace
     bool   falls      = true;
     for (const unsigned int n : {4u, 8u, 16u})
       {
-        const ContactBoundary<dim>   boundary = uniform_boundary<dim>(n);
-        const AdhesionIntegral<dim>  phi(boundary, law, exact, &field);
-        const dealii::Vector<double> s     = varying_trace(boundary);
-        const double                 value = phi.value(s);
+        const ContactBoundary<dim>  boundary = uniform_boundary<dim>(n);
+        const AdhesionIntegral<dim> phi(boundary, law, exact, &field);
+        const Eigen::VectorXd       s     = varying_trace(boundary);
+        const double                value = phi.value(s);
         // The trace is linear, and the sum that of the bonds themselves.
         const double error = std::abs(
           value - sampled(boundary, s, (dim == 2 ? 32000 : 512) / n, false));
@@ -232,13 +232,12 @@ namespace
                          sampled(boundary, s, dim == 2 ? 20000 : 400, true) -
                        1.),
               dim == 2 ? 1e-8 : 1e-5);
-        dealii::Vector<double> xi(s.size());
-        phi.subgradient(s, xi);
-        double difference = 0., largest = 0.;
+        const Eigen::VectorXd xi         = phi.subgradient(s);
+        double                difference = 0., largest = 0.;
         for (unsigned int i = 0; i < s.size(); ++i)
           {
-            constexpr double       step  = 1e-6;
-            dealii::Vector<double> above = s, below = s;
+            constexpr double step  = 1e-6;
+            Eigen::VectorXd  above = s, below = s;
             above(i) += step;
             below(i) -= step;
             difference =
@@ -269,8 +268,8 @@ main(int argc, char **)
   };
   const ContactQuadrature<2> nodal = rule("nodal"), exact = rule("exact");
 
-  dealii::Vector<double> s(3);
-  const auto             traces = [&](const double scale) {
+  Eigen::VectorXd s(3);
+  const auto      traces = [&](const double scale) {
     for (unsigned int i = 0; i < 3; ++i)
       s(i) = -scale * (1. + 0.3 * i);
   };
@@ -329,13 +328,12 @@ main(int argc, char **)
     check("exact quadrature beside sampling",
           relative(phi.value(s), sum),
           1e-9);
-    dealii::Vector<double> xi(3);
-    phi.subgradient(s, xi);
-    double error = 0.;
+    const Eigen::VectorXd xi    = phi.subgradient(s);
+    double                error = 0.;
     for (unsigned int i = 0; i < 3; ++i)
       {
-        constexpr double       step  = 1e-6;
-        dealii::Vector<double> above = s, below = s;
+        constexpr double step  = 1e-6;
+        Eigen::VectorXd  above = s, below = s;
         above(i) += step;
         below(i) -= step;
         error = std::max(error,

@@ -618,12 +618,11 @@ namespace
     bool radii_act_on_own_node = true;
     for (const double stretch : {0.3, 1., 1.7, -0.4})
       {
-        dealii::Vector<double> s(n);
+        Eigen::VectorXd s(n);
         for (unsigned int i = 0; i < n; ++i)
           s(i) = -stretch * M * (0.37 + 0.9 * std::fmod(0.618 * i, 1.));
 
-        dealii::Vector<double> xi(n);
-        integral.subgradient(s, xi);
+        Eigen::VectorXd             xi     = integral.subgradient(s);
         const std::vector<Interval> clarke = integral.force_intervals(s, 0.);
 
         const double                radius = 0.2 * M;
@@ -635,9 +634,9 @@ namespace
 
         for (unsigned int i = 0; i < n; ++i)
           {
-            const double           h     = 1e-5 * M;
-            dealii::Vector<double> right = s;
-            dealii::Vector<double> left  = s;
+            const double    h     = 1e-5 * M;
+            Eigen::VectorXd right = s;
+            Eigen::VectorXd left  = s;
             right(i) += h;
             left(i) -= h;
             const double difference =
@@ -654,11 +653,11 @@ namespace
 
         for (unsigned int sample = 0; sample < 20; ++sample)
           {
-            dealii::Vector<double> near = s;
+            Eigen::VectorXd near = s;
             for (unsigned int i = 0; i < n; ++i)
               near(i) +=
                 radius * (2. * std::fmod(0.618 * (i + 7 * sample), 1.) - 1.);
-            integral.subgradient(near, xi);
+            xi = integral.subgradient(near);
             for (unsigned int i = 0; i < n; ++i)
               goldstein_holds &= goldstein[i].lower <= xi(i) + 1e-14 * scale &&
                                  xi(i) <= goldstein[i].upper + 1e-14 * scale;
@@ -696,8 +695,8 @@ namespace
     const AdhesionIntegral<dim> integral(boundary, law, quadrature);
     const unsigned int          n = boundary.nodes.size();
 
-    dealii::Vector<double> s(n);
-    double                 energy = 0.;
+    Eigen::VectorXd s(n);
+    double          energy = 0.;
     for (unsigned int i = 0; i < n; ++i)
       {
         s(i) = i == 0 ? -M : -0.3 * M * i;
@@ -710,8 +709,7 @@ namespace
     std::vector<Interval> forces = integral.force_intervals(s, 0.);
     check("nodal: [-aM, 0] times the measure of a node on the kink",
           equal(forces[0], -force, 0., force));
-    dealii::Vector<double> xi(n);
-    integral.subgradient(s, xi);
+    const Eigen::VectorXd xi = integral.subgradient(s);
     check("nodal: the subgradient at the kink is that of the bonds",
           std::abs(xi(0) / force + 1.) < 1e-14);
 

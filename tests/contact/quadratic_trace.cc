@@ -122,10 +122,10 @@ make_boundary()
 /// int j_1 by a very fine sum.
 template <int dim>
 double
-fine_sum(const ContactBoundary<dim>   &boundary,
-         const AdhesionIntegral<dim>  &integral,
-         const AdhesiveLaw            &law,
-         const dealii::Vector<double> &s)
+fine_sum(const ContactBoundary<dim>  &boundary,
+         const AdhesionIntegral<dim> &integral,
+         const AdhesiveLaw           &law,
+         const Eigen::VectorXd       &s)
 {
   const unsigned int n   = dim == 2 ? 100000 : 600;
   double             sum = 0.;
@@ -171,7 +171,7 @@ test_integral(const std::string &rule, const double tolerance)
   bool   intervals_hold = true, goldstein_holds = true;
   for (unsigned int trial = 0; trial < (dim == 2 ? 20 : 5); ++trial)
     {
-      dealii::Vector<double> s(n);
+      Eigen::VectorXd s(n);
       for (double &entry : s)
         entry = M * number(random);
       value_error = std::max(value_error,
@@ -179,16 +179,15 @@ test_integral(const std::string &rule, const double tolerance)
                                       fine_sum(boundary, integral, law, s)) /
                                (scale * M));
 
-      dealii::Vector<double> xi(n);
-      integral.subgradient(s, xi);
+      const Eigen::VectorXd             xi        = integral.subgradient(s);
       const Eigen::SparseMatrix<double> curvature = integral.curvature(s);
       const std::vector<Interval> clarke = integral.force_intervals(s, 0.);
       const std::vector<Interval> goldstein =
         integral.force_intervals(s, 0.2 * M);
       for (unsigned int i = 0; i < n; ++i)
         {
-          const double           h     = 1e-6 * M;
-          dealii::Vector<double> right = s, left = s;
+          const double    h     = 1e-6 * M;
+          Eigen::VectorXd right = s, left = s;
           right(i) += h;
           left(i) -= h;
           gradient_error =
@@ -197,9 +196,8 @@ test_integral(const std::string &rule, const double tolerance)
                                 (2. * h) -
                               xi(i)) /
                        scale);
-          dealii::Vector<double> xi_right(n), xi_left(n);
-          integral.subgradient(right, xi_right);
-          integral.subgradient(left, xi_left);
+          const Eigen::VectorXd xi_right = integral.subgradient(right);
+          const Eigen::VectorXd xi_left  = integral.subgradient(left);
           for (unsigned int j = 0; j < n; ++j)
             curvature_error =
               std::max(curvature_error,
@@ -237,7 +235,7 @@ test_touching_kink()
   const ContactQuadrature<2> quadrature(
     ContactQuadratureParameters::parse("exact"), law.kinks(), 2);
   const AdhesionIntegral<2> integral(boundary, law, quadrature);
-  dealii::Vector<double>    s(4);
+  Eigen::VectorXd           s = Eigen::VectorXd::Zero(4);
   // On the first face s = -4 M t (1 - t) with its least value -M in the
   // middle; the second one is closed. int (s/M)^2 = 16 / 30.
   s(2) = -2. * M;
@@ -266,7 +264,7 @@ test_broken_zone_of_triangle()
   const ContactQuadrature<3> quadrature(
     ContactQuadratureParameters::parse("gauss 5"), law.kinks(), 2);
   const AdhesionIntegral<3> integral(boundary, law, quadrature);
-  dealii::Vector<double>    s(8);
+  Eigen::VectorXd           s = Eigen::VectorXd::Zero(8);
   // s = -2 M x: broken where x > 1/2, a quarter of the first face.
   s(1) = -2. * M;
   s(3) = s(4) = -M;

@@ -263,7 +263,7 @@ namespace
       },
       {},
       true);
-    const Eigen::MatrixXd S    = eigen_view(condensed.schur_complement());
+    const Eigen::MatrixXd S    = symmetric_view(condensed.schur_complement());
     const Eigen::Index    size = S.rows();
     Eigen::MatrixXd       mass = Eigen::MatrixXd::Zero(size, size);
     Eigen::MatrixXd       linear(size, 2);

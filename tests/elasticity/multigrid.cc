@@ -14,6 +14,7 @@
 #include <debond/elasticity/multigrid.h>
 #include <debond/elasticity/multigrid_problem.h>
 #include <debond/linear_algebra/condensation.h>
+#include <debond/linear_algebra/eigen_view.h>
 #include <debond/mesh/box.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
@@ -167,13 +168,13 @@ namespace
           [&](const unsigned int i) {
             return serial.problem->unknowns().is_constrained(i);
           });
-        dealii::Vector<double> s(normals.size());
-        CondensedProblem       small(condensed.schur_complement(),
-                               condensed.load(),
+        Eigen::VectorXd  s = Eigen::VectorXd::Zero(normals.size());
+        CondensedProblem small(symmetric_view(condensed.schur_complement()),
+                               eigen_view(condensed.load()),
                                adhesion,
                                s);
-        const auto             exact = MajoriseMinimise({}).minimize(small);
-        const double J = exact.functional + condensed.energy_at_zero();
+        const auto       exact = MajoriseMinimise({}).minimize(small);
+        const double     J     = exact.functional + condensed.energy_at_zero();
 
         u = 0.;
         MultigridProblem<dim> large(*body.problem, adhesion, multigrid, u);
@@ -184,7 +185,7 @@ namespace
         check("  difference of the functionals",
               std::abs(iterated.functional / J - 1.),
               1e-11);
-        dealii::Vector<double> difference = condensed.expand(s);
+        dealii::Vector<double> difference = condensed.expand(from_eigen(s));
         const double           size       = difference.linfty_norm();
         difference -= u;
         check("  difference of the displacements",

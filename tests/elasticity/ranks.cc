@@ -195,8 +195,7 @@ namespace
                               held,
                               of.normals(0),
                               adhesion.curvature(
-                                Vector(static_cast<unsigned int>(
-                                  of.normals(0).size()))));
+                                Eigen::VectorXd::Zero(of.normals(0).size())));
         };
         if (is_truncated)
           {

@@ -8,6 +8,7 @@
 #include <debond/contact/laws/winkler.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/condensation.h>
+#include <debond/linear_algebra/eigen_view.h>
 #include <debond/mesh/box.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
@@ -72,8 +73,8 @@ namespace
 
   struct Minimum
   {
-    double                 value;
-    dealii::Vector<double> s; ///< in the order of the contact nodes' positions
+    double          value;
+    Eigen::VectorXd s; ///< in the order of the contact nodes' positions
   };
 
 
@@ -112,15 +113,16 @@ namespace
                                    return problem.unknowns().is_constrained(i);
                                  });
     Minimum            result;
-    result.s.reinit(normals.size());
-    CondensedProblem condensed_problem(condensed.schur_complement(),
-                                       condensed.load(),
+    result.s.setZero(normals.size());
+    CondensedProblem condensed_problem(symmetric_view(
+                                         condensed.schur_complement()),
+                                       eigen_view(condensed.load()),
                                        adhesion,
                                        result.s);
     MajoriseMinimise(MajoriseMinimiseParameters()).minimize(condensed_problem);
-    result.value =
-      problem.fields().elastic_functional(condensed.expand(result.s)) +
-      adhesion.value(result.s);
+    result.value = problem.fields().elastic_functional(
+                     condensed.expand(from_eigen(result.s))) +
+                   adhesion.value(result.s);
     return result;
   }
 
@@ -142,13 +144,12 @@ namespace
       {
         dealii::Triangulation<dim> shuffled;
         shuffle(mesh, random, shuffled);
-        const Minimum          minimum = minimise(shuffled, traction, law);
-        dealii::Vector<double> difference(minimum.s);
-        difference -= expected.s;
+        const Minimum minimum = minimise(shuffled, traction, law);
         value_error =
           std::max(value_error, std::abs(minimum.value / expected.value - 1.));
-        distance =
-          std::max(distance, difference.linfty_norm() / law.bond_threshold());
+        distance = std::max(distance,
+                            (minimum.s - expected.s).lpNorm<Eigen::Infinity>() /
+                              law.bond_threshold());
       }
     const unsigned int n_broken =
       std::count_if(expected.s.begin(), expected.s.end(), [&](const double s) {

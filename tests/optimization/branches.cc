@@ -28,7 +28,7 @@ using namespace Debond;
 
 namespace
 {
-  using Vector = dealii::Vector<double>;
+  using Vector = Eigen::VectorXd;
 
   constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -248,11 +248,11 @@ namespace
 
   struct Problem
   {
-    LongMatrix                 S_long;
-    dealii::FullMatrix<double> S;
-    Vector                     g;
-    std::vector<BranchList>    lists;
-    SeparableBranches          phi;
+    LongMatrix              S_long;
+    Eigen::MatrixXd         S;
+    Vector                  g;
+    std::vector<BranchList> lists;
+    SeparableBranches       phi;
 
     long double
     value(const Vector &s) const
@@ -281,11 +281,8 @@ namespace
     for (unsigned int i = 0; i < n; ++i)
       S(i, i) = 0.05 - (S.row(i).sum() - S(i, i));
 
-    Problem          p      = {S,
-                               dealii::FullMatrix<double>(n, n),
-                               Vector(n),
-                               {},
-                               SeparableBranches({})};
+    Problem p = {
+      S, Eigen::MatrixXd(n, n), Vector(n), {}, SeparableBranches({})};
     const BranchList common = stepped(random, random.integer(1, 3));
     for (unsigned int i = 0; i < n; ++i)
       {
@@ -354,7 +351,7 @@ namespace
         BranchAndBoundParameters parameters;
         parameters.tolerance = tolerance;
         const auto proof =
-          BranchAndBound(parameters).minimize(p.S, p.g, p.phi, Vector(n));
+          BranchAndBound(parameters).minimize(p.S, p.g, p.phi, Vector::Zero(n));
         not_proved += proof.status != ProofStatus::proved;
         above += proof.lower > minimum + rounding;
         wrong += std::abs(proof.upper - minimum) > tolerance ||
@@ -376,7 +373,7 @@ namespace
         above += certificate > minimum + rounding;
         certified += certificate > minimum - tolerance;
 
-        Vector                 s(n);
+        Vector                 s = Vector::Zero(n);
         const MajoriseMinimise method({});
         CondensedProblem       problem(p.S, p.g, p.phi, s);
         method.minimize(problem);

@@ -27,8 +27,6 @@ using namespace Debond;
 
 namespace
 {
-  using Vector = dealii::Vector<double>;
-
   /// sum_i w_i j_1(s_i) with the paper's j_1.
   class Bonds : public PiecewiseQuadratic
   {
@@ -43,7 +41,7 @@ namespace
     }
 
     double
-    value(const Vector &s) const override
+    value(const VectorView &s) const override
     {
       double sum = 0.;
       for (unsigned int i = 0; i < s.size(); ++i)
@@ -52,15 +50,17 @@ namespace
       return sum;
     }
 
-    void
-    subgradient(const Vector &s, Vector &xi) const override
+    Eigen::VectorXd
+    subgradient(const VectorView &s) const override
     {
+      Eigen::VectorXd xi(s.size());
       for (unsigned int i = 0; i < s.size(); ++i)
         xi(i) = broken(s(i)) ? 0. : stiffness(i) * s(i);
+      return xi;
     }
 
     Eigen::SparseMatrix<double>
-    curvature(const Vector &s) const override
+    curvature(const VectorView &s) const override
     {
       Eigen::SparseMatrix<double> matrix(s.size(), s.size());
       for (unsigned int i = 0; i < s.size(); ++i)
@@ -72,47 +72,50 @@ namespace
 
 
 
-  class Energy : public Objective<Vector>
+  class Energy : public Objective<dealii::Vector<double>>
   {
   public:
-    Energy(const dealii::FullMatrix<double> &matrix,
-           const Vector                     &load,
-           const Bonds                      &bonds)
+    Energy(const Eigen::MatrixXd &matrix,
+           const Eigen::VectorXd &load,
+           const Bonds           &bonds)
       : S(matrix)
       , g(load)
       , phi(bonds)
     {}
 
     double
-    value(const Vector &s) const override
+    value(const VectorView &s) const
     {
-      return 0.5 * S.matrix_norm_square(s) - g * s + phi.value(s);
+      return s.dot(0.5 * S * s - g) + phi.value(s);
+    }
+
+    double
+    value(const dealii::Vector<double> &s) const override
+    {
+      return value(eigen_view(s));
     }
 
     void
-    subgradient(const Vector &s, Vector &eta) const override
+    subgradient(const dealii::Vector<double> &s,
+                dealii::Vector<double>       &eta) const override
     {
-      Vector xi(s.size());
-      phi.subgradient(s, xi);
-      S.vmult(eta, s);
-      eta -= g;
-      eta += xi;
+      const auto point = eigen_view(s);
+      eta              = from_eigen(S * point - g + phi.subgradient(point));
     }
 
   private:
-    const dealii::FullMatrix<double> &S;
-    const Vector                     &g;
-    const Bonds                      &phi;
+    const Eigen::MatrixXd &S;
+    const Eigen::VectorXd &g;
+    const Bonds           &phi;
   };
 
 
 
   struct Problem
   {
-    Eigen::MatrixXd            S_eigen;
-    dealii::FullMatrix<double> S;
-    Vector                     g;
-    Bonds                      bonds;
+    Eigen::MatrixXd S;
+    Eigen::VectorXd g;
+    Bonds           bonds;
   };
 
 
@@ -124,25 +127,22 @@ namespace
 
     // Neighbours are coupled, as on a contact boundary.
     Problem p;
-    p.S_eigen = Eigen::MatrixXd::Zero(n, n);
+    p.S = Eigen::MatrixXd::Zero(n, n);
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int j = 0; j < n; ++j)
-        p.S_eigen(i, j) = -std::exp(-std::abs(double(i) - double(j))) *
-                          (1. + 0.3 * uniform(engine));
-    p.S_eigen = (0.5 * (p.S_eigen + p.S_eigen.transpose())).eval();
+        p.S(i, j) = -std::exp(-std::abs(double(i) - double(j))) *
+                    (1. + 0.3 * uniform(engine));
+    p.S = (0.5 * (p.S + p.S.transpose())).eval();
     for (unsigned int i = 0; i < n; ++i)
-      p.S_eigen(i, i) = 0.2 - (p.S_eigen.row(i).sum() - p.S_eigen(i, i));
+      p.S(i, i) = 0.2 - (p.S.row(i).sum() - p.S(i, i));
 
-    p.S.reinit(n, n);
-    p.g.reinit(n);
+    p.g.resize(n);
     p.bonds.stiffness.resize(n);
     p.bonds.threshold = 0.5 + 0.4 * uniform(engine);
     for (unsigned int i = 0; i < n; ++i)
       {
         p.g(i)               = 1.5 * uniform(engine) - 0.5;
         p.bonds.stiffness(i) = 1. + uniform(engine);
-        for (unsigned int j = 0; j < n; ++j)
-          p.S(i, j) = p.S_eigen(i, j);
       }
     return p;
   }
@@ -166,7 +166,7 @@ namespace
       {
         std::vector<unsigned int> state(n);
         std::vector<int>          free;
-        Eigen::MatrixXd           M    = p.S_eigen;
+        Eigen::MatrixXd           M    = p.S;
         unsigned int              rest = code;
         for (unsigned int i = 0; i < n; ++i, rest /= 3)
           {
@@ -176,16 +176,15 @@ namespace
             if (state[i] != pressed)
               free.push_back(i);
           }
-        const Eigen::VectorXd g =
-          Eigen::Map<const Eigen::VectorXd>(p.g.begin(), n);
-        Eigen::VectorXd s = Eigen::VectorXd::Zero(n);
+        const Eigen::VectorXd &g = p.g;
+        Eigen::VectorXd        s = Eigen::VectorXd::Zero(n);
         if (!free.empty())
           {
             const Eigen::VectorXd s_free = M(free, free).llt().solve(g(free));
             for (unsigned int k = 0; k < free.size(); ++k)
               s(free[k]) = s_free(k);
           }
-        const Eigen::VectorXd mu         = g - p.S_eigen * s;
+        const Eigen::VectorXd mu         = g - p.S * s;
         bool                  consistent = true;
         for (unsigned int i = 0; i < n; ++i)
           consistent =
@@ -194,11 +193,7 @@ namespace
              state[i] == bonded  ? s(i) <= 0. && !p.bonds.broken(s(i)) :
                                    p.bonds.broken(s(i)));
         if (consistent)
-          {
-            Vector point(n);
-            std::copy(s.begin(), s.end(), point.begin());
-            values.push_back(Energy(p.S, p.g, p.bonds).value(point));
-          }
+          values.push_back(Energy(p.S, p.g, p.bonds).value(s));
       }
     return values;
   }
@@ -344,13 +339,13 @@ namespace
         };
 
         // From rest, and from anywhere.
-        Vector start(n);
+        Eigen::VectorXd start = Eigen::VectorXd::Zero(n);
         if (k % 2 == 1)
           for (double &entry : start)
             entry = -std::abs(
               std::uniform_real_distribution<double>(-2., 2.)(engine));
 
-        Vector           s = start;
+        Eigen::VectorXd  s = start;
         CondensedProblem condensed(p.S, p.g, p.bonds, s);
         const auto       mm = MajoriseMinimise({}).minimize(condensed);
         mm_failures += mm.status != SolverStatus::success;
@@ -374,11 +369,12 @@ namespace
         parameters.epsilon_s          = 1e-14;
         parameters.bundle_size        = 50;
         parameters.maximum_iterations = 500;
-        MetricDirection direction(p.S, p.bonds, parameters.bundle_size);
-        s = start;
-        const auto bundle =
-          ProximalBundle<Vector>(parameters)
-            .minimize(Energy(p.S, p.g, p.bonds), direction, s);
+        MetricDirection<dealii::Vector<double>> direction(
+          p.S, p.bonds, parameters.bundle_size);
+        dealii::Vector<double> x = from_eigen(start);
+        const auto             bundle =
+          ProximalBundle<dealii::Vector<double>>(parameters)
+            .minimize(Energy(p.S, p.g, p.bonds), direction, x);
         bundle_failures += bundle.status != SolverStatus::success;
         worst_bundle = std::max(worst_bundle, distance(bundle.functional));
         bundle_global += std::abs(bundle.functional - values[0]) < 1e-9;
@@ -440,13 +436,14 @@ namespace
           all_named = all_named &&
                       failure.find(" after 1 iterations") != std::string::npos;
         failures.clear();
-        Vector s =
+        Eigen::VectorXd s =
           coarse_start(p.S, p.g, p.bonds, prolongations, method, failures);
         converged = converged && failures.empty();
         const Energy energy(p.S, p.g, p.bonds);
         for (const double entry : s)
           feasible = feasible && entry <= 0.;
-        below_rest = below_rest && energy.value(s) <= energy.value(Vector(16));
+        below_rest = below_rest &&
+                     energy.value(s) <= energy.value(Eigen::VectorXd::Zero(16));
         CondensedProblem problem(p.S, p.g, p.bonds, s);
         converged =
           converged && method.minimize(problem).status == SolverStatus::success;
@@ -476,10 +473,7 @@ namespace
     const Eigen::MatrixXd root =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(differences)
         .operatorSqrt();
-    dealii::FullMatrix<double> S(n, n);
-    for (unsigned int i = 0; i < n; ++i)
-      for (unsigned int j = 0; j < n; ++j)
-        S(i, j) = 0.5 * (root(i, j) + root(j, i));
+    const Eigen::MatrixXd S = 0.5 * (root + root.transpose());
 
     std::vector<Eigen::SparseMatrix<double>> prolongations;
     for (unsigned int fine = n; fine > 20; fine /= 2)
@@ -507,7 +501,7 @@ namespace
               E.insert(i, i) = i < n / 3 ? stiffness : 0.;
               r(i)           = std::sin(6.3 * waves * (i + 0.3) / n) - 0.2;
             }
-          Eigen::MatrixXd M = eigen_view(S);
+          Eigen::MatrixXd M = S;
           M += E;
           const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
           ActiveSet             active(n, 0);
@@ -539,12 +533,12 @@ namespace
     for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int j = 0; j < 3; ++j)
         matrix(i, j) = 10. * i + j;
-    const auto view = eigen_view(matrix);
-    bool       same = view.rows() == 2 && view.cols() == 3;
+    const auto view = symmetric_view(matrix);
+    bool       same = view.rows() == 3 && view.cols() == 2;
     for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int j = 0; j < 3; ++j)
-        same = same && view(i, j) == matrix(i, j);
-    check("a matrix seen by Eigen has its rows", same);
+        same = same && view(j, i) == matrix(i, j);
+    check("a matrix seen by Eigen has its rows as columns", same);
   }
 } // namespace
 

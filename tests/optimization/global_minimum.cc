@@ -27,7 +27,7 @@ using namespace Debond;
 
 namespace
 {
-  using Vector = dealii::Vector<double>;
+  using Vector = Eigen::VectorXd;
 
   /// k/2 min(s^2, M^2)
   BranchMinimum
@@ -52,10 +52,9 @@ namespace
 
   struct Problem
   {
-    Eigen::MatrixXd            S_eigen;
-    dealii::FullMatrix<double> S;
-    Vector                     g;
-    SeparableBranches          bonds; ///< with two branches
+    Eigen::MatrixXd   S;
+    Vector            g;
+    SeparableBranches bonds; ///< with two branches
 
     double
     stiffness(const unsigned int i) const
@@ -116,16 +115,9 @@ namespace
     const Eigen::VectorXd stiffness = Eigen::VectorXd::NullaryExpr(n, [&]() {
       return std::pow(10., uniform(engine));
     });
-    Problem               p         = {S,
-                                       dealii::FullMatrix<double>(n, n),
-                                       Vector(n),
-                                       bonds_of(stiffness, threshold)};
+    Problem               p = {S, Vector(n), bonds_of(stiffness, threshold)};
     for (unsigned int i = 0; i < n; ++i)
-      {
-        p.g(i) = 1.5 * uniform(engine) - 0.7;
-        for (unsigned int j = 0; j < n; ++j)
-          p.S(i, j) = S(i, j);
-      }
+      p.g(i) = 1.5 * uniform(engine) - 0.7;
     return p;
   }
 
@@ -138,17 +130,12 @@ namespace
   {
     std::uniform_real_distribution<double> uniform(-1., 1.);
     Problem p = {Eigen::MatrixXd::Identity(n, n) * 40.02,
-                 dealii::FullMatrix<double>(n, n),
                  Vector(n),
                  bonds_of(Eigen::VectorXd::Constant(n, 500.), 0.007)};
     for (unsigned int i = 1; i < n; ++i)
-      p.S_eigen(i, i - 1) = p.S_eigen(i - 1, i) = -20.;
+      p.S(i, i - 1) = p.S(i - 1, i) = -20.;
     for (unsigned int i = 0; i < n; ++i)
-      {
-        p.g(i) = i < n / 2 ? -0.07 * (1. + 0.2 * uniform(engine)) : 0.03;
-        for (unsigned int j = 0; j < n; ++j)
-          p.S(i, j) = p.S_eigen(i, j);
-      }
+      p.g(i) = i < n / 2 ? -0.07 * (1. + 0.2 * uniform(engine)) : 0.03;
     return p;
   }
 
@@ -158,24 +145,21 @@ namespace
   double
   enumerated_minimum(const Problem &p, Vector &minimiser)
   {
-    const unsigned int    n = p.g.size();
-    const Eigen::VectorXd g = Eigen::Map<const Eigen::VectorXd>(p.g.begin(), n);
-    double                least = std::numeric_limits<double>::infinity();
-    ActiveSet             active(n, 0);
+    const unsigned int n     = p.g.size();
+    double             least = std::numeric_limits<double>::infinity();
+    ActiveSet          active(n, 0);
     for (unsigned int state = 0; state < (1u << n); ++state)
       {
-        Eigen::MatrixXd M = p.S_eigen;
+        Eigen::MatrixXd M = p.S;
         for (unsigned int i = 0; i < n; ++i)
           if ((state >> i) % 2 == 0)
             M(i, i) += p.stiffness(i);
         const BoundQPResult qp =
-          solve_bound_qp(M, g, Eigen::VectorXd::Zero(n), active);
-        Vector s(n);
-        std::copy(qp.x.begin(), qp.x.end(), s.begin());
-        if (const double value = p.value(s); value < least)
+          solve_bound_qp(M, p.g, Eigen::VectorXd::Zero(n), active);
+        if (const double value = p.value(qp.x); value < least)
           {
             least     = value;
-            minimiser = s;
+            minimiser = qp.x;
           }
       }
     return least;
@@ -250,11 +234,10 @@ namespace
     bool growth_holds = true, box_holds = true, close = true;
     for (unsigned int k = 0; k < 200; ++k)
       {
-        const unsigned int    n       = 3 + k % 4;
-        const Problem         p       = random_problem(engine, n, k % 2 == 0);
-        const Eigen::MatrixXd inverse = p.S_eigen.inverse();
-        const Eigen::VectorXd g =
-          Eigen::Map<const Eigen::VectorXd>(p.g.begin(), n);
+        const unsigned int      n       = 3 + k % 4;
+        const Problem           p       = random_problem(engine, n, k % 2 == 0);
+        const Eigen::MatrixXd   inverse = p.S.inverse();
+        const Eigen::VectorXd  &g       = p.g;
         const Eigen::VectorXd   minimum = inverse * g;
         const double            value   = -0.5 * g.dot(minimum);
         const BranchMinimum     zero({{0., 0., 0.L, ""}});
@@ -262,7 +245,7 @@ namespace
         const double            more = uniform(engine);
         const auto root = NodeBound(p.S, p.g, no_bonds).root(value + more);
 
-        const BoxProblem problem = {p.S_eigen,
+        const BoxProblem problem = {p.S,
                                     g,
                                     std::vector<BranchEnergy>(n,
                                                               {0., {zero[0]}}),
@@ -275,7 +258,7 @@ namespace
             const double          d = -std::sqrt(2. * more * inverse(i, i));
             const Eigen::VectorXd s =
               minimum + d / inverse(i, i) * inverse.col(i);
-            const double s_value = s.dot(0.5 * p.S_eigen * s - g);
+            const double s_value = s.dot(0.5 * p.S * s - g);
             const double claimed =
               lower_bound.growth(i, 0, inverse(i, i)).value(s(i));
             growth_holds = growth_holds && claimed <= s_value;
@@ -302,7 +285,7 @@ namespace
     for (unsigned int k = 0; k < 100; ++k)
       {
         const unsigned int    n       = 3 + k % 5;
-        const Eigen::MatrixXd A       = random_problem(engine, n, true).S_eigen;
+        const Eigen::MatrixXd A       = random_problem(engine, n, true).S;
         const auto            inverse = safe_inverse(A);
         inverses =
           inverses && inverse &&
@@ -423,8 +406,8 @@ namespace
         // From rest, of which nothing is known.
         BranchAndBoundParameters parameters;
         parameters.tolerance = tolerance;
-        const auto proof =
-          BranchAndBound(parameters).minimize(p.S, p.g, p.bonds, Vector(n));
+        const auto proof     = BranchAndBound(parameters)
+                             .minimize(p.S, p.g, p.bonds, Vector::Zero(n));
         not_proved += proof.status != ProofStatus::proved;
         wrong += std::abs(proof.upper - minimum) > tolerance ||
                  std::abs(p.value(proof.s) - minimum) > tolerance;
@@ -444,12 +427,12 @@ namespace
                 (!result.unknown && result.least < node.bound);
 
         parameters.maximum_nodes = 1;
-        const auto stopped =
-          BranchAndBound(parameters).minimize(p.S, p.g, p.bonds, Vector(n));
+        const auto stopped       = BranchAndBound(parameters)
+                               .minimize(p.S, p.g, p.bonds, Vector::Zero(n));
         interrupted += stopped.status == ProofStatus::node_limit;
         invalid += stopped.lower > minimum;
 
-        Vector           s(n);
+        Vector           s = Vector::Zero(n);
         MajoriseMinimise method({});
         CondensedProblem problem(p.S, p.g, p.bonds, s);
         method.minimize(problem);
@@ -493,8 +476,8 @@ namespace
         const double             minimum = enumerated_minimum(p, minimiser);
         BranchAndBoundParameters parameters;
         parameters.tolerance = 1e-10;
-        const auto proof =
-          BranchAndBound(parameters).minimize(p.S, p.g, p.bonds, Vector(n));
+        const auto proof     = BranchAndBound(parameters)
+                             .minimize(p.S, p.g, p.bonds, Vector::Zero(n));
         good  = good && proof.status == ProofStatus::proved;
         found = found && std::abs(proof.upper - minimum) < 1e-10 &&
                 proof.lower <= minimum;
@@ -519,13 +502,13 @@ namespace
         BranchAndBoundParameters parameters;
         parameters.tolerance     = 1e-9;
         parameters.maximum_nodes = 300;
-        const auto one =
-          BranchAndBound(parameters).minimize(p.S, p.g, p.bonds, Vector(80));
+        const auto one           = BranchAndBound(parameters)
+                           .minimize(p.S, p.g, p.bonds, Vector::Zero(80));
         for (const unsigned int n_threads : {2, 3, 16})
           {
             parameters.n_threads = n_threads;
             const auto more      = BranchAndBound(parameters)
-                                .minimize(p.S, p.g, p.bonds, Vector(80));
+                                .minimize(p.S, p.g, p.bonds, Vector::Zero(80));
             same = same && more.nodes == one.nodes && more.lower == one.lower &&
                    more.upper == one.upper && more.s == one.s &&
                    more.status == one.status;
@@ -550,7 +533,7 @@ namespace
     little.tolerance     = 1e-9;
     little.maximum_bytes = 2 * 4 * 80 * sizeof(double);
     const auto full =
-      BranchAndBound(little).minimize(q.S, q.g, q.bonds, Vector(80));
+      BranchAndBound(little).minimize(q.S, q.g, q.bonds, Vector::Zero(80));
     std::cout << "room for 2 nodes: " << to_string(full.status)
               << ", valid gap: "
               << verdict(std::isfinite(full.lower) && full.lower <= full.upper)
@@ -561,7 +544,7 @@ namespace
       BranchAndBound({}).minimize(q.S,
                                   q.g,
                                   q.bonds,
-                                  Vector(80),
+                                  Vector::Zero(80),
                                   [&](const auto &) { return ++rounds < 3; });
     std::cout << "stopped by the monitor: " << to_string(interrupted.status)
               << ", at once: " << verdict(rounds == 3) << ", valid gap: "
@@ -571,11 +554,11 @@ namespace
     BranchAndBoundParameters parameters;
     parameters.maximum_seconds = 0.;
     const auto late =
-      BranchAndBound(parameters).minimize(p.S, p.g, p.bonds, Vector(8));
+      BranchAndBound(parameters).minimize(p.S, p.g, p.bonds, Vector::Zero(8));
     Problem indefinite = p;
     indefinite.S(3, 3) = -1.;
     const auto nothing =
-      BranchAndBound({}).minimize(indefinite.S, p.g, p.bonds, Vector(8));
+      BranchAndBound({}).minimize(indefinite.S, p.g, p.bonds, Vector::Zero(8));
     std::cout << "no time: " << to_string(late.status)
               << ", indefinite matrix: " << to_string(nothing.status)
               << ", no bound: " << verdict(!std::isfinite(nothing.lower))
@@ -590,12 +573,9 @@ namespace
   void
   test_starts()
   {
-    Problem p         = {Eigen::MatrixXd::Identity(1, 1),
-                         dealii::FullMatrix<double>(1, 1),
-                         Vector(1),
+    Problem    p      = {Eigen::MatrixXd::Identity(1, 1),
+                         Vector::Constant(1, -1.),
                          bonds_of(Eigen::VectorXd::Constant(1, 2.), 0.5)};
-    p.S(0, 0)         = 1.;
-    p.g(0)            = -1.;
     const auto search = [&](Vector &s) {
       const MajoriseMinimise method({});
       CondensedProblem       problem(p.S, p.g, p.bonds, s);
@@ -603,15 +583,15 @@ namespace
       return search_branches(
         p.S, p.g, p.bonds, p.bonds, chain(s.size()), method, {}, s);
     };
-    Vector     s(1);
+    Vector     s     = Vector::Zero(1);
     const auto found = search(s);
     std::cout << "a start that is its own minimum is taken: "
               << verdict(std::abs(found.functional + 0.25) < 1e-14 &&
                          std::abs(s(0) + 1.) < 1e-14 && found.failures == 0)
               << '\n';
 
-    p.S(0, 0) = -1.;
-    Vector     rest(1);
+    p.S(0, 0)         = -1.;
+    Vector     rest   = Vector::Zero(1);
     const auto failed = search(rest);
     std::cout << "trials that fail are counted: "
               << verdict(failed.failures > 0) << '\n';
@@ -639,8 +619,8 @@ namespace
         const double             minimum = enumerated_minimum(p, minimiser);
         BranchAndBoundParameters parameters;
         parameters.tolerance = 1e-10 * std::max(1., std::abs(minimum));
-        const auto proof =
-          BranchAndBound(parameters).minimize(p.S, p.g, p.bonds, Vector(n));
+        const auto proof     = BranchAndBound(parameters)
+                             .minimize(p.S, p.g, p.bonds, Vector::Zero(n));
         invalid += proof.lower > minimum + 1e-15;
         wrong += std::abs(proof.upper - minimum) > parameters.tolerance;
         proved += proof.status == ProofStatus::proved;

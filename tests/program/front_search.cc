@@ -4,6 +4,7 @@
 // on all contact nodes does.
 
 #include <debond/contact/boundary_graph.h>
+#include <debond/linear_algebra/eigen_view.h>
 #include <debond/solve/front_search.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/solve.h>
@@ -28,7 +29,7 @@ namespace
   {
     return scene.problem().fields().elastic_functional(u) +
            scene.adhesion().energy(
-             scene.problem().unknowns().contact().trace(u));
+             eigen_view(scene.problem().unknowns().contact().trace(u)));
   }
 
 

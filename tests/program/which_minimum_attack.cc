@@ -6,6 +6,7 @@
 
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/input/parameters.h>
+#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/global/guided_search.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve.h>
@@ -244,16 +245,13 @@ namespace
       const unsigned int n = condensed.load().size();
       if (n == 0 || (!many_patches && n > most_nodes))
         return;
-      const Eigen::Map<const Eigen::MatrixXd> S(
-        &condensed.schur_complement()(0, 0), n, n);
-      const Eigen::Map<const Eigen::VectorXd> g(condensed.load().begin(), n);
-      largest   = -S.llt().solve(g).minCoeff();
-      stiffness = S.diagonal().mean() /
-                  scene.adhesion()
-                    .curvature(dealii::Vector<double>(n))
-                    .diagonal()
-                    .mean() *
-                  scene.law().curvature(0.);
+      const auto S = symmetric_view(condensed.schur_complement());
+      const auto g = eigen_view(condensed.load());
+      largest      = -S.llt().solve(g).minCoeff();
+      stiffness =
+        S.diagonal().mean() /
+        scene.adhesion().curvature(Eigen::VectorXd::Zero(n)).diagonal().mean() *
+        scene.law().curvature(0.);
     }
     if (!(largest > 0.))
       return;
@@ -285,7 +283,7 @@ namespace
       lumped_branches(scene.adhesion(), n, scene.law().branches());
     const double found =
       0.5 * condensed.schur_complement().matrix_norm_square(s) -
-      condensed.load() * s + bonds.value(s);
+      condensed.load() * s + bonds.value(eigen_view(s));
     double minimum;
     if (many_patches)
       {
@@ -294,7 +292,10 @@ namespace
         proof_parameters.maximum_nodes = 3000;
         const BranchAndBoundResult proof =
           BranchAndBound(proof_parameters)
-            .minimize(condensed.schur_complement(), condensed.load(), bonds, s);
+            .minimize(symmetric_view(condensed.schur_complement()),
+                      eigen_view(condensed.load()),
+                      bonds,
+                      eigen_view(s));
         minimum = proof.upper;
         counts.unknown += proof.upper - proof.lower > allowed * std::abs(found);
       }

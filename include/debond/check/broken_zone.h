@@ -12,10 +12,10 @@ namespace Debond
   /// linear on each face. So a crack in 2D ends between two nodes.
   template <int dim>
   double
-  broken_zone(const ContactBoundary<dim>   &boundary,
-              const AdhesiveLaw            &law,
-              const AdhesionIntegral<dim>  &adhesion,
-              const dealii::Vector<double> &s);
+  broken_zone(const ContactBoundary<dim>  &boundary,
+              const AdhesiveLaw           &law,
+              const AdhesionIntegral<dim> &adhesion,
+              const VectorView            &s);
 } // namespace Debond
 
 #endif

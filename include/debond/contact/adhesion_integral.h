@@ -2,8 +2,6 @@
 #ifndef debond_contact_adhesion_integral_h
 #define debond_contact_adhesion_integral_h
 
-#include <deal.II/lac/vector.h>
-
 #include <debond/contact/bond_field.h>
 #include <debond/contact/boundary.h>
 #include <debond/contact/law.h>
@@ -44,7 +42,7 @@ namespace Debond
     /// From now on bonds do not return to pieces of the law that they have left
     /// at @p s or before. Needs the nodal rule.
     void
-    break_for_good(const dealii::Vector<double> &s);
+    break_for_good(const VectorView &s);
 
     /// The piece of the law that the bonds of a node have not left for good.
     unsigned int
@@ -58,13 +56,13 @@ namespace Debond
     /// The coefficients of s on a face, unknown or prescribed.
     typename ContactQuadrature<dim>::Trace
     trace_on(const typename ContactBoundary<dim>::Face &face,
-             const dealii::Vector<double>              &s) const;
+             const VectorView                          &s) const;
 
     /// s at a vertex of a face, unknown or prescribed, and the bonds there.
     double
     trace_at(const typename ContactBoundary<dim>::Face &face,
              const unsigned int                         vertex,
-             const dealii::Vector<double>              &s) const;
+             const VectorView                          &s) const;
 
     BondScale
     bonds_at(const typename ContactBoundary<dim>::Face &face,
@@ -76,11 +74,11 @@ namespace Debond
 
     /// Phi(s), an energy.
     double
-    energy(const dealii::Vector<double> &s) const;
+    energy(const VectorView &s) const;
 
     /// Phi(s) - Phi(0); Phi(0) = 0 if nothing is prescribed and bonds return.
     double
-    value(const dealii::Vector<double> &s) const override;
+    value(const VectorView &s) const override;
 
     /// Phi(0) for @p load_factor times the whole load.
     double
@@ -88,26 +86,25 @@ namespace Debond
 
     /// One element of the Clarke subdifferential of Phi at s (at a kink the
     /// derivative of the branch on the side of 0), a force for each node.
-    void
-    subgradient(const dealii::Vector<double> &s,
-                dealii::Vector<double>       &xi) const override;
+    Eigen::VectorXd
+    subgradient(const VectorView &s) const override;
 
     /// The second derivative of the same branches, a matrix that
     /// couples the nodes of a face (diagonal for nodal quadrature).
     Eigen::SparseMatrix<double>
-    curvature(const dealii::Vector<double> &s) const override;
+    curvature(const VectorView &s) const override;
 
     /// For each node the forces that the law allows: the quadrature of the
     /// Goldstein intervals of j_1 over s +- delta. With delta = 0 this is
     /// the Clarke interval of Phi.
     std::vector<Interval>
-    force_intervals(const dealii::Vector<double> &s, const double delta) const;
+    force_intervals(const VectorView &s, const double delta) const;
 
     /// The same with a radius of its own for each node, delta[i] for the
     /// force on node i.
     std::vector<Interval>
-    force_intervals(const dealii::Vector<double> &s,
-                    const std::vector<double>    &delta) const;
+    force_intervals(const VectorView          &s,
+                    const std::vector<double> &delta) const;
 
     /// Whether each node has a multiple of the law for its own, as with nodal
     /// quadrature.
@@ -117,20 +114,20 @@ namespace Debond
     /// The derivatives of Phi by the normal displacements of
     /// ContactBoundary::held_vertices.
     std::vector<double>
-    held_forces(const dealii::Vector<double> &s) const;
+    held_forces(const VectorView &s) const;
 
     /// s at a point of a face.
     double
     trace(const typename ContactBoundary<dim>::Face &face,
           const std::array<double, dim>             &barycentric,
-          const dealii::Vector<double>              &s) const;
+          const VectorView                          &s) const;
 
     /// The derivative of j_1 at a point of a face (at a kink: that of the
     /// branch on the side of 0), minus the traction of the bonds on the body.
     double
     traction(const typename ContactBoundary<dim>::Face &face,
              const std::array<double, dim>             &barycentric,
-             const dealii::Vector<double>              &s) const;
+             const VectorView                          &s) const;
 
     /// Whether bonds are not the same everywhere.
     bool
@@ -160,7 +157,7 @@ namespace Debond
       is_on_a_node() const;
 
       double
-      trace(const dealii::Vector<double> &s) const;
+      trace(const VectorView &s) const;
     };
 
     /// A prescribed coefficient on a face.
@@ -174,7 +171,7 @@ namespace Debond
 
     /// The quadrature points for the trace s.
     const std::vector<Point> &
-    points(const dealii::Vector<double> &s) const;
+    points(const VectorView &s) const;
 
     /// Those of the rule on a face for the trace there.
     const std::vector<typename ContactQuadrature<dim>::QuadraturePoint> &
@@ -187,7 +184,7 @@ namespace Debond
 
     /// Writes the points of all faces to point_list.
     void
-    collect_points(const dealii::Vector<double> &s) const;
+    collect_points(const VectorView &s) const;
 
     /// Makes point_list unless the rule depends on the trace.
     void

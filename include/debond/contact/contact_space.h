@@ -6,6 +6,7 @@
 #include <deal.II/lac/vector.h>
 
 #include <debond/contact/boundary.h>
+#include <debond/linear_algebra/views.h>
 #include <debond/optimization/objective.h>
 
 #include <vector>
@@ -47,8 +48,7 @@ namespace Debond
 
     /// u += N s.
     void
-    add_normal(const dealii::Vector<double> &s,
-               dealii::Vector<double>       &u) const;
+    add_normal(const VectorView &s, dealii::Vector<double> &u) const;
 
     /// The unilateral constraint s <= 0 as bounds on degrees of freedom.
     UpperBounds

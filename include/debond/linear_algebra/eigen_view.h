@@ -9,16 +9,15 @@
 
 namespace Debond
 {
-  /// A view of the matrix, whose rows are contiguous; Eigen's own matrices have
-  /// contiguous columns. Valid as long as the matrix.
-  inline auto
-  eigen_view(const dealii::FullMatrix<double> &matrix)
+  /// A view of a symmetric matrix, valid as long as it. deal.II's matrices have
+  /// contiguous rows, Eigen's contiguous columns, so that it is of the
+  /// transpose.
+  inline Eigen::Map<const Eigen::MatrixXd>
+  symmetric_view(const dealii::FullMatrix<double> &matrix)
   {
-    using RowMajor =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    return Eigen::Map<const RowMajor>(matrix.empty() ? nullptr : &matrix(0, 0),
-                                      matrix.m(),
-                                      matrix.n());
+    return {matrix.empty() ? nullptr : &matrix(0, 0),
+            static_cast<Eigen::Index>(matrix.n()),
+            static_cast<Eigen::Index>(matrix.m())};
   }
 
   /// A view of the vector, valid as long as it.
@@ -26,6 +25,12 @@ namespace Debond
   eigen_view(const dealii::Vector<double> &vector)
   {
     return {vector.begin(), static_cast<Eigen::Index>(vector.size())};
+  }
+
+  inline dealii::Vector<double>
+  from_eigen(const Eigen::VectorXd &vector)
+  {
+    return dealii::Vector<double>(vector.begin(), vector.end());
   }
 } // namespace Debond
 

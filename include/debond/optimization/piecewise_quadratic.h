@@ -2,7 +2,7 @@
 #ifndef debond_optimization_piecewise_quadratic_h
 #define debond_optimization_piecewise_quadratic_h
 
-#include <deal.II/lac/vector.h>
+#include <debond/linear_algebra/views.h>
 
 #include <Eigen/SparseCore>
 
@@ -21,17 +21,16 @@ namespace Debond
 
     /// Phi(s).
     virtual double
-    value(const dealii::Vector<double> &s) const = 0;
+    value(const VectorView &s) const = 0;
 
     /// The gradient at s of the branches that are the least ones there, which
     /// is an element of the Clarke subdifferential of Phi.
-    virtual void
-    subgradient(const dealii::Vector<double> &s,
-                dealii::Vector<double>       &xi) const = 0;
+    virtual Eigen::VectorXd
+    subgradient(const VectorView &s) const = 0;
 
     /// The second derivative of these branches, positive semidefinite.
     virtual Eigen::SparseMatrix<double>
-    curvature(const dealii::Vector<double> &s) const = 0;
+    curvature(const VectorView &s) const = 0;
   };
 } // namespace Debond
 

@@ -2,9 +2,7 @@
 #ifndef debond_optimization_stationary_path_h
 #define debond_optimization_stationary_path_h
 
-#include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/vector.h>
-
+#include <debond/linear_algebra/views.h>
 #include <debond/optimization/branch_minimum.h>
 
 #include <Eigen/Core>
@@ -45,14 +43,14 @@ namespace Debond
     /// of rising t, @p slope being the derivative of g. Keeps references to
     /// @p S and @p f. If not @p returns, s_i does not come back to a piece
     /// that it has left.
-    StationaryPath(const dealii::FullMatrix<double> &S,
-                   const dealii::Vector<double>     &load,
-                   const dealii::Vector<double>     &slope,
-                   const BranchMinimum              &f,
-                   const std::vector<Bond>          &bonds,
-                   const bool                        returns,
-                   const dealii::Vector<double>     &s,
-                   const double                      t);
+    StationaryPath(const MatrixView        &S,
+                   const VectorView        &load,
+                   const VectorView        &slope,
+                   const BranchMinimum     &f,
+                   const std::vector<Bond> &bonds,
+                   const bool               returns,
+                   const VectorView        &s,
+                   const double             t);
 
     enum class Event
     {
@@ -70,7 +68,7 @@ namespace Debond
     double
     t() const;
 
-    const dealii::Vector<double> &
+    const Eigen::VectorXd &
     point() const;
 
     /// Whether some s_i was at a kink between the last two points.
@@ -79,7 +77,7 @@ namespace Debond
 
     /// The point with each s_i that is at a kink inside the piece that it
     /// has not left.
-    dealii::Vector<double>
+    Eigen::VectorXd
     point_before_kinks() const;
 
   private:
@@ -122,15 +120,15 @@ namespace Debond
     bool
     solve();
 
-    const dealii::FullMatrix<double> &S;
-    const Eigen::VectorXd             load, slope;
-    const double                      first_t;
-    const BranchMinimum              &f;
-    std::vector<Bond>                 bonds;
-    const bool                        returns;
+    const MatrixView      S;
+    const Eigen::VectorXd load, slope;
+    const double          first_t;
+    const BranchMinimum  &f;
+    std::vector<Bond>     bonds;
+    const bool            returns;
 
     double                    parameter;
-    dealii::Vector<double>    s;
+    Eigen::VectorXd           s;
     Eigen::VectorXd           r;
     std::vector<Segment>      segments;
     std::vector<Change>       changes;        ///< at the point

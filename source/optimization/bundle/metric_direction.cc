@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/vector.h>
 
 #include <debond/base/archive.h>
 #include <debond/linear_algebra/eigen_view.h>
@@ -14,19 +14,22 @@
 
 namespace Debond
 {
-  MetricDirection::MetricDirection(const dealii::FullMatrix<double> &metric,
-                                   const PiecewiseQuadratic         &nonsmooth,
-                                   const unsigned int bundle_size)
+  template <typename VectorType>
+  MetricDirection<VectorType>::MetricDirection(
+    const MatrixView         &metric,
+    const PiecewiseQuadratic &nonsmooth,
+    const unsigned int        bundle_size)
     : S(metric)
     , phi(nonsmooth)
-    , eta(S.m(), bundle_size)
-    , active(S.m(), 0)
+    , eta(S.rows(), bundle_size)
+    , active(S.rows(), 0)
   {}
 
 
 
+  template <typename VectorType>
   bool
-  MetricDirection::is_feasible(const dealii::Vector<double> &x) const
+  MetricDirection<VectorType>::is_feasible(const VectorType &x) const
   {
     return std::all_of(x.begin(), x.end(), [](const double s) {
       return s <= 0.;
@@ -35,37 +38,41 @@ namespace Debond
 
 
 
+  template <typename VectorType>
   unsigned int
-  MetricDirection::size() const
+  MetricDirection<VectorType>::size() const
   {
     return m;
   }
 
 
 
+  template <typename VectorType>
   void
-  MetricDirection::clear()
+  MetricDirection<VectorType>::clear()
   {
     m = 0;
   }
 
 
 
+  template <typename VectorType>
   void
-  MetricDirection::add(const dealii::Vector<double> &new_eta)
+  MetricDirection<VectorType>::add(const VectorType &new_eta)
   {
     eta.col(m++) = eigen_view(new_eta);
   }
 
 
 
-  const MetricDirection::Solution &
-  MetricDirection::solve(const dealii::Vector<double> &x,
-                         const Eigen::VectorXd        &beta)
+  template <typename VectorType>
+  const typename MetricDirection<VectorType>::Solution &
+  MetricDirection<VectorType>::solve(const VectorType      &x,
+                                     const Eigen::VectorXd &beta)
   {
     const unsigned int n = x.size();
-    Eigen::MatrixXd    M = eigen_view(S);
-    M += phi.curvature(x);
+    Eigen::MatrixXd    M = S;
+    M += phi.curvature(eigen_view(x));
     const Eigen::VectorXd b = -eigen_view(x);
     const auto            G = eta.leftCols(m);
 
@@ -148,25 +155,28 @@ namespace Debond
 
 
 
+  template <typename VectorType>
   void
-  MetricDirection::direction(dealii::Vector<double> &direction) const
+  MetricDirection<VectorType>::direction(VectorType &direction) const
   {
     std::copy(d.begin(), d.end(), direction.begin());
   }
 
 
 
+  template <typename VectorType>
   double
-  MetricDirection::length(const dealii::Vector<double> &direction) const
+  MetricDirection<VectorType>::length(const VectorType &direction) const
   {
-    return direction.size() > 0 ? std::sqrt(S.matrix_norm_square(direction)) :
-                                  0.;
+    const auto v = eigen_view(direction);
+    return std::sqrt(v.dot(S * v));
   }
 
 
 
+  template <typename VectorType>
   void
-  MetricDirection::project(dealii::Vector<double> &x) const
+  MetricDirection<VectorType>::project(VectorType &x) const
   {
     for (double &s : x)
       s = std::min(s, 0.);
@@ -174,8 +184,9 @@ namespace Debond
 
 
 
+  template <typename VectorType>
   void
-  MetricDirection::save(OutArchive &archive) const
+  MetricDirection<VectorType>::save(OutArchive &archive) const
   {
     save_matrix(archive, eta.leftCols(m));
     archive << active;
@@ -183,8 +194,9 @@ namespace Debond
 
 
 
+  template <typename VectorType>
   void
-  MetricDirection::load(InArchive &archive)
+  MetricDirection<VectorType>::load(InArchive &archive)
   {
     const Eigen::MatrixXd subgradients = load_matrix(archive);
     ActiveSet             bounds;
@@ -196,4 +208,8 @@ namespace Debond
     eta.leftCols(m) = subgradients;
     active          = bounds;
   }
+
+
+
+  template class MetricDirection<dealii::Vector<double>>;
 } // namespace Debond

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/timer.h>
-
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/node_bound.h>
 #include <debond/optimization/majorise/condensed_problem.h>
@@ -9,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <future>
 #include <set>
 
@@ -38,39 +36,43 @@ namespace Debond
 
       /// From the node's relaxation by majorise-minimise, unless its state had
       /// been tried.
-      BranchState            state;
-      dealii::Vector<double> s;
-      double                 value = std::numeric_limits<double>::infinity();
+      BranchState     state;
+      Eigen::VectorXd s;
+      double          value = std::numeric_limits<double>::infinity();
     };
+
+
+
+    using Clock = std::chrono::steady_clock;
 
 
 
     class ProofTree
     {
     public:
-      ProofTree(const BranchAndBoundParameters   &parameters,
-                const dealii::FullMatrix<double> &S,
-                const dealii::Vector<double>     &g,
-                const SeparableBranches          &phi,
-                const dealii::Vector<double>     &start);
+      ProofTree(const BranchAndBoundParameters &parameters,
+                const MatrixView               &S,
+                const VectorView               &g,
+                const SeparableBranches        &phi,
+                const VectorView               &start);
 
       BranchAndBoundResult
       run(const BranchAndBound::Monitor &monitor);
 
     private:
-      const BranchAndBoundParameters   &parameters;
-      const dealii::FullMatrix<double> &S;
-      const dealii::Vector<double>     &g;
-      const SeparableBranches          &phi;
-      const unsigned int                n;
-      const NodeBound                   node_bound;
+      const BranchAndBoundParameters &parameters;
+      const MatrixView               &S;
+      const VectorView               &g;
+      const SeparableBranches        &phi;
+      const unsigned int              n;
+      const NodeBound                 node_bound;
 
-      dealii::Timer         timer;
-      BranchAndBoundResult  result;
-      std::set<ProofNode>   open;
-      std::set<BranchState> tried; ///< states that were minimised
-      double                least_left_out;
-      unsigned int          n_created = 0;
+      const Clock::time_point begin = Clock::now();
+      BranchAndBoundResult    result;
+      std::set<ProofNode>     open;
+      std::set<BranchState>   tried; ///< states that were minimised
+      double                  least_left_out;
+      unsigned int            n_created = 0;
 
       void
       minimise_from(const Eigen::VectorXd &x, Job &job) const;
@@ -90,29 +92,32 @@ namespace Debond
       void
       branch(const Job &job);
 
+      double
+      seconds() const;
+
       ProofProgress
       progress() const;
     };
 
 
 
-    ProofTree::ProofTree(const BranchAndBoundParameters   &parameters,
-                         const dealii::FullMatrix<double> &S,
-                         const dealii::Vector<double>     &g,
-                         const SeparableBranches          &phi,
-                         const dealii::Vector<double>     &start)
+    ProofTree::ProofTree(const BranchAndBoundParameters &parameters,
+                         const MatrixView               &S,
+                         const VectorView               &g,
+                         const SeparableBranches        &phi,
+                         const VectorView               &start)
       : parameters(parameters)
       , S(S)
       , g(g)
       , phi(phi)
-      , n(g.size())
+      , n(static_cast<unsigned int>(g.size()))
       , node_bound(S, g, phi)
       , least_left_out(std::numeric_limits<double>::infinity())
     {
       result.upper = std::numeric_limits<double>::infinity();
       result.lower = -std::numeric_limits<double>::infinity();
       Job job;
-      minimise_from(eigen_view(start), job);
+      minimise_from(start, job);
       take_if_better(job);
     }
 
@@ -126,9 +131,7 @@ namespace Debond
         job.state[i] = phi.f[i].index(x(i));
       if (tried.count(job.state) > 0)
         return;
-      job.s.reinit(n);
-      for (unsigned int i = 0; i < n; ++i)
-        job.s(i) = std::min(x(i), 0.);
+      job.s = x.cwiseMin(0.);
       CondensedProblem problem(S, g, phi, job.s);
       MajoriseMinimise({}).minimize(problem);
       job.value = problem.evaluate().functional;
@@ -154,7 +157,7 @@ namespace Debond
     {
       if (result.nodes >= parameters.maximum_nodes)
         return ProofStatus::node_limit;
-      if (timer.wall_time() > parameters.maximum_seconds)
+      if (seconds() > parameters.maximum_seconds)
         return ProofStatus::time_limit;
       if (double(open.size()) * vectors_per_node * n * sizeof(double) >
           parameters.maximum_bytes)
@@ -235,6 +238,14 @@ namespace Debond
 
 
 
+    double
+    ProofTree::seconds() const
+    {
+      return std::chrono::duration<double>(Clock::now() - begin).count();
+    }
+
+
+
     ProofProgress
     ProofTree::progress() const
     {
@@ -245,7 +256,7 @@ namespace Debond
               static_cast<unsigned int>(open.size()),
               lower,
               result.upper,
-              timer.wall_time()};
+              seconds()};
     }
 
 
@@ -253,8 +264,7 @@ namespace Debond
     BranchAndBoundResult
     ProofTree::run(const BranchAndBound::Monitor &monitor)
     {
-      const double certified = node_bound.certificate(
-        Eigen::Map<const Eigen::VectorXd>(result.s.begin(), n));
+      const double certified = node_bound.certificate(result.s);
       if (certified >= result.upper - parameters.tolerance)
         {
           result.status  = ProofStatus::proved;
@@ -343,11 +353,11 @@ namespace Debond
 
 
   BranchAndBoundResult
-  BranchAndBound::minimize(const dealii::FullMatrix<double> &S,
-                           const dealii::Vector<double>     &g,
-                           const SeparableBranches          &phi,
-                           const dealii::Vector<double>     &start,
-                           const Monitor                    &monitor) const
+  BranchAndBound::minimize(const MatrixView        &S,
+                           const VectorView        &g,
+                           const SeparableBranches &phi,
+                           const VectorView        &start,
+                           const Monitor           &monitor) const
   {
     return ProofTree(parameters, S, g, phi, start).run(monitor);
   }

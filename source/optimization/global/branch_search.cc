@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 
@@ -222,14 +221,14 @@ namespace Debond
     class StateSearch
     {
     public:
-      StateSearch(const dealii::FullMatrix<double> &S,
-                  const dealii::Vector<double>     &g,
-                  const PiecewiseQuadratic         &phi,
-                  const SeparableBranches          &lumped,
-                  const MajoriseMinimise           &method,
-                  const BranchSearchParameters     &parameters,
-                  const ActiveSetGuess             &guess,
-                  dealii::Vector<double>           &s)
+      StateSearch(const MatrixView             &S,
+                  const VectorView             &g,
+                  const PiecewiseQuadratic     &phi,
+                  const SeparableBranches      &lumped,
+                  const MajoriseMinimise       &method,
+                  const BranchSearchParameters &parameters,
+                  const ActiveSetGuess         &guess,
+                  Eigen::VectorXd              &s)
         : S(S)
         , g(g)
         , phi(phi)
@@ -249,7 +248,7 @@ namespace Debond
       }
 
       BranchState
-      state_of(const dealii::Vector<double> &point) const
+      state_of(const VectorView &point) const
       {
         BranchState state(point.size());
         for (unsigned int i = 0; i < point.size(); ++i)
@@ -260,7 +259,7 @@ namespace Debond
       /// Minimises from the changed state. Returns whether the functional is
       /// below that of @p point, which then moves.
       bool
-      attempt(const Trial &trial, dealii::Vector<double> &point)
+      attempt(const Trial &trial, Eigen::VectorXd &point)
       {
         // Beside a clamped side quadrature points move less than the node, so
         // that they are on the last branch only if the node is far below its
@@ -268,7 +267,7 @@ namespace Debond
         const bool to_the_end = trial.move == BranchMove::start &&
                                 !trial.down.empty() &&
                                 trial.piece + 1 == number_of_pieces(lumped);
-        dealii::Vector<double> next = point;
+        Eigen::VectorXd next = point;
         // Where there are no bonds no branch is to be left.
         for (const unsigned int i : trial.down)
           if (trial.piece < lumped.f[i].size())
@@ -344,21 +343,16 @@ namespace Debond
 
     private:
       KnownMajorant
-      majorant(const dealii::Vector<double> &point, const double value) const
+      majorant(const VectorView &point, const double value) const
       {
-        dealii::Vector<double> xi(point.size());
-        phi.subgradient(point, xi);
         const Eigen::SparseMatrix<double> E = phi.curvature(point);
-        return {E,
-                eigen_view(g) - eigen_view(xi) + E * eigen_view(point),
-                value};
+        return {E, g - phi.subgradient(point) + E * point, value};
       }
 
       /// Whether the descent from @p point ends at a known minimum that is no
       /// better than where moves start.
       bool
-      leads_to_known(const dealii::Vector<double> &point,
-                     const BranchMove              move) const
+      leads_to_known(const VectorView &point, const BranchMove move) const
       {
         const KnownMajorant own = majorant(point, functional);
         return std::any_of(
@@ -371,19 +365,19 @@ namespace Debond
           });
       }
 
-      const dealii::FullMatrix<double> &S;
-      const dealii::Vector<double>     &g;
-      const PiecewiseQuadratic         &phi;
-      const SeparableBranches          &lumped;
-      const MajoriseMinimise           &method;
-      const BranchSearchParameters     &parameters;
-      const ActiveSetGuess             &guess;
-      dealii::Vector<double>           &s;
-      double                            given_functional;
-      double                            functional; ///< where moves start
-      double                            rounding;
-      std::set<BranchState>             tried;
-      std::vector<KnownMajorant>        known;
+      const MatrixView             &S;
+      const VectorView             &g;
+      const PiecewiseQuadratic     &phi;
+      const SeparableBranches      &lumped;
+      const MajoriseMinimise       &method;
+      const BranchSearchParameters &parameters;
+      const ActiveSetGuess         &guess;
+      Eigen::VectorXd              &s;
+      double                        given_functional;
+      double                        functional; ///< where moves start
+      double                        rounding;
+      std::set<BranchState>         tried;
+      std::vector<KnownMajorant>    known;
     };
   } // namespace
 
@@ -406,21 +400,21 @@ namespace Debond
 
 
   BranchSearchResult
-  search_branches(const dealii::FullMatrix<double> &S,
-                  const dealii::Vector<double>     &g,
-                  const PiecewiseQuadratic         &phi,
-                  const SeparableBranches          &lumped,
-                  const NeighbourGraph             &neighbours,
-                  const MajoriseMinimise           &method,
-                  const BranchSearchParameters     &parameters,
-                  dealii::Vector<double>           &s,
-                  const std::function<bool()>      &monitor,
-                  const ActiveSetGuess             &guess)
+  search_branches(const MatrixView             &S,
+                  const VectorView             &g,
+                  const PiecewiseQuadratic     &phi,
+                  const SeparableBranches      &lumped,
+                  const NeighbourGraph         &neighbours,
+                  const MajoriseMinimise       &method,
+                  const BranchSearchParameters &parameters,
+                  Eigen::VectorXd              &s,
+                  const std::function<bool()>  &monitor,
+                  const ActiveSetGuess         &guess)
   {
     const unsigned int n_pieces = number_of_pieces(lumped);
     StateSearch        search(S, g, phi, lumped, method, parameters, guess, s);
     const Moves        moves(parameters, neighbours);
-    const auto         descend = [&](dealii::Vector<double> point) {
+    const auto         descend = [&](Eigen::VectorXd point) {
       bool fell = true;
       while (fell)
         {
@@ -437,7 +431,7 @@ namespace Debond
         }
     };
 
-    const dealii::Vector<double> given = s;
+    const Eigen::VectorXd given = s;
     if (parameters.starts)
       {
         NodeSet all;
@@ -449,7 +443,7 @@ namespace Debond
         starts.push_back({BranchMove::start, 1, {}, all});
         for (const Trial &trial : starts)
           {
-            dealii::Vector<double> point = given;
+            Eigen::VectorXd point = given;
             if (search.may_go_on(monitor) && search.attempt(trial, point))
               descend(point);
           }

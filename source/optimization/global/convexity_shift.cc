@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/lac/exceptions.h>
-#include <deal.II/lac/lapack_full_matrix.h>
-
+#include <debond/linear_algebra/dense_cholesky.h>
 #include <debond/optimization/global/convexity_shift.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace Debond
 {
@@ -27,19 +26,15 @@ namespace Debond
   {
     /// The factor of A less a shift that covers its rounding. The bound of Rump
     /// does not change if rows and columns are scaled, so that a shift in
-    /// proportion to each entry of the diagonal will do. Throws ExcSingular.
-    void
-    factorise_safely(const Eigen::MatrixXd            &A,
-                     dealii::LAPACKFullMatrix<double> &matrix)
+    /// proportion to each entry of the diagonal will do.
+    DenseCholesky
+    factorise_safely(Eigen::MatrixXd A)
     {
-      const unsigned int n = matrix.m();
-      const double       shift =
+      const double n = double(A.rows());
+      const double shift =
         (n + 3.) * 2. * std::numeric_limits<double>::epsilon() * n;
-      std::copy(A.data(), A.data() + A.size(), &matrix(0, 0));
-      for (unsigned int i = 0; i < n; ++i)
-        matrix(i, i) -= shift * std::abs(matrix(i, i));
-      matrix.set_property(dealii::LAPACKSupport::symmetric);
-      matrix.compute_cholesky_factorization();
+      A.diagonal() -= shift * A.diagonal().cwiseAbs();
+      return DenseCholesky(std::move(A));
     }
   } // namespace
 
@@ -48,17 +43,7 @@ namespace Debond
   bool
   is_safely_positive_definite(const Eigen::MatrixXd &A)
   {
-    dealii::LAPACKFullMatrix<double> matrix(
-      static_cast<unsigned int>(A.rows()));
-    try
-      {
-        factorise_safely(A, matrix);
-      }
-    catch (const dealii::LACExceptions::ExcSingular &)
-      {
-        return false;
-      }
-    return true;
+    return factorise_safely(A).is_positive_definite();
   }
 
 
@@ -66,18 +51,10 @@ namespace Debond
   std::optional<Eigen::MatrixXd>
   safe_inverse(const Eigen::MatrixXd &A)
   {
-    const unsigned int               n = static_cast<unsigned int>(A.rows());
-    dealii::LAPACKFullMatrix<double> matrix(n);
-    try
-      {
-        factorise_safely(A, matrix);
-        matrix.invert();
-      }
-    catch (const dealii::LACExceptions::ExcSingular &)
-      {
-        return {};
-      }
-    return Eigen::Map<const Eigen::MatrixXd>(&matrix(0, 0), n, n);
+    const DenseCholesky factor = factorise_safely(A);
+    if (!factor.is_positive_definite())
+      return {};
+    return factor.inverse();
   }
 
 

@@ -20,16 +20,16 @@ namespace Debond
     class GuidedSearch
     {
     public:
-      GuidedSearch(const dealii::FullMatrix<double> &S,
-                   const dealii::Vector<double>     &g,
-                   const PiecewiseQuadratic         &phi,
-                   const SeparableBranches          &lumped,
-                   const bool                        is_separable,
-                   const NeighbourGraph             &neighbours,
-                   const MajoriseMinimise           &method,
-                   const GuidedSearchParameters     &parameters,
-                   const std::function<bool()>      &monitor,
-                   const ActiveSetGuess             &guess)
+      GuidedSearch(const MatrixView             &S,
+                   const VectorView             &g,
+                   const PiecewiseQuadratic     &phi,
+                   const SeparableBranches      &lumped,
+                   const bool                    is_separable,
+                   const NeighbourGraph         &neighbours,
+                   const MajoriseMinimise       &method,
+                   const GuidedSearchParameters &parameters,
+                   const std::function<bool()>  &monitor,
+                   const ActiveSetGuess         &guess)
         : S(S)
         , g(g)
         , phi(phi)
@@ -43,11 +43,11 @@ namespace Debond
       {}
 
       GuidedSearchResult
-      run(const std::function<bool(bool, dealii::Vector<double> &)> &may_end,
-          dealii::Vector<double>                                    &s)
+      run(const std::function<bool(bool, Eigen::VectorXd &)> &may_end,
+          Eigen::VectorXd                                    &s)
       {
-        const bool has_tried = is_separable || parameters.proof_first;
-        const dealii::Vector<double> given = s;
+        const bool has_tried        = is_separable || parameters.proof_first;
+        const Eigen::VectorXd given = s;
         if (has_tried && (is_proved(s, parameters.proof_first ? 1 : 0) ||
                           (s != given && is_proved(s, 0))))
           return result;
@@ -67,7 +67,7 @@ namespace Debond
             (!(is_same && parameters.proof_first) && is_proved(s, 1)))
           return result;
         search({}, s);
-        const double n = s.size();
+        const double n = double(s.size());
         if (monitor())
           is_proved(s,
                     static_cast<unsigned int>(std::ceil(std::min(
@@ -77,7 +77,7 @@ namespace Debond
 
     private:
       void
-      search(const BranchSearchParameters &moves, dealii::Vector<double> &s)
+      search(const BranchSearchParameters &moves, Eigen::VectorXd &s)
       {
         add(search_branches(
               S, g, phi, lumped, neighbours, method, moves, s, monitor, guess),
@@ -87,7 +87,7 @@ namespace Debond
       /// Branch and bound, and whether it ends with a proof. What it finds is
       /// taken if it is lower.
       bool
-      is_proved(dealii::Vector<double> &s, const unsigned int maximum_nodes)
+      is_proved(Eigen::VectorXd &s, const unsigned int maximum_nodes)
       {
         CondensedProblem         problem(S, g, phi, s);
         const double             functional = problem.evaluate().functional;
@@ -99,8 +99,8 @@ namespace Debond
           S, g, lumped, s, [this](const ProofProgress &) { return monitor(); });
         if (is_separable)
           result.proof = proof;
-        dealii::Vector<double> other = proof.s;
-        CondensedProblem       other_problem(S, g, phi, other);
+        Eigen::VectorXd  other = proof.s;
+        CondensedProblem other_problem(S, g, phi, other);
         if (!is_separable && minimise_trial(method, other_problem).status !=
                                SolverStatus::success)
           {
@@ -114,17 +114,17 @@ namespace Debond
         return result.is_closed;
       }
 
-      const dealii::FullMatrix<double> &S;
-      const dealii::Vector<double>     &g;
-      const PiecewiseQuadratic         &phi;
-      const SeparableBranches          &lumped;
-      const bool                        is_separable;
-      const NeighbourGraph             &neighbours;
-      const MajoriseMinimise           &method;
-      const GuidedSearchParameters     &parameters;
-      const std::function<bool()>      &monitor;
-      const ActiveSetGuess             &guess;
-      GuidedSearchResult                result;
+      const MatrixView             &S;
+      const VectorView             &g;
+      const PiecewiseQuadratic     &phi;
+      const SeparableBranches      &lumped;
+      const bool                    is_separable;
+      const NeighbourGraph         &neighbours;
+      const MajoriseMinimise       &method;
+      const GuidedSearchParameters &parameters;
+      const std::function<bool()>  &monitor;
+      const ActiveSetGuess         &guess;
+      GuidedSearchResult            result;
     };
   } // namespace
 
@@ -137,7 +137,7 @@ namespace Debond
                   const std::vector<double> &stretches)
   {
     const Eigen::VectorXd curvature =
-      phi.curvature(dealii::Vector<double>(n)) * Eigen::VectorXd::Ones(n);
+      phi.curvature(Eigen::VectorXd::Zero(n)) * Eigen::VectorXd::Ones(n);
     std::vector<BranchMinimum> f;
     for (unsigned int i = 0; i < n; ++i)
       f.push_back(
@@ -164,19 +164,18 @@ namespace Debond
 
 
   GuidedSearchResult
-  guided_search(
-    const dealii::FullMatrix<double>                          &S,
-    const dealii::Vector<double>                              &g,
-    const PiecewiseQuadratic                                  &phi,
-    const SeparableBranches                                   &lumped,
-    const bool                                                 is_separable,
-    const NeighbourGraph                                      &neighbours,
-    const MajoriseMinimise                                    &method,
-    const GuidedSearchParameters                              &parameters,
-    dealii::Vector<double>                                    &s,
-    const std::function<bool()>                               &monitor,
-    const std::function<bool(bool, dealii::Vector<double> &)> &may_end,
-    const ActiveSetGuess                                      &guess)
+  guided_search(const MatrixView             &S,
+                const VectorView             &g,
+                const PiecewiseQuadratic     &phi,
+                const SeparableBranches      &lumped,
+                const bool                    is_separable,
+                const NeighbourGraph         &neighbours,
+                const MajoriseMinimise       &method,
+                const GuidedSearchParameters &parameters,
+                Eigen::VectorXd              &s,
+                const std::function<bool()>  &monitor,
+                const std::function<bool(bool, Eigen::VectorXd &)> &may_end,
+                const ActiveSetGuess                               &guess)
   {
     return GuidedSearch(S,
                         g,

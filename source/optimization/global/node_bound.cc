@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/global/node_bound.h>
 
@@ -363,13 +362,13 @@ namespace Debond
 
 
 
-  NodeBound::NodeBound(const dealii::FullMatrix<double> &S_matrix,
-                       const dealii::Vector<double>     &g_vector,
-                       const SeparableBranches          &phi)
+  NodeBound::NodeBound(const MatrixView        &S,
+                       const VectorView        &g,
+                       const SeparableBranches &phi)
     : phi(phi)
-    , n(g_vector.size())
-    , S(eigen_view(S_matrix))
-    , g(eigen_view(g_vector))
+    , n(static_cast<unsigned int>(g.size()))
+    , S(S)
+    , g(g)
   {}
 
 

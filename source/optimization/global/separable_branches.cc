@@ -10,7 +10,7 @@ namespace Debond
 
 
   double
-  SeparableBranches::value(const dealii::Vector<double> &s) const
+  SeparableBranches::value(const VectorView &s) const
   {
     double sum = 0.;
     for (unsigned int i = 0; i < s.size(); ++i)
@@ -20,18 +20,19 @@ namespace Debond
 
 
 
-  void
-  SeparableBranches::subgradient(const dealii::Vector<double> &s,
-                                 dealii::Vector<double>       &xi) const
+  Eigen::VectorXd
+  SeparableBranches::subgradient(const VectorView &s) const
   {
+    Eigen::VectorXd xi(s.size());
     for (unsigned int i = 0; i < s.size(); ++i)
       xi(i) = f[i][f[i].index(s(i))].derivative(s(i));
+    return xi;
   }
 
 
 
   Eigen::SparseMatrix<double>
-  SeparableBranches::curvature(const dealii::Vector<double> &s) const
+  SeparableBranches::curvature(const VectorView &s) const
   {
     Eigen::SparseMatrix<double> result(s.size(), s.size());
     for (unsigned int i = 0; i < s.size(); ++i)

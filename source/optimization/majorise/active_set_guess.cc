@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/majorise/active_set_guess.h>
 
 #include <algorithm>
@@ -7,14 +6,14 @@
 namespace Debond
 {
   ActiveSetGuess::ActiveSetGuess(
-    const dealii::FullMatrix<double>               &S,
+    const MatrixView                               &S,
     const std::vector<Eigen::SparseMatrix<double>> &prolongations)
   {
     for (const Eigen::SparseMatrix<double> &P : prolongations)
       {
         Eigen::MatrixXd S_P;
         if (levels.empty())
-          S_P = eigen_view(S).transpose() * P; // S is symmetric
+          S_P = S * P;
         else
           S_P = levels.back().S * P;
         levels.push_back({P, P.transpose() * S_P});

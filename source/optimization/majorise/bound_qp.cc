@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/lac/exceptions.h>
-#include <deal.II/lac/lapack_full_matrix.h>
-#include <deal.II/lac/vector.h>
-
+#include <debond/linear_algebra/dense_cholesky.h>
 #include <debond/optimization/majorise/bound_qp.h>
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <utility>
 
 namespace Debond
 {
@@ -34,6 +33,11 @@ namespace Debond
 
 
 
+    class NotPositiveDefinite : public std::exception
+    {};
+
+
+
     /// r - M x with sums in extended precision.
     Eigen::VectorXd
     residual(const Eigen::Ref<const Eigen::MatrixXd> &M,
@@ -52,9 +56,7 @@ namespace Debond
 
     /// Solves M_ff x_f = r_f on the given indices, where x is zero before, for
     /// the other entries of x given; refined by residuals in extended precision
-    /// if @p refined. LAPACK takes a third of the time of Eigen's code, which
-    /// is compiled for any machine. Throws LACExceptions::ExcSingular if M_ff
-    /// is not positive definite.
+    /// if @p refined. Throws NotPositiveDefinite if M_ff is not.
     void
     solve_on(const std::vector<unsigned int>         &free,
              const Eigen::Ref<const Eigen::MatrixXd> &M,
@@ -64,20 +66,20 @@ namespace Debond
     {
       if (free.empty())
         return;
-      dealii::LAPACKFullMatrix<double> M_free(
-        static_cast<unsigned int>(free.size()));
-      // LAPACK reads the lower triangle.
+      Eigen::MatrixXd M_free(free.size(), free.size());
+      // The lower triangle is read.
       for (unsigned int l = 0; l < free.size(); ++l)
         for (unsigned int k = l; k < free.size(); ++k)
           M_free(k, l) = M(free[k], free[l]);
-      M_free.set_property(dealii::LAPACKSupport::symmetric);
-      M_free.compute_cholesky_factorization();
+      const DenseCholesky factor(std::move(M_free));
+      if (!factor.is_positive_definite())
+        throw NotPositiveDefinite();
 
-      dealii::Vector<double> x_free(static_cast<unsigned int>(free.size()));
-      const auto             correct = [&](const Eigen::VectorXd &missing) {
+      Eigen::VectorXd x_free(free.size());
+      const auto      correct = [&](const Eigen::VectorXd &missing) {
         for (unsigned int k = 0; k < free.size(); ++k)
           x_free(k) = missing(free[k]);
-        M_free.solve(x_free);
+        factor.solve_in_place(x_free);
         for (unsigned int k = 0; k < free.size(); ++k)
           x(free[k]) += x_free(k);
       };
@@ -86,8 +88,9 @@ namespace Debond
            ++k)
         {
           correct(residual(M, r, x));
-          if (x_free.linfty_norm() <= std::numeric_limits<double>::epsilon() *
-                                        x.lpNorm<Eigen::Infinity>())
+          if (x_free.lpNorm<Eigen::Infinity>() <=
+              std::numeric_limits<double>::epsilon() *
+                x.lpNorm<Eigen::Infinity>())
             break;
         }
     }
@@ -118,7 +121,7 @@ namespace Debond
             if (!exchange())
               descend();
           }
-        catch (const dealii::LACExceptions::ExcSingular &)
+        catch (const NotPositiveDefinite &)
           {
             result.status = SolverStatus::quadratic_program;
           }

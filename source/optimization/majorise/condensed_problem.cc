@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/lac/full_matrix.h>
-
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 
 #include <Eigen/Eigenvalues>
@@ -51,35 +48,29 @@ namespace Debond
 
 
     /// (I - N N')S(I - N N'), nothing without N.
-    dealii::FullMatrix<double>
-    without_motions(const dealii::FullMatrix<double> &S,
-                    const Eigen::MatrixXd            &N)
+    Eigen::MatrixXd
+    without_motions(const MatrixView &S, const Eigen::MatrixXd &N)
     {
-      dealii::FullMatrix<double> result;
       if (N.cols() == 0)
-        return result;
-      Eigen::MatrixXd rest = eigen_view(S);
+        return {};
+      Eigen::MatrixXd rest = S;
       rest -= N * (N.transpose() * rest).eval();
       rest -= (rest * N).eval() * N.transpose();
-      result.reinit(S.m(), S.n());
-      for (unsigned int i = 0; i < S.m(); ++i)
-        for (unsigned int j = 0; j < S.n(); ++j)
-          result(i, j) = 0.5 * (rest(i, j) + rest(j, i));
-      return result;
+      return 0.5 * (rest + rest.transpose());
     }
   } // namespace
 
 
 
-  CondensedProblem::CondensedProblem(const dealii::FullMatrix<double> &matrix,
-                                     const dealii::Vector<double>     &load,
+  CondensedProblem::CondensedProblem(const MatrixView         &matrix,
+                                     const VectorView         &load,
                                      const PiecewiseQuadratic &nonsmooth,
-                                     dealii::Vector<double>   &start,
+                                     Eigen::VectorXd          &start,
                                      const Eigen::MatrixXd    &free_motions,
                                      const double              stiffness)
     : N(orthonormal(free_motions))
     , S_of_loose(without_motions(matrix, N))
-    , S(N.cols() > 0 ? S_of_loose : matrix)
+    , S(N.cols() > 0 ? MatrixView(S_of_loose) : matrix)
     , stiffness(stiffness)
     , g(load)
     , phi(nonsmooth)
@@ -103,10 +94,7 @@ namespace Debond
   MajorantProblem::State
   CondensedProblem::evaluate()
   {
-    dealii::Vector<double> S_s(s.size()), xi(s.size());
-    if (s.size() > 0)
-      S.vmult(S_s, s);
-    phi.subgradient(s, xi);
+    const Eigen::VectorXd xi = phi.subgradient(s);
 
     State state;
     state.n_active      = 0;
@@ -116,21 +104,25 @@ namespace Debond
     const double adhesion = phi.value(s);
     for (unsigned int i = 0; i < s.size(); ++i)
       {
-        energy += 0.5 * s(i) * S_s(i);
-        work += g(i) * s(i);
-        // S s + xi - g + mu = 0,  mu >= 0,  s <= 0,  mu's = 0.
-        const double mu = g(i) - S_s(i) - xi(i);
-        violation       = std::max(violation, s(i) < 0. ? std::abs(mu) : -mu);
-        largest_force   = std::max(
-          {largest_force, std::abs(g(i)), std::abs(S_s(i)), std::abs(xi(i))});
-        state.n_active += s(i) == 0.;
-
         // The terms of a row of S s nearly cancel.
-        double terms = 0.;
+        double S_s = 0., terms = 0.;
         for (unsigned int j = 0; j < s.size(); ++j)
-          terms += std::abs(S(i, j) * s(j));
+          {
+            const double term = S(j, i) * s(j);
+            S_s += term;
+            terms += std::abs(term);
+          }
         largest_terms = std::max(largest_terms, terms);
         energy_terms += std::abs(s(i)) * terms;
+
+        energy += 0.5 * s(i) * S_s;
+        work += g(i) * s(i);
+        // S s + xi - g + mu = 0,  mu >= 0,  s <= 0,  mu's = 0.
+        const double mu = g(i) - S_s - xi(i);
+        violation       = std::max(violation, s(i) < 0. ? std::abs(mu) : -mu);
+        largest_force   = std::max(
+          {largest_force, std::abs(g(i)), std::abs(S_s), std::abs(xi(i))});
+        state.n_active += s(i) == 0.;
         // A maximum would lose it.
         if (std::isnan(mu))
           violation = largest_force = mu;
@@ -153,14 +145,11 @@ namespace Debond
   CondensedProblem::majorise()
   {
     // Phi <= Phi(s_k) + xi'(s - s_k) + 1/2 (s - s_k)'E (s - s_k).
-    const unsigned int     n = s.size();
-    dealii::Vector<double> xi(n);
-    phi.subgradient(s, xi);
     const Eigen::SparseMatrix<double> previous_E = E;
     const Eigen::VectorXd             previous_r = r;
     E                                            = phi.curvature(s);
-    const Eigen::VectorXd E_s                    = E * eigen_view(s);
-    r = eigen_view(g) - eigen_view(xi) + E_s;
+    const Eigen::VectorXd E_s                    = E * s;
+    r                                            = g - phi.subgradient(s) + E_s;
     if (previous_r.size() == r.size() && majorised)
       {
         constexpr double noise = 1e-12;
@@ -173,7 +162,7 @@ namespace Debond
           return false;
       }
     majorised = true;
-    M         = eigen_view(S).transpose(); // of a symmetric matrix
+    M         = S;
     M += E;
     return true;
   }
@@ -189,7 +178,7 @@ namespace Debond
       active = guess->active_set(M, E, r);
     const BoundQPResult qp =
       solve_bound_qp(M, r, Eigen::VectorXd::Zero(s.size()), active);
-    std::copy(qp.x.begin(), qp.x.end(), s.begin());
+    s = qp.x;
     return {qp.status, qp.steps, 0};
   }
 
@@ -216,7 +205,7 @@ namespace Debond
     const Eigen::MatrixXd proximal = M + delta * Z * Z.transpose();
     const double          forces   = r.norm();
 
-    Eigen::VectorXd x         = eigen_view(s), last_step;
+    Eigen::VectorXd x         = s, last_step;
     unsigned int    n_systems = 0;
     for (unsigned int k = 0; k < maximum_proximal_steps; ++k)
       {
@@ -235,7 +224,7 @@ namespace Debond
         const bool is_balanced = delta * motion.norm() <= balanced * forces;
         if (is_balanced)
           {
-            std::copy(x.begin(), x.end(), s.begin());
+            s = x;
             return {qp.status, n_systems, 0};
           }
         // Away from the foundation, and rigid.

@@ -4,7 +4,7 @@
 namespace Debond
 {
   PartialFunction::PartialFunction(const PiecewiseQuadratic        &function,
-                                   const dealii::Vector<double>    &point,
+                                   const VectorView                &point,
                                    const std::vector<unsigned int> &part)
     : phi(function)
     , s(point)
@@ -19,10 +19,10 @@ namespace Debond
 
 
 
-  dealii::Vector<double>
-  PartialFunction::whole(const dealii::Vector<double> &part) const
+  Eigen::VectorXd
+  PartialFunction::whole(const VectorView &part) const
   {
-    dealii::Vector<double> result = s;
+    Eigen::VectorXd result = s;
     for (unsigned int k = 0; k < components.size(); ++k)
       result(components[k]) = part(k);
     return result;
@@ -31,27 +31,27 @@ namespace Debond
 
 
   double
-  PartialFunction::value(const dealii::Vector<double> &part) const
+  PartialFunction::value(const VectorView &part) const
   {
     return phi.value(whole(part));
   }
 
 
 
-  void
-  PartialFunction::subgradient(const dealii::Vector<double> &part,
-                               dealii::Vector<double>       &xi) const
+  Eigen::VectorXd
+  PartialFunction::subgradient(const VectorView &part) const
   {
-    dealii::Vector<double> forces(s.size());
-    phi.subgradient(whole(part), forces);
+    const Eigen::VectorXd forces = phi.subgradient(whole(part));
+    Eigen::VectorXd       xi(components.size());
     for (unsigned int k = 0; k < components.size(); ++k)
       xi(k) = forces(components[k]);
+    return xi;
   }
 
 
 
   Eigen::SparseMatrix<double>
-  PartialFunction::curvature(const dealii::Vector<double> &part) const
+  PartialFunction::curvature(const VectorView &part) const
   {
     return selection.transpose() * phi.curvature(whole(part)) * selection;
   }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/linear_algebra/product.h>
 #include <debond/optimization/majorise/restricted_function.h>
 
 namespace Debond
@@ -14,27 +13,24 @@ namespace Debond
 
 
   double
-  RestrictedFunction::value(const dealii::Vector<double> &s) const
+  RestrictedFunction::value(const VectorView &s) const
   {
-    return phi.value(product(P, s));
+    return phi.value(P * s);
   }
 
 
 
-  void
-  RestrictedFunction::subgradient(const dealii::Vector<double> &s,
-                                  dealii::Vector<double>       &xi) const
+  Eigen::VectorXd
+  RestrictedFunction::subgradient(const VectorView &s) const
   {
-    dealii::Vector<double> fine(static_cast<unsigned int>(P.rows()));
-    phi.subgradient(product(P, s), fine);
-    xi = product(P.transpose(), fine);
+    return P.transpose() * phi.subgradient(P * s);
   }
 
 
 
   Eigen::SparseMatrix<double>
-  RestrictedFunction::curvature(const dealii::Vector<double> &s) const
+  RestrictedFunction::curvature(const VectorView &s) const
   {
-    return P.transpose() * phi.curvature(product(P, s)) * P;
+    return P.transpose() * phi.curvature(P * s) * P;
   }
 } // namespace Debond

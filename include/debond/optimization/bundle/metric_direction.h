@@ -2,8 +2,7 @@
 #ifndef debond_optimization_bundle_metric_direction_h
 #define debond_optimization_bundle_metric_direction_h
 
-#include <deal.II/lac/vector.h>
-
+#include <debond/linear_algebra/views.h>
 #include <debond/optimization/bundle/direction_problem.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/piecewise_quadratic.h>
@@ -19,15 +18,18 @@ namespace Debond
    *
    * Keeps references to S and Phi.
    */
-  class MetricDirection : public DirectionProblem<dealii::Vector<double>>
+  template <typename VectorType>
+  class MetricDirection : public DirectionProblem<VectorType>
   {
   public:
-    MetricDirection(const dealii::FullMatrix<double> &S,
-                    const PiecewiseQuadratic         &phi,
-                    const unsigned int                bundle_size);
+    using typename DirectionProblem<VectorType>::Solution;
+
+    MetricDirection(const MatrixView         &S,
+                    const PiecewiseQuadratic &phi,
+                    const unsigned int        bundle_size);
 
     bool
-    is_feasible(const dealii::Vector<double> &x) const override;
+    is_feasible(const VectorType &x) const override;
 
     unsigned int
     size() const override;
@@ -36,21 +38,20 @@ namespace Debond
     clear() override;
 
     void
-    add(const dealii::Vector<double> &eta) override;
+    add(const VectorType &eta) override;
 
     const Solution &
-    solve(const dealii::Vector<double> &x,
-          const Eigen::VectorXd        &beta) override;
+    solve(const VectorType &x, const Eigen::VectorXd &beta) override;
 
     void
-    direction(dealii::Vector<double> &d) const override;
+    direction(VectorType &d) const override;
 
     /// (d'S d)^(1/2), the paper's ||d||_V.
     double
-    length(const dealii::Vector<double> &d) const override;
+    length(const VectorType &d) const override;
 
     void
-    project(dealii::Vector<double> &x) const override;
+    project(VectorType &x) const override;
 
     void
     save(OutArchive &archive) const override;
@@ -59,13 +60,13 @@ namespace Debond
     load(InArchive &archive) override;
 
   private:
-    const dealii::FullMatrix<double> &S;
-    const PiecewiseQuadratic         &phi;
-    unsigned int                      m = 0; ///< number of subgradients
-    Eigen::MatrixXd                   eta;   ///< a column for each
-    ActiveSet                         active;
-    Eigen::VectorXd                   d;
-    Solution                          solution;
+    const MatrixView          S;
+    const PiecewiseQuadratic &phi;
+    unsigned int              m = 0; ///< number of subgradients
+    Eigen::MatrixXd           eta;   ///< a column for each
+    ActiveSet                 active;
+    Eigen::VectorXd           d;
+    Solution                  solution;
   };
 } // namespace Debond
 

@@ -2,8 +2,6 @@
 #ifndef debond_optimization_global_branch_and_bound_h
 #define debond_optimization_global_branch_and_bound_h
 
-#include <deal.II/lac/full_matrix.h>
-
 #include <debond/optimization/global/separable_branches.h>
 
 #include <functional>
@@ -60,12 +58,12 @@ namespace Debond
 
   struct BranchAndBoundResult
   {
-    ProofStatus            status = ProofStatus::no_bound;
-    dealii::Vector<double> s;     ///< the best point found
-    double                 upper; ///< its value
-    double                 lower; ///< the minimum is not below this
-    unsigned int           nodes = 0;
-    double                 seconds;
+    ProofStatus     status = ProofStatus::no_bound;
+    Eigen::VectorXd s;     ///< the best point found
+    double          upper; ///< its value
+    double          lower; ///< the minimum is not below this
+    unsigned int    nodes = 0;
+    double          seconds;
 
     std::vector<ProofProgress> history; ///< at each tenth part more of nodes
   };
@@ -91,11 +89,11 @@ namespace Debond
 
     /// @p start is a good point, with s <= 0.
     BranchAndBoundResult
-    minimize(const dealii::FullMatrix<double> &S,
-             const dealii::Vector<double>     &g,
-             const SeparableBranches          &phi,
-             const dealii::Vector<double>     &start,
-             const Monitor                    &monitor = {}) const;
+    minimize(const MatrixView        &S,
+             const VectorView        &g,
+             const SeparableBranches &phi,
+             const VectorView        &start,
+             const Monitor           &monitor = {}) const;
 
   private:
     BranchAndBoundParameters parameters;

@@ -2,8 +2,6 @@
 #ifndef debond_optimization_global_branch_search_h
 #define debond_optimization_global_branch_search_h
 
-#include <deal.II/lac/full_matrix.h>
-
 #include <debond/optimization/global/separable_branches.h>
 #include <debond/optimization/majorise/active_set_guess.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
@@ -92,16 +90,16 @@ namespace Debond
    * from the point that they are made from.
    */
   BranchSearchResult
-  search_branches(const dealii::FullMatrix<double> &S,
-                  const dealii::Vector<double>     &g,
-                  const PiecewiseQuadratic         &phi,
-                  const SeparableBranches          &lumped,
-                  const NeighbourGraph             &neighbours,
-                  const MajoriseMinimise           &method,
-                  const BranchSearchParameters     &parameters,
-                  dealii::Vector<double>           &s,
-                  const std::function<bool()>      &monitor = {},
-                  const ActiveSetGuess             &guess   = {});
+  search_branches(const MatrixView             &S,
+                  const VectorView             &g,
+                  const PiecewiseQuadratic     &phi,
+                  const SeparableBranches      &lumped,
+                  const NeighbourGraph         &neighbours,
+                  const MajoriseMinimise       &method,
+                  const BranchSearchParameters &parameters,
+                  Eigen::VectorXd              &s,
+                  const std::function<bool()>  &monitor = {},
+                  const ActiveSetGuess         &guess   = {});
 } // namespace Debond
 
 #endif

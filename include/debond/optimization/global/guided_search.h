@@ -71,18 +71,18 @@ namespace Debond
    */
   GuidedSearchResult
   guided_search(
-    const dealii::FullMatrix<double>                          &S,
-    const dealii::Vector<double>                              &g,
-    const PiecewiseQuadratic                                  &phi,
-    const SeparableBranches                                   &lumped,
-    const bool                                                 is_separable,
-    const NeighbourGraph                                      &neighbours,
-    const MajoriseMinimise                                    &method,
-    const GuidedSearchParameters                              &parameters,
-    dealii::Vector<double>                                    &s,
-    const std::function<bool()>                               &monitor,
-    const std::function<bool(bool, dealii::Vector<double> &)> &may_end = {},
-    const ActiveSetGuess                                      &guess   = {});
+    const MatrixView                                   &S,
+    const VectorView                                   &g,
+    const PiecewiseQuadratic                           &phi,
+    const SeparableBranches                            &lumped,
+    const bool                                          is_separable,
+    const NeighbourGraph                               &neighbours,
+    const MajoriseMinimise                             &method,
+    const GuidedSearchParameters                       &parameters,
+    Eigen::VectorXd                                    &s,
+    const std::function<bool()>                        &monitor,
+    const std::function<bool(bool, Eigen::VectorXd &)> &may_end = {},
+    const ActiveSetGuess                               &guess   = {});
 } // namespace Debond
 
 #endif

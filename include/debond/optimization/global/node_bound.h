@@ -2,9 +2,6 @@
 #ifndef debond_optimization_global_node_bound_h
 #define debond_optimization_global_node_bound_h
 
-#include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/vector.h>
-
 #include <debond/optimization/global/envelope_relaxation.h>
 #include <debond/optimization/global/separable_branches.h>
 
@@ -76,9 +73,9 @@ namespace Debond
   class NodeBound
   {
   public:
-    NodeBound(const dealii::FullMatrix<double> &S,
-              const dealii::Vector<double>     &g,
-              const SeparableBranches          &phi);
+    NodeBound(const MatrixView        &S,
+              const VectorView        &g,
+              const SeparableBranches &phi);
 
     /// The box in which points are not above @p best_value; nothing if S is not
     /// safely positive definite.

@@ -22,14 +22,13 @@ namespace Debond
     explicit SeparableBranches(const std::vector<BranchMinimum> &f);
 
     double
-    value(const dealii::Vector<double> &s) const override;
+    value(const VectorView &s) const override;
 
-    void
-    subgradient(const dealii::Vector<double> &s,
-                dealii::Vector<double>       &xi) const override;
+    Eigen::VectorXd
+    subgradient(const VectorView &s) const override;
 
     Eigen::SparseMatrix<double>
-    curvature(const dealii::Vector<double> &s) const override;
+    curvature(const VectorView &s) const override;
 
     /// The largest value of Phi, infinite if there is none.
     double

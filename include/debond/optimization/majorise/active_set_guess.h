@@ -2,8 +2,7 @@
 #ifndef debond_optimization_majorise_active_set_guess_h
 #define debond_optimization_majorise_active_set_guess_h
 
-#include <deal.II/lac/full_matrix.h>
-
+#include <debond/linear_algebra/views.h>
 #include <debond/optimization/majorise/bound_qp.h>
 
 #include <Eigen/SparseCore>
@@ -28,7 +27,7 @@ namespace Debond
 
     /// @p prolongations as for coarse_start(): finest first, entries >= 0.
     ActiveSetGuess(
-      const dealii::FullMatrix<double>               &S,
+      const MatrixView                               &S,
       const std::vector<Eigen::SparseMatrix<double>> &prolongations);
 
     /// Whether there are no subspaces.

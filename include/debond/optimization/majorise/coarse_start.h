@@ -12,10 +12,10 @@
 namespace Debond
 {
   /// Gets the problem of a level and its point.
-  using CoarseVisitor = std::function<void(const dealii::FullMatrix<double> &S,
-                                           const dealii::Vector<double>     &g,
+  using CoarseVisitor = std::function<void(const MatrixView         &S,
+                                           const VectorView         &g,
                                            const PiecewiseQuadratic &phi,
-                                           dealii::Vector<double>   &s)>;
+                                           Eigen::VectorXd          &s)>;
 
 
 
@@ -30,9 +30,9 @@ namespace Debond
    * is named in @p failures. The method is called with @p monitor on each
    * level. After the coarsest level, @p on_coarsest may change its point.
    */
-  dealii::Vector<double>
-  coarse_start(const dealii::FullMatrix<double>               &S,
-               const dealii::Vector<double>                   &g,
+  Eigen::VectorXd
+  coarse_start(const MatrixView                               &S,
+               const VectorView                               &g,
                const PiecewiseQuadratic                       &phi,
                const std::vector<Eigen::SparseMatrix<double>> &prolongations,
                const MajoriseMinimise                         &method,

@@ -27,12 +27,12 @@ namespace Debond
     /// of @p free_motions span the null space of S, of which rounding may have
     /// left anything up to all of S; @p stiffness is what S is made of there,
     /// in its units.
-    CondensedProblem(const dealii::FullMatrix<double> &S,
-                     const dealii::Vector<double>     &g,
-                     const PiecewiseQuadratic         &phi,
-                     dealii::Vector<double>           &s,
-                     const Eigen::MatrixXd            &free_motions = {},
-                     const double                      stiffness    = 0.);
+    CondensedProblem(const MatrixView         &S,
+                     const VectorView         &g,
+                     const PiecewiseQuadratic &phi,
+                     Eigen::VectorXd          &s,
+                     const Eigen::MatrixXd    &free_motions = {},
+                     const double              stiffness    = 0.);
 
     /// From now on a majorant's active set starts from this guess, of which a
     /// reference is kept, in place of the one before.
@@ -52,12 +52,12 @@ namespace Debond
     Eigen::MatrixXd N; ///< an orthonormal basis of S's null space
 
     /// S without what rounding leaves along N, if there is N.
-    const dealii::FullMatrix<double>  S_of_loose;
-    const dealii::FullMatrix<double> &S;
-    const double                      stiffness;
-    const dealii::Vector<double>     &g;
-    const PiecewiseQuadratic         &phi;
-    dealii::Vector<double>           &s;
+    const Eigen::MatrixXd     S_of_loose;
+    const MatrixView          S;
+    const double              stiffness;
+    const VectorView          g;
+    const PiecewiseQuadratic &phi;
+    Eigen::VectorXd          &s;
 
     /// Orthonormal motions of N that the majorant leaves without stiffness.
     Eigen::MatrixXd

@@ -15,25 +15,24 @@ namespace Debond
     /// Keeps a reference to @p phi. The argument has the @p components of s in
     /// their order.
     PartialFunction(const PiecewiseQuadratic        &phi,
-                    const dealii::Vector<double>    &s,
+                    const VectorView                &s,
                     const std::vector<unsigned int> &components);
 
     double
-    value(const dealii::Vector<double> &part) const override;
+    value(const VectorView &part) const override;
 
-    void
-    subgradient(const dealii::Vector<double> &part,
-                dealii::Vector<double>       &xi) const override;
+    Eigen::VectorXd
+    subgradient(const VectorView &part) const override;
 
     Eigen::SparseMatrix<double>
-    curvature(const dealii::Vector<double> &part) const override;
+    curvature(const VectorView &part) const override;
 
   private:
-    dealii::Vector<double>
-    whole(const dealii::Vector<double> &part) const;
+    Eigen::VectorXd
+    whole(const VectorView &part) const;
 
     const PiecewiseQuadratic       &phi;
-    const dealii::Vector<double>    s;
+    const Eigen::VectorXd           s;
     const std::vector<unsigned int> components;
     Eigen::SparseMatrix<double>     selection; ///< a column for each component
   };

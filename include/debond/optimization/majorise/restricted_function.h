@@ -15,14 +15,13 @@ namespace Debond
                        const Eigen::SparseMatrix<double> &prolongation);
 
     double
-    value(const dealii::Vector<double> &s) const override;
+    value(const VectorView &s) const override;
 
-    void
-    subgradient(const dealii::Vector<double> &s,
-                dealii::Vector<double>       &xi) const override;
+    Eigen::VectorXd
+    subgradient(const VectorView &s) const override;
 
     Eigen::SparseMatrix<double>
-    curvature(const dealii::Vector<double> &s) const override;
+    curvature(const VectorView &s) const override;
 
   private:
     const PiecewiseQuadratic          &phi;
