@@ -369,9 +369,9 @@ namespace Debond
       refuse(p.solver.prove,
              "Solver/Prove",
              "nothing is proved on meshes that are refined");
-      refuse(!p.load_path.factors.empty(),
-             "Load path/Factors",
-             "a load path has one mesh, that of Mesh");
+      refuse(!p.load_path.factors.empty() && !p.load_path.bonds_heal,
+             "Load path/Bonds heal",
+             "the error of meshes is estimated for bonds that heal");
       refuse(p.checkpoints.interval > 0.,
              "Solver/Checkpoint interval",
              "there are no checkpoints of meshes that are refined");

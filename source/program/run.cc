@@ -498,19 +498,23 @@ namespace Debond
     std::string             no_pictures;
     std::vector<OutputFile> files =
       output_files(parameters.output, *scene, result, no_pictures);
-    LoadPathOutput<dim> path_output(parameters.output,
-                                    scene->problem(),
-                                    result.path,
-                                    result.arc,
-                                    no_pictures);
-    append(path_output.files(), files);
+    std::optional<LoadPathOutput<dim>> path_output;
+    const auto                         add_path_output = [&]() {
+      path_output.emplace(parameters.output,
+                          scene->problem(),
+                          result.path,
+                          result.arc,
+                          no_pictures);
+      append(path_output->files(), files);
+    };
+    add_path_output();
     std::optional<DirectoryLock> lock;
     std::vector<std::string>     written;
     try
       {
         lock.emplace(parameters.output.directory);
         remove_files(files, parameters.output.directory);
-        path_output.remove_steps();
+        path_output->remove_steps();
         written.push_back(write_effective_scene(parameters));
       }
     catch (const std::runtime_error &error)
@@ -561,11 +565,15 @@ namespace Debond
                                                parameters.degree),
                                     dim);
         files = output_files(parameters.output, *scene, result, no_pictures);
+        add_path_output();
       }
     else if (parameters.load_path.factors.empty())
       result.solve =
         solve(choice, parameters, *scene, out, terminal, &checkpoints);
-    else
+    // On a refined mesh the states are computed again, now with all that is
+    // written of them.
+    if (!parameters.load_path.factors.empty() &&
+        result.solve.status != SolverStatus::interrupted)
       result.solve = follow_load_path<dim>(
         parameters.load_path,
         parameters.solver,
@@ -575,7 +583,7 @@ namespace Debond
             const dealii::Vector<double> &u,
             const Verification<dim>      &verification) {
           result.verification = verification;
-          path_output.add(step, u, verification);
+          path_output->add(step, u, verification);
         },
         record.has_details() ? &out : nullptr,
         result.path,

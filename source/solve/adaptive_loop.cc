@@ -5,6 +5,7 @@
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/mesh/bisected_body.h>
 #include <debond/solve/adaptive_loop.h>
+#include <debond/solve/load_path.h>
 #include <debond/solve/scene_size.h>
 
 #include <algorithm>
@@ -125,6 +126,58 @@ namespace Debond
 
 
 
+    template <int dim>
+    ErrorEstimate
+    estimate_of(const Scene<dim>             &scene,
+                const dealii::Vector<double> &u,
+                const double                  functional,
+                const LoadFactors             factors)
+    {
+      return estimate_error(scene.problem(),
+                            scene.adhesion(),
+                            scene.conditions(),
+                            scene.supports(),
+                            scene.loads(),
+                            u,
+                            functional,
+                            factors,
+                            &scene.dead_loads());
+    }
+
+
+
+    /// The states that the load path leads to; @p largest becomes the estimate
+    /// of the one that has the largest error relative to its J.
+    template <int dim>
+    SolveResult
+    follow(const Parameters &parameters,
+           const Scene<dim> &scene,
+           ErrorEstimate    &largest)
+    {
+      LoadPathParameters path = parameters.load_path;
+      path.global_branch      = GlobalBranch::none;
+      path.arc                = false;
+      std::vector<LoadPathStep<dim>> steps, arc;
+      return follow_load_path<dim>(
+        path,
+        parameters.solver,
+        parameters.verification.tolerance,
+        scene,
+        [&](const LoadPathStep<dim>      &step,
+            const dealii::Vector<double> &u,
+            const Verification<dim> &) {
+          ErrorEstimate own =
+            estimate_of(scene, u, step.state.functional, step.factors());
+          if (largest.cells.empty() || own.relative() > largest.relative())
+            largest = std::move(own);
+        },
+        nullptr,
+        steps,
+        arc);
+    }
+
+
+
     /// The certificate of a level; of one that Certificate/Target is for
     /// bonds that may break, which takes longer, that for their branches as
     /// they are as long as that is not narrow enough and @p is_last is false.
@@ -234,8 +287,28 @@ namespace Debond
       {
         const bool        is_first = !next;
         const Scene<dim> &here     = is_first ? *scene : *next;
-        SolveResult       solution =
-          solve(choice, quiet, here, no_log, false, nullptr, start.get());
+        ErrorEstimate     estimate;
+        SolveResult       solution;
+        try
+          {
+            if (parameters.load_path.factors.empty())
+              {
+                solution = solve(
+                  choice, quiet, here, no_log, false, nullptr, start.get());
+                if (can_be_verified(solution.status) &&
+                    !solution.minimum.interrupted)
+                  estimate =
+                    estimate_of(here, solution.u, solution.functional, 1.);
+              }
+            else
+              solution = follow(parameters, here, estimate);
+          }
+        catch (const std::invalid_argument &error)
+          {
+            result.shortfall =
+              std::string("The error of the mesh is not known, ") +
+              error.what() + '.';
+          }
         if (!is_first && solution.status == SolverStatus::interrupted)
           {
             interrupt(result.solve);
@@ -248,26 +321,8 @@ namespace Debond
             result.solve.minimum.interrupted)
           return result;
 
-        ErrorEstimate estimate;
-        try
-          {
-            estimate = estimate_error(scene->problem(),
-                                      scene->adhesion(),
-                                      scene->conditions(),
-                                      scene->supports(),
-                                      scene->loads(),
-                                      result.solve.u,
-                                      result.solve.functional,
-                                      1.,
-                                      &scene->dead_loads());
-          }
-        catch (const std::invalid_argument &error)
-          {
-            result.shortfall =
-              std::string("The error of the mesh is not known, ") +
-              error.what() + '.';
-            return result;
-          }
+        if (!result.shortfall.empty())
+          return result;
         const double target  = parameters.accuracy.certified_width;
         const auto   certify = [&](const bool is_last) {
           result.certificate.reset();
@@ -297,7 +352,7 @@ namespace Debond
                 unknowns.n_free_dofs(),
                 unknowns.contact().size(),
                 result.solve.iterations,
-                result.solve.functional,
+                estimate.functional,
                 estimate.relative(),
                 width,
                 timer.wall_time() + (is_first ? scene->mesh_seconds() +

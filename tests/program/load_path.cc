@@ -7,6 +7,7 @@
 // is concave in the squared factor), and values of J from an independent code.
 
 #include <debond/input/parameters.h>
+#include <debond/solve/adaptive_loop.h>
 #include <debond/solve/load_path.h>
 #include <debond/solve/solve.h>
 
@@ -47,12 +48,9 @@ namespace
 
   template <int dim>
   Path<dim>
-  follow(const std::vector<std::string> &assignments)
+  follow(const Parameters &parameters, const Scene<dim> &scene)
   {
-    const Parameters   parameters = parameters_of(assignments);
-    const MethodChoice choice     = choose_method(parameters);
-    const Scene<dim>   scene(parameters, matrix_storage(choice));
-    Path<dim>          path;
+    Path<dim> path;
     path.result = follow_load_path<dim>(
       parameters.load_path,
       parameters.solver,
@@ -63,6 +61,18 @@ namespace
       path.steps,
       path.arc);
     return path;
+  }
+
+
+
+  template <int dim>
+  Path<dim>
+  follow(const std::vector<std::string> &assignments)
+  {
+    const Parameters   parameters = parameters_of(assignments);
+    const MethodChoice choice     = choose_method(parameters);
+    return follow<dim>(parameters,
+                       Scene<dim>(parameters, matrix_storage(choice)));
   }
 
 
@@ -573,6 +583,53 @@ namespace
 
 
 
+  /// One mesh for all factors, beside a uniform one that is much finer (of the
+  /// least J its own is off by 7e-4).
+  void
+  test_refined()
+  {
+    std::cout << "A path on a refined mesh\n";
+    const std::vector<std::string> scene   = {"Contact law/Bond stiffness=69",
+                                              "Mesh/Cells=20,2",
+                                              "Load path/Factors=0.5:0.5:2",
+                                              "Load path/Global branch=none"};
+    constexpr double               target  = 5e-3;
+    std::vector<std::string>       refined = benchmark(scene);
+    refined.push_back("Accuracy/Target=" + std::to_string(target));
+    refined.emplace_back("Solver/Method=automatic");
+    const Parameters   parameters = parameters_of(refined);
+    const MethodChoice choice     = choose_method(parameters);
+    auto mesh = make_first_scene<2>(parameters, matrix_storage(choice));
+    std::vector<AdaptiveLevel> levels;
+    const AdaptiveResult       result = solve_adaptively<2>(
+      choice,
+      parameters,
+      [&](const AdaptiveLevel &level) { levels.push_back(level); },
+      mesh);
+    check("  no shortfall", result.shortfall.empty());
+    check("  the estimate is below the target",
+          levels.back().estimated_error,
+          target);
+    check("  that of the mesh before is not",
+          levels.size() > 1 &&
+            levels[levels.size() - 2].estimated_error > target);
+
+    const Path<2>            on_refined = follow<2>(parameters, *mesh);
+    std::vector<std::string> uniform    = benchmark(scene);
+    uniform.emplace_back("Mesh/Cells=160,16");
+    const Path<2> on_uniform = follow<2>(uniform);
+    double        error      = 0.;
+    for (unsigned int k = 0; k < on_uniform.steps.size(); ++k)
+      error = std::max(error,
+                       std::abs(1. - on_refined.steps[k].state.functional /
+                                       on_uniform.steps[k].state.functional));
+    check("  J at all factors", error, 1.25 * target);
+    check("  fewer unknowns than the uniform mesh",
+          mesh->problem().unknowns().n_dofs() < 6000);
+  }
+
+
+
   void
   test_arcs()
   {
@@ -651,6 +708,7 @@ main(int argc, char *[])
   test_column_arc<2>(true);
   test_column_arc<3>(true);
   test_arcs();
+  test_refined();
   test_benchmark();
   test_single_factor();
   test_other_laws();

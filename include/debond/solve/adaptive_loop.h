@@ -21,7 +21,7 @@ namespace Debond
     unsigned int unknowns;
     unsigned int contact_nodes;
     unsigned int iterations;
-    double       functional;      ///< J
+    double       functional;      ///< J, of the factor of the estimate
     double       estimated_error; ///< ErrorEstimate::relative()
     double       gap; ///< Certificate::width(), 0 without Certificate/Target
     double       seconds; ///< wall time of mesh, assembly and solve
@@ -49,9 +49,11 @@ namespace Debond
   /// Solves the scene of make_first_scene(), and again and again on a mesh that
   /// is refined where the estimate is large, or with Certificate/Target the
   /// parts of the gap, from the state before; with the search that the scene
-  /// wants on each. @p scene becomes that of the result,
-  /// the last mesh on which there is one. @p report gets each level when it is
-  /// done.
+  /// wants on each. A load path is followed on each mesh, without its global
+  /// branch and its arc, for the estimate of the factor that has the largest
+  /// one relative to its J; the result is that of the last factor. @p scene
+  /// becomes that of the result, the last mesh on which there is one. @p report
+  /// gets each level when it is done.
   template <int dim>
   AdaptiveResult
   solve_adaptively(const MethodChoice                               &choice,
