@@ -312,7 +312,7 @@ main(int argc, char *argv[])
   check("their sum is the gap but for the reserve for rounding",
         counts.beyond_reserve,
         0);
-  check("more than 1e-10 of J beside it", counts.inexact, n / 10);
+  check("more than 1e-10 of J beside it", counts.inexact, n / 5);
   check("most scenes have one", counts.distances.size() > n / 2);
   if (argc > 1)
     {
