@@ -102,6 +102,8 @@ namespace Debond
   void
   DirectoryLock::withdraw()
   {
+    if (descriptor < 0)
+      return;
     unlink(file_name.c_str());
     close(descriptor);
     descriptor = -1;

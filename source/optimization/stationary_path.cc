@@ -88,6 +88,17 @@ namespace Debond
 
 
   void
+  StationaryPath::hold(const unsigned int i)
+  {
+    if (segments[i] == 0)
+      s(i) = 0.;
+    else if (!is_free(i))
+      s(i) = bonds[i].stretch * f[(segments[i] - 1) / 2].lower;
+  }
+
+
+
+  void
   StationaryPath::change(const Change &change)
   {
     const unsigned int i     = change.i;
@@ -97,11 +108,8 @@ namespace Debond
       here = here == 0 ? first : here + 1;
     else
       here = here == first ? 0 : here - 1;
-    if (here == 0)
-      s(i) = 0.;
-    else if (!is_free(i))
-      s(i) = bonds[i].stretch * f[(here - 1) / 2].lower;
-    else if (!returns && change.opens)
+    hold(i);
+    if (is_free(i) && !returns && change.opens)
       bonds[i].least = (here - 1) / 2;
   }
 
@@ -176,6 +184,7 @@ namespace Debond
               {
                 segments[changes[k].i]    = changes[k].from;
                 bonds[changes[k].i].least = changes[k].least;
+                hold(changes[k].i);
               }
             changes.resize(1);
             if (!solve())

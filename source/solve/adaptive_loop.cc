@@ -147,12 +147,13 @@ namespace Debond
 
 
     /// The states that the load path leads to; @p largest becomes the estimate
-    /// of the one that has the largest error relative to its J.
+    /// of the one that has the largest error relative to its J, @p functional.
     template <int dim>
     SolveResult
     follow(const Parameters &parameters,
            const Scene<dim> &scene,
-           ErrorEstimate    &largest)
+           ErrorEstimate    &largest,
+           double           &functional)
     {
       LoadPathParameters path = parameters.load_path;
       path.global_branch      = GlobalBranch::none;
@@ -169,7 +170,10 @@ namespace Debond
           ErrorEstimate own =
             estimate_of(scene, u, step.state.functional, step.factors());
           if (largest.cells.empty() || own.relative() > largest.relative())
-            largest = std::move(own);
+            {
+              largest    = std::move(own);
+              functional = step.state.functional;
+            }
         },
         nullptr,
         steps,
@@ -289,19 +293,21 @@ namespace Debond
         const Scene<dim> &here     = is_first ? *scene : *next;
         ErrorEstimate     estimate;
         SolveResult       solution;
+        double            functional = 0.;
         try
           {
             if (parameters.load_path.factors.empty())
               {
                 solution = solve(
                   choice, quiet, here, no_log, false, nullptr, start.get());
+                functional = solution.functional;
                 if (can_be_verified(solution.status) &&
                     !solution.minimum.interrupted)
                   estimate =
                     estimate_of(here, solution.u, solution.functional, 1.);
               }
             else
-              solution = follow(parameters, here, estimate);
+              solution = follow(parameters, here, estimate, functional);
           }
         catch (const std::invalid_argument &error)
           {
@@ -352,7 +358,7 @@ namespace Debond
                 unknowns.n_free_dofs(),
                 unknowns.contact().size(),
                 result.solve.iterations,
-                estimate.functional,
+                functional,
                 estimate.relative(),
                 width,
                 timer.wall_time() + (is_first ? scene->mesh_seconds() +

@@ -111,6 +111,10 @@ namespace Debond
     double
     distance(const unsigned int i, const bool opens) const;
 
+    /// Puts s_i where its segment holds it, if it does.
+    void
+    hold(const unsigned int i);
+
     /// Puts s_i on its next segment.
     void
     change(const Change &change);
