@@ -1,92 +1,153 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/utilities.h>
-#include <deal.II/numerics/data_out.h>
+#include <deal.II/base/mpi.h>
 
 #include <debond/base/atomic_file.h>
 #include <debond/elasticity/cell_nodes.h>
 #include <debond/output/vtu.h>
-
-#include <zlib.h>
+#include <debond/output/vtu_grid.h>
 
 #include <cmath>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
-#include <tuple>
 
 namespace Debond
 {
   namespace
   {
-    dealii::DataOutBase::VtkFlags
-    vtk_flags()
-    {
-      // deal.II's default compression takes 15 times longer for files that
-      // are 3 % smaller; without a date equal runs write equal files.
-      dealii::DataOutBase::VtkFlags flags;
-      flags.print_date_and_time = false;
-      flags.compression_level   = dealii::DataOutBase::VtkFlags::best_speed;
-      return flags;
-    }
-
-
-
-    using Field = std::pair<std::string, std::vector<float>>;
-
-
-
-    std::string
-    as_base64(const void *const data, const std::size_t n_bytes)
-    {
-      const auto *const bytes = static_cast<const unsigned char *>(data);
-      return dealii::Utilities::encode_base64({bytes, bytes + n_bytes});
-    }
-
-
-
-    /// The numbers as one compressed block, as VTK reads them.
-    std::string
-    compressed(const std::vector<float> &numbers)
-    {
-      const auto n_bytes = static_cast<uLong>(numbers.size() * sizeof(float));
-      std::vector<unsigned char> block(compressBound(n_bytes));
-      uLongf                     n_compressed = block.size();
-      if (compress2(block.data(),
-                    &n_compressed,
-                    reinterpret_cast<const Bytef *>(numbers.data()),
-                    n_bytes,
-                    Z_BEST_SPEED) != Z_OK)
-        throw std::runtime_error("zlib cannot compress a field of cells");
-
-      const std::array<std::uint32_t, 4> header = {
-        {1,
-         static_cast<std::uint32_t>(n_bytes),
-         static_cast<std::uint32_t>(n_bytes),
-         static_cast<std::uint32_t>(n_compressed)}};
-      return as_base64(header.data(), sizeof(header)) +
-             as_base64(block.data(), n_compressed);
-    }
-
-
-
-    /// deal.II has no cell data in VTU files but numbers at the points of each
-    /// cell: so they are added to its text, a number for each cell.
+    /// Appends a number or, of a vector, three.
     void
-    write_with_cell_data(const std::string        &vtu,
-                         const std::vector<Field> &fields,
-                         std::ostream             &out)
+    add(const double number, VtuGrid::Field &field)
     {
-      const std::size_t end = vtu.rfind("</Piece>");
-      AssertThrow(end != std::string::npos, dealii::ExcInternalError());
-      out.write(vtu.data(), static_cast<std::streamsize>(end));
-      out << "<CellData>\n";
-      for (const auto &[name, numbers] : fields)
-        out << "<DataArray type=\"Float32\" Name=\"" << name
-            << "\" format=\"binary\">\n"
-            << compressed(numbers) << "\n</DataArray>\n";
-      out << "</CellData>\n";
-      out.write(vtu.data() + end,
-                static_cast<std::streamsize>(vtu.size() - end));
+      field.numbers.push_back(static_cast<float>(number));
+    }
+
+
+
+    template <int dim>
+    void
+    add(const dealii::Tensor<1, dim> &vector, VtuGrid::Field &field)
+    {
+      for (unsigned int d = 0; d < 3; ++d)
+        add(d < dim ? vector[d] : 0., field);
+    }
+
+
+
+    template <int dim>
+    VtuGrid::CellType
+    cell_type(const unsigned int degree)
+    {
+      using Type = VtuGrid::CellType;
+      if (dim == 2)
+        return degree == 1 ? Type::triangle : Type::quadratic_triangle;
+      return degree == 1 ? Type::tetrahedron : Type::quadratic_tetrahedron;
+    }
+
+
+
+    /// The cells of the body, of @p piece its own ones, and their fields.
+    template <int dim>
+    VtuGrid
+    body_grid(const ElasticProblem<dim>    &problem,
+              const dealii::Vector<double> &u,
+              const LoadFactors             factors,
+              const ErrorEstimate          *estimate,
+              const std::vector<CellField> &more,
+              const ProblemPiece<dim>      *piece)
+    {
+      const auto &dofs     = problem.unknowns().dof_handler();
+      const auto &mesh     = dofs.get_triangulation();
+      const auto  material = [&problem](const auto &cell) -> const Material  &{
+        return problem.fields().material(cell);
+      };
+      const unsigned int           degree = problem.unknowns().degree();
+      const dealii::Vector<double> displacement =
+        problem.unknowns().cartesian_displacement(u, factors);
+      const dealii::Vector<double> at_nodes =
+        problem.unknowns().nodal_values(displacement);
+
+      VtuGrid grid;
+      grid.type      = cell_type<dim>(degree);
+      grid.at_points = {{"displacement", 3, {}}};
+      grid.points.reserve(3UL * n_nodes<dim>(mesh, degree));
+      grid.at_points[0].numbers.reserve(3UL * n_nodes<dim>(mesh, degree));
+      grid.cells.reserve(static_cast<std::size_t>(n_points(grid.type)) *
+                         mesh.n_active_cells());
+
+      const auto add_field = [&](const std::string &name) {
+        grid.in_cells.push_back({name, 1, {}});
+        grid.in_cells.back().numbers.reserve(mesh.n_active_cells());
+      };
+      constexpr unsigned int n_components =
+        dealii::SymmetricTensor<2, dim>::n_independent_components;
+      const std::string axes = "xyz";
+      for (unsigned int c = 0; c < n_components; ++c)
+        {
+          const auto ij =
+            dealii::SymmetricTensor<2, dim>::unrolled_to_component_indices(c);
+          add_field(std::string("stress_") + axes[ij[0]] + axes[ij[1]]);
+        }
+      bool has_regions = false;
+      for (const auto &cell : dofs.active_cell_iterators())
+        has_regions |=
+          cell->material_id() != dofs.begin_active()->material_id();
+      const bool plane_strain =
+        dim == 2 && material(dofs.begin_active()).hypothesis ==
+                      Material::Hypothesis::plane_strain;
+      if (plane_strain)
+        add_field("stress_zz");
+      if (has_regions)
+        add_field("region");
+      add_field("von_mises");
+      add_field("strain_energy_density");
+      if (estimate != nullptr)
+        add_field("error_density");
+      for (const auto &[name, unused] : more)
+        add_field(name);
+
+      constexpr std::uint32_t    none = -1;
+      std::vector<std::uint32_t> point_of_node(n_nodes<dim>(mesh, degree),
+                                               none);
+      for (const auto &cell : dofs.active_cell_iterators())
+        {
+          if (piece != nullptr && !piece->body().owns_cell_at(cell->center()))
+            continue;
+          const CellNodes<dim> nodes(cell);
+          for (unsigned int n = 0; n < nodes.size; ++n)
+            {
+              std::uint32_t &point = point_of_node[nodes.indices[n]];
+              if (point == none)
+                {
+                  point = grid.add_point(node_position<dim>(cell, n));
+                  dealii::Tensor<1, dim> value;
+                  for (unsigned int d = 0; d < dim; ++d)
+                    value[d] = at_nodes(nodes.dofs[n][d]);
+                  add(value, grid.at_points[0]);
+                }
+              grid.cells.push_back(point);
+            }
+
+          const dealii::SymmetricTensor<2, 3> stress =
+            problem.fields().solid_stress(cell, displacement, factors);
+          auto       field    = grid.in_cells.begin();
+          const auto add_next = [&field](const double number) {
+            add(number, *field++);
+          };
+          for (unsigned int c = 0; c < n_components; ++c)
+            add_next(stress[dealii::SymmetricTensor<2, dim>::
+                              unrolled_to_component_indices(c)]);
+          if (plane_strain)
+            add_next(stress[2][2]);
+          if (has_regions)
+            add_next(cell->material_id());
+          add_next(von_mises(stress));
+          add_next(material(cell).energy_density(stress));
+          if (estimate != nullptr)
+            add_next(estimate->cells[cell->active_cell_index()] /
+                     cell->measure());
+          for (const auto &[unused, numbers] : more)
+            add_next(numbers[cell->active_cell_index()]);
+        }
+      return grid;
     }
 
 
@@ -194,94 +255,10 @@ namespace Debond
                  const ErrorEstimate          *estimate,
                  const std::vector<CellField> &more)
   {
-    using dealii::DataComponentInterpretation::component_is_part_of_vector;
-
-    const std::string            axes = "xyz";
-    const dealii::Vector<double> displacement =
-      problem.unknowns().cartesian_displacement(u, factors);
-    const dealii::Vector<double> at_nodes =
-      problem.unknowns().nodal_values(displacement);
-
-    dealii::DataOut<dim> data_out;
-    data_out.set_flags(vtk_flags());
-    data_out.attach_dof_handler(problem.unknowns().dof_handler());
-    data_out.add_data_vector(
-      at_nodes,
-      std::vector<std::string>(dim, "displacement"),
-      dealii::DataOut<dim>::type_dof_data,
-      std::vector<
-        dealii::DataComponentInterpretation::DataComponentInterpretation>(
-        dim, component_is_part_of_vector));
-
-    const std::size_t n_cells =
-      problem.unknowns().dof_handler().get_triangulation().n_active_cells();
-    std::vector<Field> fields;
-    const auto         add_field = [&](const std::string &name) {
-      fields.emplace_back(name, std::vector<float>());
-      fields.back().second.reserve(n_cells);
-    };
-    constexpr unsigned int n_components =
-      dealii::SymmetricTensor<2, dim>::n_independent_components;
-    for (unsigned int c = 0; c < n_components; ++c)
-      {
-        const auto ij =
-          dealii::SymmetricTensor<2, dim>::unrolled_to_component_indices(c);
-        add_field(std::string("stress_") + axes[ij[0]] + axes[ij[1]]);
-      }
-    bool has_regions = false;
-    for (const auto &cell :
-         problem.unknowns().dof_handler().active_cell_iterators())
-      has_regions |=
-        cell->material_id() !=
-        problem.unknowns().dof_handler().begin_active()->material_id();
-    const bool plane_strain =
-      dim == 2 && problem.fields()
-                      .material(problem.unknowns().dof_handler().begin_active())
-                      .hypothesis == Material::Hypothesis::plane_strain;
-    if (plane_strain)
-      add_field("stress_zz");
-    if (has_regions)
-      add_field("region");
-    add_field("von_mises");
-    add_field("strain_energy_density");
-    if (estimate != nullptr)
-      add_field("error_density");
-    for (const auto &[name, unused] : more)
-      add_field(name);
-
-    // In the order of deal.II's patches.
-    for (const auto &cell :
-         problem.unknowns().dof_handler().active_cell_iterators())
-      {
-        const dealii::SymmetricTensor<2, 3> stress =
-          problem.fields().solid_stress(cell, displacement, factors);
-        auto       field = fields.begin();
-        const auto add   = [&field](const double number) {
-          (field++)->second.push_back(static_cast<float>(number));
-        };
-        for (unsigned int c = 0; c < n_components; ++c)
-          add(stress[dealii::SymmetricTensor<2, dim>::
-                       unrolled_to_component_indices(c)]);
-        if (plane_strain)
-          add(stress[2][2]);
-        if (has_regions)
-          add(cell->material_id());
-        add(von_mises(stress));
-        add(problem.fields().material(cell).energy_density(stress));
-        if (estimate != nullptr)
-          add(estimate->cells[cell->active_cell_index()] / cell->measure());
-        for (const auto &[unused, numbers] : more)
-          add(numbers[cell->active_cell_index()]);
-      }
-
-    // Two subdivisions make a quadratic cell each.
-    data_out.build_patches(problem.unknowns().mapping(),
-                           problem.unknowns().degree());
-    std::ostringstream vtu;
-    data_out.write_vtu(vtu);
-    write_atomically(file_name, [&](std::ostream &out) {
-      write_with_cell_data(vtu.str(), fields, out);
-    });
+    const VtuGrid grid =
+      body_grid<dim>(problem, u, factors, estimate, more, nullptr);
+    write_atomically(file_name,
+                     [&grid](std::ostream &out) { write_vtu(grid, out); });
   }
 
 
@@ -293,34 +270,7 @@ namespace Debond
                     const dealii::Vector<double> &u,
                     const std::string            &directory)
   {
-    using dealii::DataComponentInterpretation::component_is_part_of_vector;
-    using CellIterator = typename dealii::DataOut<dim>::cell_iterator;
-
-    const dealii::Vector<double> displacement =
-      problem.unknowns().cartesian_displacement(u);
-    dealii::DataOut<dim> data_out;
-    data_out.set_flags(vtk_flags());
-    data_out.attach_dof_handler(problem.unknowns().dof_handler());
-    data_out.add_data_vector(
-      displacement,
-      std::vector<std::string>(dim, "displacement"),
-      dealii::DataOut<dim>::type_dof_data,
-      std::vector<
-        dealii::DataComponentInterpretation::DataComponentInterpretation>(
-        dim, component_is_part_of_vector));
-    const auto own_from = [&piece](CellIterator cell, const CellIterator &end) {
-      while (cell != end && !piece.body().owns_cell_at(cell->center()))
-        ++cell;
-      return cell;
-    };
-    data_out.set_cell_selection(
-      [&](const dealii::Triangulation<dim> &mesh) {
-        return own_from(mesh.begin(), mesh.end());
-      },
-      [&](const dealii::Triangulation<dim> &mesh, const CellIterator &cell) {
-        return own_from(std::next(cell), mesh.end());
-      });
-    data_out.build_patches(problem.unknowns().mapping());
+    const VtuGrid grid = body_grid<dim>(problem, u, 1., nullptr, {}, &piece);
 
     const MPI_Comm ranks = piece.nodes().communicator();
     const auto     name  = [](const unsigned int rank) {
@@ -329,7 +279,7 @@ namespace Debond
     const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(ranks);
     std::vector<std::string> written = {directory + "/" + name(rank)};
     write_atomically(written[0],
-                     [&](std::ostream &out) { data_out.write_vtu(out); });
+                     [&grid](std::ostream &out) { write_vtu(grid, out); });
     if (rank == 0)
       {
         std::vector<std::string> names;
@@ -339,7 +289,7 @@ namespace Debond
           names.push_back(name(k));
         written.push_back(directory + "/body.pvtu");
         write_atomically(written[1], [&](std::ostream &out) {
-          data_out.write_pvtu_record(out, names);
+          write_pvtu(grid, names, out);
         });
       }
     return written;
@@ -409,10 +359,29 @@ namespace Debond
 
     // Each vertex has its share of the face, so that its state can be shown
     // without a transition to that of its neighbours.
-    std::vector<dealii::DataOutBase::Patch<dim - 1, dim>> patches;
-    std::vector<Field> fields = {{"bond_state", {}}};
+    VtuGrid grid;
+    grid.type =
+      dim == 2 ? VtuGrid::CellType::line : VtuGrid::CellType::quadrilateral;
+    grid.at_points = {{"displacement", 3, {}},
+                      {"tangential_force_density", 3, {}}};
+    for (const std::string &name : contact_scalars)
+      grid.at_points.push_back({name, 1, {}});
+    grid.in_cells = {{"bond_state", 1, {}}};
     for (const auto &[name, unused] : more)
-      fields.emplace_back(name, std::vector<float>());
+      grid.in_cells.push_back({name, 1, {}});
+    const auto add_point = [&grid](const dealii::Point<dim> &position,
+                                   const ContactValues<dim> &values) {
+      grid.cells.push_back(grid.add_point(position));
+      for (unsigned int v = 0; v < 2; ++v)
+        {
+          dealii::Tensor<1, dim> vector;
+          for (unsigned int d = 0; d < dim; ++d)
+            vector[d] = values[v * dim + d];
+          add(vector, grid.at_points[v]);
+        }
+      for (unsigned int c = 0; c < contact_scalars.size(); ++c)
+        add(values[2 * dim + c], grid.at_points[2 + c]);
+    };
     for (unsigned int f = 0; f < boundary.faces.size(); ++f)
       for (const auto &part : parts_of_face<dim>(boundary.degree))
         {
@@ -432,70 +401,34 @@ namespace Debond
 
           for (unsigned int k = 0; k < dim; ++k)
             {
+              const auto add_middle = [&](const unsigned int other) {
+                add_point(corners[k] + 0.5 * (corners[other] - corners[k]),
+                          mean<dim>(values[k], {values[other]}));
+              };
               const unsigned int next = (k + 1) % dim,
                                  last = (k + dim - 1) % dim;
-              dealii::DataOutBase::Patch<dim - 1, dim> patch;
-              patch.patch_index    = static_cast<unsigned int>(patches.size());
-              patch.reference_cell = dim == 2 ?
-                                       dealii::ReferenceCells::Line :
-                                       dealii::ReferenceCells::Quadrilateral;
-              patch.data.reinit(2 * dim + contact_scalars.size(),
-                                2 * (dim - 1));
-              const auto set_point = [&](const unsigned int        point,
-                                         const dealii::Point<dim> &position,
-                                         const ContactValues<dim> &at_point) {
-                patch.vertices[point] = position;
-                for (unsigned int c = 0; c < at_point.size(); ++c)
-                  patch.data(c, point) = static_cast<float>(at_point[c]);
-              };
-              const auto middle = [&corners, k](const unsigned int other) {
-                return corners[k] + 0.5 * (corners[other] - corners[k]);
-              };
-              set_point(0, corners[k], values[k]);
-              set_point(1, middle(next), mean<dim>(values[k], {values[next]}));
+              add_point(corners[k], values[k]);
+              add_middle(next);
               if constexpr (dim == 3)
                 {
-                  set_point(2,
-                            middle(last),
-                            mean<dim>(values[k], {values[last]}));
-                  set_point(3,
-                            corners[0] + (corners[1] - corners[0]) / 3. +
+                  add_point(corners[0] + (corners[1] - corners[0]) / 3. +
                               (corners[2] - corners[0]) / 3.,
                             mean<dim>(values[k], {values[next], values[last]}));
+                  add_middle(last);
                 }
-              patches.push_back(patch);
 
               const unsigned int node = face.node(part[k]);
-              fields[0].second.push_back(
-                node == dealii::numbers::invalid_unsigned_int ?
-                  static_cast<float>(BondState::held) :
-                  static_cast<float>(verification.nodes[node].state));
+              add(static_cast<double>(
+                    node == dealii::numbers::invalid_unsigned_int ?
+                      BondState::held :
+                      verification.nodes[node].state),
+                  grid.in_cells[0]);
               for (unsigned int m = 0; m < more.size(); ++m)
-                fields[m + 1].second.push_back(
-                  static_cast<float>(more[m].second[f]));
+                add(more[m].second[f], grid.in_cells[m + 1]);
             }
         }
-
-    std::vector<std::string> names(dim, "displacement");
-    names.insert(names.end(), dim, "tangential_force_density");
-    names.insert(names.end(), contact_scalars.begin(), contact_scalars.end());
-    const auto vector_at = [](const unsigned int first, const char *name) {
-      return std::make_tuple(
-        first,
-        first + dim - 1,
-        std::string(name),
-        dealii::DataComponentInterpretation::component_is_part_of_vector);
-    };
-    std::ostringstream vtu;
-    dealii::DataOutBase::write_vtu(patches,
-                                   names,
-                                   {vector_at(0, "displacement"),
-                                    vector_at(dim, "tangential_force_density")},
-                                   vtk_flags(),
-                                   vtu);
-    write_atomically(file_name, [&](std::ostream &out) {
-      write_with_cell_data(vtu.str(), fields, out);
-    });
+    write_atomically(file_name,
+                     [&grid](std::ostream &out) { write_vtu(grid, out); });
   }
 
 

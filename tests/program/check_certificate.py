@@ -186,17 +186,17 @@ def main(debond, n, first):
                     pathlib.Path("output/summary.json").read_text())
             interval = summary["certificate"]
             is_met = interval["relative_width"] <= float(target)
-            body = pathlib.Path("output/body.vtu").read_text()
-            contact = pathlib.Path("output/contact.vtu").read_text()
+            body = pathlib.Path("output/body.vtu").read_bytes()
+            contact = pathlib.Path("output/contact.vtu").read_bytes()
             if not (is_met == (target == "2e-2") and
                     result.returncode == (0 if is_met else 3) and
                     interval["minimum"] == "global" and
                     interval["lower"] <= -5.9151e-4 <= interval["upper"] and
                     is_met == ("Certificate/Target is 0.0001" not in
                                result.stderr) and
-                    '"gap_density"' in body and
-                    '"equilibrated_stress_xy"' in body and
-                    '"certain_branch"' in contact):
+                    b'"gap_density"' in body and
+                    b'"equilibrated_stress_xy"' in body and
+                    b'"certain_branch"' in contact):
                 failures.append(f"Target {target}, degree {degree}: "
                                 f"{interval}, exit code {result.returncode}, "
                                 f"{result.stderr!r}")

@@ -33,34 +33,21 @@ end
 SCENE
 
 cat >check.py <<'SCRIPT'
-import base64, csv, struct, sys, zlib
-import xml.etree.ElementTree as xml
+import csv, sys
+sys.path.insert(0, sys.argv[4])
+from vtu import Piece
 
 directory, cell_type, n_corners = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
 dim = n_corners - 1
 edges = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)][:3 if dim == 2 else 6]
 
 
-def numbers(array, letter):
-    text = array.text.strip()
-    _, size, _, _ = struct.unpack("<4I", base64.b64decode(text[:24]))
-    data = zlib.decompress(base64.b64decode(text[24:]))
-    assert len(data) == size
-    return struct.unpack("<%d%s" % (size // struct.calcsize(letter), letter),
-                         data)
-
-
-piece = xml.parse(directory + "/body.vtu").getroot().find(".//Piece")
-cells = {a.get("Name"): a for a in piece.find("Cells").iter("DataArray")}
-types = numbers(cells["types"], "B")
+body = Piece(directory + "/body.vtu")
+types, connectivity = body.cells["types"], body.cells["connectivity"]
 assert set(types) == {cell_type}, set(types)
 n_nodes = n_corners + len(edges)
-assert int(piece.get("NumberOfPoints")) == n_nodes * len(types)
-connectivity = numbers(cells["connectivity"], "i")
-points = numbers(piece.find("Points/DataArray"), "f")
-displacement = numbers(
-    [a for a in piece.find("PointData").iter("DataArray")
-     if a.get("Name") == "displacement"][0], "f")
+assert body.cells["offsets"][0] == n_nodes
+points, displacement = body.points, body.at_points["displacement"]
 at = lambda field, i: field[3 * i:3 * i + 3]
 
 key = lambda position: tuple(round(x, 6) for x in position)
@@ -92,6 +79,7 @@ SCRIPT
 "$debond" plane.prm >log
 grep -q "^  mesh  *80 triangles, quadratic displacements$" log ||
   fail "the log does not say it: $(cat log)"
-python3 check.py output/plane 22 3
+here=$(dirname "${BASH_SOURCE[0]}")
+python3 check.py output/plane 22 3 "$here"
 "$debond" solid.prm >/dev/null
-python3 check.py output/solid 24 4
+python3 check.py output/solid 24 4 "$here"

@@ -49,6 +49,33 @@ print(json.dumps(summary, indent=1, sort_keys=True))
 END
 }
 
+# Each cell's fields are in one of the files, as they are in that of one process.
+cat >pieces.py <<'SCRIPT'
+import sys
+sys.path.insert(0, sys.argv[4])
+from vtu import Piece
+
+
+def rows(body, names):
+    n = body.cells["offsets"][0]
+    nodes = body.cells["connectivity"]
+    return [tuple(body.points[3 * i:3 * i + 3] +
+                  body.at_points["displacement"][3 * i:3 * i + 3]
+                  for i in nodes[n * cell:n * (cell + 1)]) +
+            tuple(body.in_cells[name][cell] for name in names)
+            for cell in range(body.n_cells)]
+
+
+whole = Piece(sys.argv[1] + "/body.vtu")
+pieces = [Piece(f"{sys.argv[2]}/body.rank{rank}.vtu")
+          for rank in range(int(sys.argv[3]))]
+names = sorted(pieces[0].in_cells)
+assert {"von_mises", "stress_xx", "strain_energy_density"} <= set(names), names
+assert sorted(row for piece in pieces for row in rows(piece, names)) == sorted(
+    rows(whole, names))
+SCRIPT
+here=$(dirname "${BASH_SOURCE[0]}")
+
 for name in plane solid; do
   expect_code 0 "$debond" $name.prm --set Output/Directory=$name-1
   numbers $name-1/summary.json >$name-1.numbers
@@ -66,6 +93,8 @@ for name in plane solid; do
       fail "$name: the summary of $n ranks is not that of one"
     [ "$(grep -c '<Piece Source' $name-$n/body.pvtu)" -eq $n ] ||
       fail "body.pvtu does not join $n files"
+    python3 pieces.py $name-1 $name-$n $n "$here" ||
+      fail "$name: the fields of $n ranks are not those of one"
   done
 done
 

@@ -29,34 +29,12 @@ SCENE
 "$debond" solid.prm >/dev/null
 
 cat >check.py <<'SCRIPT'
-import base64, csv, json, math, struct, sys, zlib
-import xml.etree.ElementTree as xml
+import csv, json, math, sys
+sys.path.insert(0, sys.argv[4])
+from vtu import Piece
 
 directory, n_cells, n_faces = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
 dim = 3 if directory.endswith("solid") else 2
-
-
-def numbers(array):
-    """One block, as VTK's format has it: header and data apart in base64."""
-    text = array.text.strip()
-    n_blocks, size, _, n_compressed = struct.unpack(
-        "<4I", base64.b64decode(text[:24]))
-    assert n_blocks == 1
-    data = zlib.decompress(base64.b64decode(text[24:]))
-    assert len(data) == size
-    return struct.unpack("<%df" % (size // 4), data)
-
-
-def read(name):
-    piece = xml.parse(directory + "/" + name).getroot().find(".//Piece")
-    fields = {kind: {a.get("Name"): numbers(a)
-                     for a in piece.find(kind).iter("DataArray")}
-              for kind in ("PointData", "CellData")}
-    points = numbers(piece.find("Points/DataArray"))
-    n = int(piece.get("NumberOfCells"))
-    for field in fields["CellData"].values():
-        assert len(field) == n, (name, len(field), n)
-    return n, points, fields["PointData"], fields["CellData"]
 
 
 def near(a, b, scale=1.):
@@ -66,8 +44,12 @@ def near(a, b, scale=1.):
 summary = json.load(open(directory + "/summary.json"))
 profile = list(csv.DictReader(open(directory + "/contact_profile.csv")))
 
-n, points, at_points, at_cells = read("body.vtu")
-assert n == n_cells == summary["cells"], n
+body = Piece(directory + "/body.vtu")
+at_points, at_cells = body.at_points, body.in_cells
+assert body.n_cells == n_cells == summary["cells"], body.n_cells
+# Cells share their points.
+assert body.n_points == len({body.points[3 * i:3 * i + 3]
+                             for i in range(body.n_points)})
 assert sorted(at_points) == ["displacement"], at_points.keys()
 near(max(at_cells["von_mises"]), summary["largest_von_mises"])
 u = at_points["displacement"]
@@ -80,18 +62,20 @@ if dim == 2:
         near(mises, math.sqrt(((xx - yy)**2 + (yy - zz)**2 + (zz - xx)**2) / 2
                               + 3 * xy**2))
 
-n, points, at_points, at_cells = read("contact.vtu")
+contact = Piece(directory + "/contact.vtu")
+n, points = contact.n_cells, contact.points
+at_points, at_cells = contact.at_points, contact.in_cells
 assert n == dim * n_faces, n
 states = ["contact", "bonded", "kink", "broken", "free", "held"]
-state_at = {tuple(round(float(row[x]), 5) for x in "xyz"[:dim]):
+state_at = {tuple(round(float(row[x]), 6) for x in "xyz"[:dim]):
             states.index(row["state"]) for row in profile}
-force_at = {tuple(round(float(row[x]), 5) for x in "xyz"[:dim]): row
+force_at = {tuple(round(float(row[x]), 6) for x in "xyz"[:dim]): row
             for row in profile}
 n_held = 0
 corners = 2 * (dim - 1)
 for cell in range(n):
     i = corners * cell  # the vertex that the share belongs to
-    at = tuple(round(points[3 * i + d], 5) for d in range(dim))
+    at = tuple(round(points[3 * i + d], 6) for d in range(dim))
     expected = state_at.get(at, states.index("held"))
     assert at_cells["bond_state"][cell] == expected, (at, expected)
     near(at_points["u_nu"][i],
@@ -114,8 +98,12 @@ for d in range(dim):
 assert abs(summary["tangential_reaction"][0]) > 1e-3
 near(summary["tangential_reaction"][1], 0., 0.01)
 SCRIPT
-python3 check.py output/bar 80 10
-python3 check.py output/solid 384 64
+here=$(dirname "${BASH_SOURCE[0]}")
+python3 check.py output/bar 80 10 "$here"
+# Fields of more than one block.
+"$debond" bar.prm --set "Mesh/Cells=640, 64" --set Output/Directory=fine >/dev/null
+python3 check.py fine 163840 640 "$here"
+python3 check.py output/solid 384 64 "$here"
 
 # A body that may slide has no such forces.
 "$debond" bar.prm --set "Contact law/Tangential displacement=free" \
