@@ -4,6 +4,7 @@ set -euo pipefail
 export LC_ALL=C
 
 debond=$1
+tests=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 cd "$directory"

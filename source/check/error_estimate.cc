@@ -9,7 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 #include <set>
+#include <stdexcept>
 
 namespace Debond
 {
@@ -141,7 +144,8 @@ namespace Debond
                 const Loads<dim>             &loads,
                 const dealii::Vector<double> &u,
                 const LoadFactors             factors,
-                const Loads<dim>             *dead_loads)
+                const Loads<dim>             *dead_loads,
+                const ProblemPiece<dim>      *piece)
         : degree(problem.unknowns().degree())
         , adhesion(adhesion)
         , boundary(problem.unknowns().contact().boundary())
@@ -151,7 +155,7 @@ namespace Debond
         , s(problem.unknowns().contact().trace(u))
         , dead_loads(dead_loads)
         , load_factor(factors.loads)
-        , largest_s(s.size() > 0 ? s.linfty_norm() : 0.)
+        , largest_s(largest(piece == nullptr ? s : piece->trace(u)))
       {
         const dealii::Vector<double> displacement =
           problem.unknowns().cartesian_displacement(u, factors);
@@ -169,8 +173,6 @@ namespace Debond
                                         0.,
                                         {},
                                         0.,
-                                        {},
-                                        {},
                                         {}};
             if (loads.body_force || loads.temperature_change ||
                 (dead_loads != nullptr && dead_loads->body_force))
@@ -189,11 +191,12 @@ namespace Debond
                                                  point);
                 },
                 here);
-            stress_energy += here.simplex.volume *
-                             (here.stress * here.stress -
-                              here.lambda / (2. * here.mu + dim * here.lambda) *
-                                trace * trace) /
-                             (4. * here.mu);
+            stress_energies.push_back(
+              here.simplex.volume *
+              (here.stress * here.stress -
+               here.lambda / (2. * here.mu + dim * here.lambda) * trace *
+                 trace) /
+              (4. * here.mu));
             cells.push_back(here);
           }
         parts.assign(cells.size(), 0.);
@@ -212,8 +215,8 @@ namespace Debond
       /// What J would fall, of each cell.
       std::vector<double> parts;
 
-      /// That of an elastic body with these stresses.
-      double stress_energy = 0.;
+      /// Those of an elastic body with these stresses.
+      std::vector<double> stress_energies;
 
     private:
       struct CellStress
@@ -232,8 +235,11 @@ namespace Debond
         /// What keeps the cell from expanding, and its gradient.
         double                 thermal_pressure;
         dealii::Tensor<1, dim> pressure_gradient;
+      };
 
-        /// Stress and pressure at the vertices, of degree 2.
+      /// Of degree 2, at the vertices of a cell.
+      struct LinearStress
+      {
         std::array<dealii::SymmetricTensor<2, dim>, dim + 1> stresses;
         std::array<double, dim + 1>                          pressures;
       };
@@ -259,6 +265,12 @@ namespace Debond
           return result;
         }
       };
+
+      static double
+      largest(const dealii::Vector<double> &s)
+      {
+        return s.size() > 0 ? s.linfty_norm() : 0.;
+      }
 
       /// Loads are evaluated where load_vector() and thermal_stresses() do it:
       /// there they are finite.
@@ -314,22 +326,24 @@ namespace Debond
       void
       add_linear_part(const CellIterator &cell,
                       const Stress       &stress,
-                      CellStress         &here) const
+                      CellStress         &here)
       {
+        linear_stresses.emplace_back();
+        auto &[stresses, pressures] = linear_stresses.back();
         for (unsigned int v = 0; v <= dim; ++v)
           {
             std::array<double, dim + 1> vertex = {};
             vertex[v]                          = 1.;
-            here.stresses[v]                   = stress(vertex);
+            stresses[v]                        = stress(vertex);
             const double thermal =
               here.thermal_pressure +
               here.pressure_gradient * (cell->vertex(v) - cell->center());
-            here.pressures[v] =
+            pressures[v] =
               thermal - here.lambda *
-                          (dealii::trace(here.stresses[v]) + dim * thermal) /
+                          (dealii::trace(stresses[v]) + dim * thermal) /
                           (2. * here.mu + dim * here.lambda);
-            here.force += here.simplex.volume *
-                          (here.stresses[v] * here.simplex.gradients[v]);
+            here.force +=
+              here.simplex.volume * (stresses[v] * here.simplex.gradients[v]);
           }
       }
 
@@ -455,12 +469,14 @@ namespace Debond
                                      back.indices.end(),
                                      face.indices[v]) -
                            back.indices.begin()];
-            r[v] = (there.stresses[other] - here.stresses[face.in_cell[v]]) *
+            const LinearStress &from = linear_stresses[face.cell];
+            const LinearStress &to   = linear_stresses[back.cell];
+            r[v] = (to.stresses[other] - from.stresses[face.in_cell[v]]) *
                    face.normal;
             if (is_one_material)
               {
                 jumps[v] =
-                  here.pressures[face.in_cell[v]] - there.pressures[other];
+                  from.pressures[face.in_cell[v]] - to.pressures[other];
                 r[v] -= jumps[v] * face.normal;
               }
           }
@@ -492,7 +508,8 @@ namespace Debond
             if (degree == 2)
               for (unsigned int v = 0; v < dim; ++v)
                 r -= rule.barycentric[q][v] *
-                     (cells[face.cell].stresses[face.in_cell[v]] * face.normal);
+                     (linear_stresses[face.cell].stresses[face.in_cell[v]] *
+                      face.normal);
             const auto add_traction = [&](const Loads<dim> &load,
                                           const double      factor) {
               const auto entry = load.tractions.find(id);
@@ -572,15 +589,17 @@ namespace Debond
       const FaceRule<dim>              rule;
       const dealii::QGaussSimplex<dim> cell_rule =
         dealii::QGaussSimplex<dim>(2);
-      std::vector<CellStress> cells;
-      unsigned int            n_contact_faces = 0;
+      std::vector<CellStress>   cells;
+      std::vector<LinearStress> linear_stresses;
+      unsigned int              n_contact_faces = 0;
     };
 
 
 
     template <int dim>
     std::string
-    outside_calibration(const ElasticProblem<dim> &problem)
+    outside_calibration(const ElasticProblem<dim> &problem,
+                        const ProblemPiece<dim>   *piece)
     {
       std::set<std::string> reasons;
       for (const auto &cell :
@@ -594,6 +613,12 @@ namespace Debond
                                                cell->minimum_vertex_distance())
             reasons.insert("cells that are stretched");
         }
+      if (piece != nullptr)
+        for (const std::vector<std::string> &of_rank :
+             dealii::Utilities::MPI::all_gather(
+               piece->nodes().communicator(),
+               std::vector<std::string>(reasons.begin(), reasons.end())))
+          reasons.insert(of_rank.begin(), of_rank.end());
       return join({reasons.begin(), reasons.end()}, " and ");
     }
   } // namespace
@@ -618,22 +643,55 @@ namespace Debond
                  const dealii::Vector<double> &u,
                  const double                  functional,
                  const LoadFactors             factors,
-                 const Loads<dim>             *dead_loads)
+                 const Loads<dim>             *dead_loads,
+                 const ProblemPiece<dim>      *piece)
   {
-    Residuals<dim> residuals(
-      problem, adhesion, conditions, supports, loads, u, factors, dead_loads);
-    ErrorEstimate result;
-    result.cells = std::move(residuals.parts);
-    for (double &part : result.cells)
+    std::optional<Residuals<dim>> residuals;
+    std::string                   error;
+    try
       {
-        part *= calibration<dim>(problem.unknowns().degree());
-        result.functional += part;
+        residuals.emplace(problem,
+                          adhesion,
+                          conditions,
+                          supports,
+                          loads,
+                          u,
+                          factors,
+                          dead_loads,
+                          piece);
       }
-    result.outside_calibration = outside_calibration(problem);
+    catch (const std::invalid_argument &exception)
+      {
+        if (piece == nullptr)
+          throw;
+        error = exception.what();
+      }
+    if (piece != nullptr)
+      for (const std::string &of_rank :
+           dealii::Utilities::MPI::all_gather(piece->nodes().communicator(),
+                                              error))
+        if (!of_rank.empty())
+          throw std::invalid_argument(of_rank);
+
+    const double constant = calibration<dim>(problem.unknowns().degree());
+    const auto   sum      = [&problem, piece](const std::vector<double> &v) {
+      const auto add = [](const std::vector<double> &numbers) {
+        return std::accumulate(numbers.begin(), numbers.end(), 0.);
+      };
+      return piece == nullptr ?
+                      add(v) :
+                      add(piece->gather_cells(problem.unknowns().dof_handler(), v));
+    };
+    ErrorEstimate result;
+    result.cells = std::move(residuals->parts);
+    for (double &part : result.cells)
+      part *= constant;
+    result.functional          = sum(result.cells);
+    result.outside_calibration = outside_calibration(problem, piece);
+    const double stress_energy = sum(residuals->stress_energies);
     result.is_of_J =
-      std::abs(functional) >= least_part_of_energy * residuals.stress_energy;
-    result.scale =
-      result.is_of_J ? std::abs(functional) : residuals.stress_energy;
+      std::abs(functional) >= least_part_of_energy * stress_energy;
+    result.scale = result.is_of_J ? std::abs(functional) : stress_energy;
     return result;
   }
 
@@ -648,7 +706,8 @@ namespace Debond
                  const dealii::Vector<double> &,
                  const double,
                  const LoadFactors,
-                 const Loads<2> *);
+                 const Loads<2> *,
+                 const ProblemPiece<2> *);
   template ErrorEstimate
   estimate_error(const ElasticProblem<3> &,
                  const AdhesionIntegral<3> &,
@@ -658,5 +717,6 @@ namespace Debond
                  const dealii::Vector<double> &,
                  const double,
                  const LoadFactors,
-                 const Loads<3> *);
+                 const Loads<3> *,
+                 const ProblemPiece<3> *);
 } // namespace Debond

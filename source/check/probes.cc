@@ -16,14 +16,16 @@ namespace Debond
     using Kind = typename Probe<dim>::Kind;
     for (const Probe<dim> &probe : probes)
       {
-        // By node.
-        std::map<unsigned int, Vertex> vertices;
-        const auto add = [&vertices](const CellNodes<dim> &nodes,
-                                     const unsigned int    node,
-                                     const double          weight) {
-          Vertex &vertex = vertices[nodes.indices[node]];
-          vertex.dofs    = nodes.dofs[node];
-          vertex.weight += weight;
+        // In the order of the unknowns, which is the same for any number of
+        // ranks.
+        std::map<dealii::types::global_dof_index, double> weights;
+        const auto add = [&weights](const CellNodes<dim> &nodes,
+                                    const unsigned int    node,
+                                    const double          weight) {
+          const auto &dofs = nodes.dofs[node];
+          for (unsigned int d = 1; d < dim; ++d)
+            Assert(dofs[d] == dofs[0] + d, dealii::ExcInternalError());
+          weights[dofs[0]] += weight;
         };
 
         if (probe.kind == Kind::point)
@@ -99,13 +101,9 @@ namespace Debond
                 }
           }
 
-        double total = 0.;
-        for (const auto &[unused, vertex] : vertices)
-          total += vertex.weight;
         Sum sum = {probe.name, probe.kind == Kind::force, {}};
-        for (const auto &[unused, vertex] : vertices)
-          sum.vertices.push_back(
-            {vertex.dofs, sum.of_forces ? 1. : vertex.weight / total});
+        for (const auto &[dof, weight] : weights)
+          sum.weights.emplace_back(dof, sum.of_forces ? 1. : weight);
         sums.push_back(sum);
       }
   }
@@ -116,26 +114,46 @@ namespace Debond
   ProbeValues<dim>
   Probes<dim>::values(const ElasticProblem<dim>    &problem,
                       const dealii::Vector<double> &u,
-                      const LoadFactors             factors) const
+                      const LoadFactors             factors,
+                      const ProblemPiece<dim>      *piece) const
   {
+    const auto whole = [piece](const dealii::Vector<double> &v) {
+      return piece == nullptr ? v : piece->gather(v);
+    };
     const dealii::Vector<double> displacement =
-      problem.unknowns().cartesian_displacement(u, factors);
+      whole(problem.unknowns().cartesian_displacement(u, factors));
     dealii::Vector<double> forces;
     if (std::any_of(sums.begin(), sums.end(), [](const Sum &sum) {
           return sum.of_forces;
         }))
-      forces = problem.unknowns().cartesian_forces(
-        problem.fields().residual(u, factors));
+      forces = whole(problem.unknowns().cartesian_forces(
+        problem.fields().residual(u, factors)));
 
     ProbeValues<dim> result;
     for (const Sum &sum : sums)
       {
+        auto weights = sum.weights;
+        if (piece != nullptr)
+          {
+            dealii::Vector<double> of_unknowns(problem.unknowns().n_dofs());
+            for (const auto &[dof, weight] : weights)
+              of_unknowns(dof) = weight;
+            of_unknowns = whole(of_unknowns);
+            weights.clear();
+            for (unsigned int dof = 0; dof < of_unknowns.size(); dof += dim)
+              if (of_unknowns(dof) != 0.)
+                weights.emplace_back(dof, of_unknowns(dof));
+          }
+        double total = sum.of_forces ? 1. : 0.;
+        if (!sum.of_forces)
+          for (const auto &[unused, weight] : weights)
+            total += weight;
         dealii::Tensor<1, dim> value;
-        for (const Vertex &vertex : sum.vertices)
+        for (const auto &[dof, weight] : weights)
           for (unsigned int d = 0; d < dim; ++d)
             value[d] +=
-              vertex.weight * (sum.of_forces ? forces(vertex.dofs[d]) :
-                                               displacement(vertex.dofs[d]));
+              weight / total *
+              (sum.of_forces ? forces(dof + d) : displacement(dof + d));
         result.emplace_back(sum.name, value);
       }
     return result;

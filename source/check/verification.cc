@@ -308,6 +308,26 @@ namespace Debond
 
 
 
+    /// Of all nodes' vectors, by unknown, those of the contact nodes; none from
+    /// an empty vector. The unknowns of a node follow each other.
+    template <int dim, typename Dofs>
+    std::vector<dealii::Tensor<1, dim>>
+    at_contact_nodes(const dealii::Vector<double> &vectors, const Dofs &normals)
+    {
+      std::vector<dealii::Tensor<1, dim>> result;
+      if (vectors.size() == 0)
+        return result;
+      for (const auto normal : normals)
+        {
+          result.emplace_back();
+          for (unsigned int d = 0; d < dim; ++d)
+            result.back()[d] = vectors(normal / dim * dim + d);
+        }
+      return result;
+    }
+
+
+
     template <int dim>
     void
     compute_force_balance(const ElasticProblem<dim>    &problem,
@@ -324,13 +344,8 @@ namespace Debond
       };
       const auto       &normals = problem.unknowns().contact().normals();
       std::vector<bool> is_normal(problem.unknowns().n_dofs(), false);
-      std::vector<unsigned int> node_of_dof(
-        problem.unknowns().n_dofs(), dealii::numbers::invalid_unsigned_int);
-      for (unsigned int i = 0; i < normals.size(); ++i)
-        {
-          is_normal[normals[i]]   = true;
-          node_of_dof[normals[i]] = i;
-        }
+      for (const auto normal : normals)
+        is_normal[normal] = true;
 
       // What the supports and the foundation exert is the residual at their
       // degrees of freedom; what supports do not bear at a vertex with a
@@ -342,8 +357,6 @@ namespace Debond
       dealii::Vector<double>    clamped(problem.unknowns().n_dofs());
       dealii::Vector<double>    contact(problem.unknowns().n_dofs());
       std::vector<unsigned int> component(problem.unknowns().n_dofs());
-      std::vector<std::array<dealii::types::global_dof_index, dim>>
-        vertex_dofs_of_node(normals.size());
       for (const auto &cell :
            problem.unknowns().dof_handler().active_cell_iterators())
         {
@@ -362,8 +375,6 @@ namespace Debond
                     (has_contact_node && !is_supported[dof] ? contact :
                                                               clamped)(dof) =
                       residual(dof);
-                  if (is_normal[dof])
-                    vertex_dofs_of_node[node_of_dof[dof]] = nodes.dofs[n];
                 }
             }
         }
@@ -419,26 +430,10 @@ namespace Debond
         tangential(normal) = 0.;
       result.tangential_reaction = resultant(tangential);
       tangential = whole(problem.unknowns().cartesian_forces(tangential));
-      if (piece != nullptr)
-        {
-          vertex_dofs_of_node.clear();
-          for (unsigned int i = 0;
-               i < piece->normal_numbers().size() && tangential.size() > 0;
-               ++i)
-            {
-              vertex_dofs_of_node.emplace_back();
-              for (unsigned int d = 0; d < dim; ++d)
-                vertex_dofs_of_node.back()[d] =
-                  piece->normal_numbers()[i] / dim * dim + d;
-            }
-        }
-      for (const auto &dofs : vertex_dofs_of_node)
-        {
-          dealii::Tensor<1, dim> force;
-          for (unsigned int d = 0; d < dim; ++d)
-            force[d] = tangential(dofs[d]);
-          result.tangential_forces.push_back(force);
-        }
+      result.tangential_forces =
+        piece == nullptr ?
+          at_contact_nodes<dim>(tangential, normals) :
+          at_contact_nodes<dim>(tangential, piece->normal_numbers());
 
       // Resultants can vanish where forces do not.
       dealii::Vector<double> supports = clamped;
@@ -562,6 +557,14 @@ namespace Debond
                           resolved,
                           piece,
                           result);
+
+    displacement = problem.unknowns().cartesian_displacement(u, factors);
+    result.displacements =
+      piece == nullptr ?
+        at_contact_nodes<dim>(displacement,
+                              problem.unknowns().contact().normals()) :
+        at_contact_nodes<dim>(piece->gather(displacement),
+                              piece->normal_numbers());
     return result;
   }
 

@@ -311,6 +311,39 @@ namespace Debond
 
 
   template <int dim>
+  std::vector<double>
+  ProblemPiece<dim>::gather_cells(const dealii::DoFHandler<dim> &dofs,
+                                  const std::vector<double>     &values) const
+  {
+    std::vector<std::size_t> cells;
+    std::vector<double>      own;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (piece.owns_cell_at(cell->center()))
+        {
+          cells.push_back(piece.cell_at(cell->center()));
+          own.push_back(values[cell->active_cell_index()]);
+        }
+    const MPI_Comm ranks      = shared_nodes.communicator();
+    const auto     all_cells  = dealii::Utilities::MPI::gather(ranks, cells);
+    const auto     all_values = dealii::Utilities::MPI::gather(ranks, own);
+    std::vector<std::pair<std::size_t, double>> ordered;
+    for (std::size_t rank = 0; rank < all_cells.size(); ++rank)
+      for (std::size_t k = 0; k < all_cells[rank].size(); ++k)
+        ordered.emplace_back(all_cells[rank][k], all_values[rank][k]);
+    std::stable_sort(ordered.begin(),
+                     ordered.end(),
+                     [](const auto &a, const auto &b) {
+                       return a.first < b.first;
+                     });
+    std::vector<double> result;
+    for (const auto &[unused, value] : ordered)
+      result.push_back(value);
+    return result;
+  }
+
+
+
+  template <int dim>
   double
   ProblemPiece<dim>::elastic_functional(const ElasticFields<dim>      &fields,
                                         const dealii::DoFHandler<dim> &dofs,
@@ -319,31 +352,7 @@ namespace Debond
     auto terms         = fields.elastic_terms(u);
     terms.load         = gather(terms.load);
     terms.displacement = gather(terms.displacement);
-
-    // The energies of own cells, in the order of all cells.
-    std::vector<std::size_t> cells;
-    std::vector<double>      energies;
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (piece.owns_cell_at(cell->center()))
-        {
-          cells.push_back(piece.cell_at(cell->center()));
-          energies.push_back(terms.energies[cell->active_cell_index()]);
-        }
-    const MPI_Comm ranks     = shared_nodes.communicator();
-    const auto     all_cells = dealii::Utilities::MPI::gather(ranks, cells);
-    const auto all_energies  = dealii::Utilities::MPI::gather(ranks, energies);
-    std::vector<std::pair<std::size_t, double>> ordered;
-    for (std::size_t rank = 0; rank < all_cells.size(); ++rank)
-      for (std::size_t k = 0; k < all_cells[rank].size(); ++k)
-        ordered.emplace_back(all_cells[rank][k], all_energies[rank][k]);
-    std::stable_sort(ordered.begin(),
-                     ordered.end(),
-                     [](const auto &a, const auto &b) {
-                       return a.first < b.first;
-                     });
-    terms.energies.clear();
-    for (const auto &[unused, energy] : ordered)
-      terms.energies.push_back(energy);
+    terms.energies     = gather_cells(dofs, terms.energies);
     return terms.energies.empty() ? 0. : terms.sum();
   }
 

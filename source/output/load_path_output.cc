@@ -77,8 +77,9 @@ namespace Debond
         if (output.path_contact_vtu)
           {
             const std::string name = name_of_step("contact", step.step);
-            write_contact_vtu(
-              problem, u, verification, path(name), step.factors());
+            write_contact_vtu(problem.unknowns().contact().boundary(),
+                              verification,
+                              path(name));
             contacts.emplace_back(step.step, name);
           }
       }

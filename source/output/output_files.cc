@@ -129,16 +129,11 @@ namespace Debond
        []() { return false; },
        [](const std::string & /*path*/) {}},
       {{"contact.vtu"},
-       [&]() {
-         return output.contact_vtu && result.has_displacement() &&
-                scene.piece() == nullptr;
-       },
+       [&]() { return output.contact_vtu && result.has_displacement(); },
        [&](const std::string &path) {
-         write_contact_vtu(scene.problem(),
-                           result.solve.u,
+         write_contact_vtu(scene.contact_boundary(),
                            result.verification,
                            path,
-                           result.solve.load_factor,
                            fields_of_faces(scene, result.certificate));
        }},
       {{"contact_profile.csv"},

@@ -190,41 +190,6 @@ namespace Debond
 
 
 
-    /// The Cartesian displacement of each contact node.
-    template <int dim>
-    std::vector<dealii::Tensor<1, dim>>
-    contact_displacements(const ElasticProblem<dim>    &problem,
-                          const dealii::Vector<double> &u,
-                          const LoadFactors             factors)
-    {
-      const auto &normals = problem.unknowns().contact().normals();
-      const dealii::Vector<double> cartesian =
-        problem.unknowns().cartesian_displacement(u, factors);
-
-      std::vector<unsigned int> node_of_dof(
-        problem.unknowns().n_dofs(), dealii::numbers::invalid_unsigned_int);
-      for (unsigned int i = 0; i < normals.size(); ++i)
-        node_of_dof[normals[i]] = i;
-
-      std::vector<dealii::Tensor<1, dim>> displacements(normals.size());
-      for (const auto &cell :
-           problem.unknowns().dof_handler().active_cell_iterators())
-        {
-          const CellNodes<dim> nodes(cell);
-          for (unsigned int n = 0; n < nodes.size; ++n)
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                const unsigned int node = node_of_dof[nodes.dofs[n][d]];
-                if (node != dealii::numbers::invalid_unsigned_int)
-                  for (unsigned int e = 0; e < dim; ++e)
-                    displacements[node][e] = cartesian(nodes.dofs[n][e]);
-              }
-        }
-      return displacements;
-    }
-
-
-
     /// The parts of a face with a node at each corner and none between.
     template <int dim>
     std::vector<std::array<unsigned int, dim>>
@@ -268,9 +233,10 @@ namespace Debond
   write_body_pieces(const ElasticProblem<dim>    &problem,
                     const ProblemPiece<dim>      &piece,
                     const dealii::Vector<double> &u,
+                    const ErrorEstimate          *estimate,
                     const std::string            &directory)
   {
-    const VtuGrid grid = body_grid<dim>(problem, u, 1., nullptr, {}, &piece);
+    const VtuGrid grid = body_grid<dim>(problem, u, 1., estimate, {}, &piece);
 
     const MPI_Comm ranks = piece.nodes().communicator();
     const auto     name  = [](const unsigned int rank) {
@@ -299,18 +265,12 @@ namespace Debond
 
   template <int dim>
   void
-  write_contact_vtu(const ElasticProblem<dim>    &problem,
-                    const dealii::Vector<double> &u,
+  write_contact_vtu(const ContactBoundary<dim>   &boundary,
                     const Verification<dim>      &verification,
                     const std::string            &file_name,
-                    const LoadFactors             factors,
                     const std::vector<CellField> &more)
   {
-    constexpr double            nan = std::numeric_limits<double>::quiet_NaN();
-    const ContactBoundary<dim> &boundary =
-      problem.unknowns().contact().boundary();
-    const std::vector<dealii::Tensor<1, dim>> displacements =
-      contact_displacements(problem, u, factors);
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
     const auto values_of = [&](const unsigned int node) {
       ContactValues<dim> values = {};
@@ -325,7 +285,7 @@ namespace Debond
       const double            measure = boundary.nodes[node].measure;
       for (unsigned int d = 0; d < dim; ++d)
         {
-          values[d]       = displacements[node][d];
+          values[d]       = verification.displacements[node][d];
           values[dim + d] = verification.tangential_forces[node][d] / measure;
         }
       values[2 * dim]     = state.u_nu;
@@ -451,24 +411,22 @@ namespace Debond
   write_body_pieces(const ElasticProblem<2> &,
                     const ProblemPiece<2> &,
                     const dealii::Vector<double> &,
+                    const ErrorEstimate *,
                     const std::string &);
   template std::vector<std::string>
   write_body_pieces(const ElasticProblem<3> &,
                     const ProblemPiece<3> &,
                     const dealii::Vector<double> &,
+                    const ErrorEstimate *,
                     const std::string &);
   template void
-  write_contact_vtu(const ElasticProblem<2> &,
-                    const dealii::Vector<double> &,
+  write_contact_vtu(const ContactBoundary<2> &,
                     const Verification<2> &,
                     const std::string &,
-                    const LoadFactors,
                     const std::vector<CellField> &);
   template void
-  write_contact_vtu(const ElasticProblem<3> &,
-                    const dealii::Vector<double> &,
+  write_contact_vtu(const ContactBoundary<3> &,
                     const Verification<3> &,
                     const std::string &,
-                    const LoadFactors,
                     const std::vector<CellField> &);
 } // namespace Debond

@@ -179,7 +179,8 @@ namespace Debond
                                            result.solve.u,
                                            result.solve.functional,
                                            result.solve.load_factor,
-                                           &scene.dead_loads());
+                                           &scene.dead_loads(),
+                                           scene.piece());
           if (const std::string &reason = result.estimate->outside_calibration;
               !reason.empty())
             result.notes.push_back(
@@ -686,11 +687,21 @@ namespace Debond
       *value = dealii::Utilities::MPI::max(*value, ranks);
     const double largest_force = scene.piece()->nodes().largest(
       scene.problem().fields().applied_nodal_forces().begin());
+    result.means = scene.means().values(scene.problem(),
+                                        result.solve.u,
+                                        result.solve.load_factor,
+                                        scene.piece());
     result.times.emplace_back("verification", timer.wall_time());
     result.notes = result.solve.notes;
     append(result.solve.minimum.notes, result.notes);
     append(parameters.notes, result.notes);
     judge(verification_message(parameters, result), "", result);
+    if (dealii::Utilities::MPI::broadcast(ranks, result.is_success()))
+      {
+        timer.restart();
+        estimate(scene, result);
+        result.times.emplace_back("error estimate", timer.wall_time());
+      }
     append(plausibility_notes(scene.body().shape(),
                               dim,
                               largest_force > 0.,
@@ -705,6 +716,8 @@ namespace Debond
           append(write_body_pieces(scene.problem(),
                                    *scene.piece(),
                                    result.solve.u,
+                                   result.estimate ? &*result.estimate :
+                                                     nullptr,
                                    parameters.output.directory),
                  written);
       }

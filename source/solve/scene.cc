@@ -464,27 +464,29 @@ namespace Debond
         }
     };
 
-    std::vector<std::string> errors = {attempt([&]() {
+    const auto throw_error_of_any = [&](const std::string &own_error) {
+      std::vector<std::string> errors = {own_error};
+      if (box_piece != nullptr)
+        errors = dealii::Utilities::MPI::all_gather(ranks, own_error);
+      for (const std::string &error : errors)
+        if (!error.empty())
+          throw BadInput({error});
+    };
+
+    throw_error_of_any(attempt([&]() {
       add_problem(parameters, storage, box_piece, boundaries, entry);
-    })};
-    if (box_piece != nullptr)
-      errors = dealii::Utilities::MPI::all_gather(ranks, errors[0]);
-    for (const std::string &error : errors)
-      if (!error.empty())
-        throw BadInput({error});
+    }));
     if (box_piece != nullptr)
       problem_piece =
         std::make_unique<const ProblemPiece<dim>>(*box_piece,
                                                   elastic_problem->unknowns(),
                                                   ranks);
-    const std::string error = attempt([&]() {
+    throw_error_of_any(attempt([&]() {
       entry = "Contact law/Quadrature";
       add_contact(parameters, storage);
       entry = "Solver/Euclidean bundle/Start";
       add_start(parameters);
-    });
-    if (!error.empty())
-      throw BadInput({error});
+    }));
     seconds_for_assembly = timer.wall_time() - seconds_for_mesh;
   }
 
@@ -531,14 +533,13 @@ namespace Debond
                               body_loads,
                               storage,
                               body_dead_loads);
-    if (box_piece != nullptr)
-      return;
-    named_probes = Probes<dim>(elastic_problem->unknowns(),
-                               names,
-                               make_probes<dim>(parameters.probes));
-    piece_means  = Probes<dim>(elastic_problem->unknowns(),
+    piece_means = Probes<dim>(elastic_problem->unknowns(),
                               names,
                               means_of_pieces<dim>(names));
+    if (box_piece == nullptr)
+      named_probes = Probes<dim>(elastic_problem->unknowns(),
+                                 names,
+                                 make_probes<dim>(parameters.probes));
   }
 
 
@@ -575,6 +576,15 @@ namespace Debond
         make_bond_field<dim>(parameters, *adhesive_law, boundary_conditions);
     adhesion_integral = std::make_unique<AdhesionIntegral<dim>>(
       contact_boundary(), *adhesive_law, *quadrature, bond_field.get());
+    // Asks for the bonds at points of its own, where they may be wrong.
+    if (bond_field)
+      estimate_error(*elastic_problem,
+                     *adhesion_integral,
+                     boundary_conditions,
+                     body_supports,
+                     Loads<dim>(),
+                     Vector(elastic_problem->unknowns().n_dofs()),
+                     0.);
     if (problem_piece)
       return;
     const auto make_functional = [this](const auto &A) {
@@ -589,15 +599,6 @@ namespace Debond
       make_functional(elastic_problem->matrix());
     else
       make_functional(elastic_problem->trilinos_matrix());
-    // Asks for the bonds at points of its own, where they may be wrong.
-    if (bond_field)
-      estimate_error(*elastic_problem,
-                     *adhesion_integral,
-                     boundary_conditions,
-                     body_supports,
-                     Loads<dim>(),
-                     Vector(elastic_problem->unknowns().n_dofs()),
-                     0.);
   }
 
 

@@ -637,7 +637,7 @@ namespace
       return complete;
     };
     write_body_vtu(problem, u, "body-" + suffix + ".vtu");
-    write_contact_vtu(problem, u, result, "contact-" + suffix + ".vtu");
+    write_contact_vtu(boundary, result, "contact-" + suffix + ".vtu");
     check("body VTU has its fields",
           has_fields("body-" + suffix + ".vtu",
                      {"displacement",

@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # check_install.sh DEBOND BUILD_DIRECTORY CMAKE: what is installed into an empty
 # directory runs there, and its pages find each other.
-tests=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-. "$tests/../common.sh"
+. "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 build=$2
 cmake=$3
 prefix=$directory/prefix
@@ -17,5 +16,5 @@ grep -Eq "status +success" log || fail "no success: $(cat log)"
 "$prefix/bin/debond" --study --validate \
   "$prefix/share/debond/prm/studies/table-1.prm" >log ||
   fail "An installed study is not read: $(cat log)"
-"$tests/check_links.py" "$prefix/share/doc/debond"
+"$tests/program/check_links.py" "$prefix/share/doc/debond"
 [ -s "$prefix/share/doc/debond/LICENSE" ] || fail "no licence"

@@ -79,7 +79,6 @@ SCRIPT
 "$debond" plane.prm >log
 grep -q "^  mesh  *80 triangles, quadratic displacements$" log ||
   fail "the log does not say it: $(cat log)"
-here=$(dirname "${BASH_SOURCE[0]}")
-python3 check.py output/plane 22 3 "$here"
+python3 check.py output/plane 22 3 "$tests/program"
 "$debond" solid.prm >/dev/null
-python3 check.py output/solid 24 4 "$here"
+python3 check.py output/solid 24 4 "$tests/program"

@@ -6,6 +6,7 @@
 
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/elasticity/problem_piece.h>
 
 #include <string>
 #include <vector>
@@ -65,6 +66,10 @@ namespace Debond
    * belongs to, @p dead_loads those that have none, if there are any. Throws
    * std::invalid_argument with the place if a load or a bond is none at a point
    * of a face that the solution did not ask for.
+   *
+   * Ranks that share a problem, of which @p piece is this one's, call it
+   * together: `cells` are then those of the piece, right at its own ones, and
+   * the rest is the whole's on the first rank, which alone needs J(u).
    */
   template <int dim>
   ErrorEstimate
@@ -76,7 +81,8 @@ namespace Debond
                  const dealii::Vector<double> &u,
                  const double                  functional,
                  const LoadFactors             factors    = 1.,
-                 const Loads<dim>             *dead_loads = nullptr);
+                 const Loads<dim>             *dead_loads = nullptr,
+                 const ProblemPiece<dim>      *piece      = nullptr);
 } // namespace Debond
 
 #endif

@@ -3,6 +3,7 @@
 #define debond_check_probes_h
 
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/elasticity/problem_piece.h>
 #include <debond/mesh/body.h>
 
 #include <map>
@@ -69,23 +70,21 @@ namespace Debond
            const PieceNames              &pieces,
            const std::vector<Probe<dim>> &probes);
 
+    /// Ranks that share a problem, of which @p piece is this one's, call it
+    /// together, and the first one has the values; they cannot ask for points.
     ProbeValues<dim>
     values(const ElasticProblem<dim>    &problem,
            const dealii::Vector<double> &u,
-           const LoadFactors             factors = 1.) const;
+           const LoadFactors             factors = 1.,
+           const ProblemPiece<dim>      *piece   = nullptr) const;
 
   private:
-    struct Vertex
-    {
-      std::array<dealii::types::global_dof_index, dim> dofs;
-      double                                           weight;
-    };
-
+    /// Of nodes, by their first unknowns, which all the others follow.
     struct Sum
     {
-      std::string         name;
-      bool                of_forces;
-      std::vector<Vertex> vertices;
+      std::string                                                     name;
+      bool                                                            of_forces;
+      std::vector<std::pair<dealii::types::global_dof_index, double>> weights;
     };
 
     std::vector<Sum> sums;

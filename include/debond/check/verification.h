@@ -125,9 +125,10 @@ namespace Debond
     /// displacements are free.
     dealii::Tensor<1, dim> tangential_reaction;
 
-    /// The tangential force of the foundation on the body at the vertex of
-    /// each contact node, in Cartesian components.
-    std::vector<dealii::Tensor<1, dim>> tangential_forces;
+    /// Of each contact node, in Cartesian components, the displacement (of an
+    /// edge its coefficient) and the tangential force of the foundation on the
+    /// body; of several ranks the first one has them.
+    std::vector<dealii::Tensor<1, dim>> displacements, tangential_forces;
 
     /// | applied + clamped + contact | over the sum of all nodal forces' sizes,
     /// or that many times the rounding of one.

@@ -77,6 +77,12 @@ namespace Debond
     dealii::Vector<double>
     gather(const dealii::Vector<double> &v) const;
 
+    /// A number for each active cell of the piece, of @p dofs, gives those of
+    /// all cells in the order of the whole mesh, on the root; empty elsewhere.
+    std::vector<double>
+    gather_cells(const dealii::DoFHandler<dim> &dofs,
+                 const std::vector<double>     &values) const;
+
     /// ElasticFields::elastic_functional() of the whole, on the root; zero
     /// elsewhere.
     double

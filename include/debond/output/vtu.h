@@ -34,14 +34,15 @@ namespace Debond
                  const ErrorEstimate          *estimate = nullptr,
                  const std::vector<CellField> &more     = {});
 
-  /// Each of several ranks writes the displacement of its own cells as
-  /// body.rankN.vtu, and the first one body.pvtu, which joins them. Returns the
-  /// paths of what the rank has written; throws as above.
+  /// Each of several ranks writes what write_body_vtu() does of its own cells
+  /// as body.rankN.vtu, and the first one body.pvtu, which joins them. Returns
+  /// the paths of what the rank has written; throws as above.
   template <int dim>
   std::vector<std::string>
   write_body_pieces(const ElasticProblem<dim>    &problem,
                     const ProblemPiece<dim>      &piece,
                     const dealii::Vector<double> &u,
+                    const ErrorEstimate          *estimate,
                     const std::string            &directory);
 
   /**
@@ -56,12 +57,10 @@ namespace Debond
    */
   template <int dim>
   void
-  write_contact_vtu(const ElasticProblem<dim>    &problem,
-                    const dealii::Vector<double> &u,
+  write_contact_vtu(const ContactBoundary<dim>   &boundary,
                     const Verification<dim>      &verification,
                     const std::string            &file_name,
-                    const LoadFactors             factors = 1.,
-                    const std::vector<CellField> &more    = {});
+                    const std::vector<CellField> &more = {});
 } // namespace Debond
 
 #endif

@@ -36,7 +36,7 @@ namespace Debond
           const MatrixStorage              storage);
 
     /// The piece that one of several ranks has. To be called by all of them; an
-    /// error of one is thrown by all. There are no probes or means.
+    /// error of one is thrown by all. There are no probes.
     Scene(const Parameters                    &parameters,
           std::shared_ptr<const BoxPiece<dim>> piece,
           const MPI_Comm                       ranks);
