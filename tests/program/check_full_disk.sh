@@ -49,7 +49,8 @@ grep -q "Cannot write output/bar/checkpoint: No space left on device" errors ||
 code=0
 (
   ulimit -f 8
-  "$debond" bar.prm --set "Output/Directory=limited" >log 2>errors
+  "$debond" bar.prm --set "Mesh/Cells=60, 6" --set "Output/Directory=limited" \
+    >log 2>errors
 ) || code=$?
 [ $code -eq 5 ] || fail "limit: exit code $code in place of 5: $(cat errors)"
 grep -q "Cannot write limited/body.vtu: File too large" errors ||
