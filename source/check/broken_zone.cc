@@ -113,6 +113,9 @@ namespace Debond
     if (last == 0 && !law.is_loose(0))
       return 0.;
 
+    if (adhesion.has_broken_points())
+      return adhesion.open_measure(s);
+
     double sum = 0.;
     for (const auto &face : boundary.faces)
       {

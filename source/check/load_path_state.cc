@@ -93,9 +93,17 @@ namespace Debond
         part(node.state == BondState::contact ? node.state : node.branch) +=
           nodes[i].measure;
         state.mean_gap -= nodes[i].measure * node.s;
-        state.largest_gap = std::max(state.largest_gap, -node.s);
         state.normal_force += node.normal_force;
       }
+    const auto &boundary = problem.unknowns().contact().boundary();
+    if (boundary.degree == 1)
+      state.largest_gap = verification.largest_opening;
+    else
+      for (const auto &face : boundary.faces)
+        state.largest_gap = std::max(
+          state.largest_gap,
+          -range_on_simplex<dim>(adhesion.trace_on(face, eigen_view(s)), 2)
+             .first);
     if (measure > 0.)
       {
         for (double *number : {&state.contact_part,

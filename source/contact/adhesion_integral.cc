@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 namespace Debond
 {
@@ -113,7 +114,26 @@ namespace Debond
   void
   AdhesionIntegral<dim>::break_for_good(const VectorView &s)
   {
-    Assert(is_separable(), dealii::ExcInternalError());
+    Assert(!quadrature.depends_on_trace(), dealii::ExcInternalError());
+    if (!quadrature.is_nodal())
+      {
+        least_of_points.resize(point_list.size(), 0);
+        least_of_nodes.assign(boundary.nodes.size(), law.branches().size() - 1);
+        for (unsigned int q = 0; q < point_list.size(); ++q)
+          {
+            const Point  &point = point_list[q];
+            unsigned int &least = least_of_points[q];
+            least               = std::max(least,
+                             law.branches().index(point.trace(s) /
+                                                  point.bonds.stretch));
+            for (unsigned int k = 0; k < point.n_nodes; ++k)
+              least_of_nodes[point.nodes[k]] =
+                std::min(least_of_nodes[point.nodes[k]], least);
+          }
+        update_points();
+        return;
+      }
+
     least_of_nodes.resize(boundary.nodes.size(), 0);
     least_of_held.resize(boundary.held_vertices.size(), 0);
     const auto raise =
@@ -152,6 +172,150 @@ namespace Debond
     if (face.nodes[vertex] != dealii::numbers::invalid_unsigned_int)
       return least_piece(face.nodes[vertex]);
     return least_of_held.empty() ? 0 : least_of_held[face.held[vertex]];
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  AdhesionIntegral<dim>::n_fixed_points() const
+  {
+    return static_cast<unsigned int>(quadrature.points_of({}).size());
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  AdhesionIntegral<dim>::least_piece_at(
+    const typename ContactBoundary<dim>::Face &face,
+    const std::array<double, dim>             &barycentric) const
+  {
+    if (least_of_nodes.empty())
+      return 0;
+    if (quadrature.is_nodal())
+      return least_piece_at(face,
+                            static_cast<unsigned int>(
+                              std::max_element(barycentric.begin(),
+                                               barycentric.end()) -
+                              barycentric.begin()));
+    const auto  &points  = quadrature.points_of({});
+    unsigned int nearest = 0;
+    double       least   = std::numeric_limits<double>::infinity();
+    for (unsigned int q = 0; q < points.size(); ++q)
+      {
+        dealii::Tensor<1, dim> way;
+        for (unsigned int k = 0; k < dim; ++k)
+          way += (points[q].barycentric[k] - barycentric[k]) *
+                 (face.vertices[k] - face.vertices[0]);
+        if (way.norm_square() < least)
+          {
+            least   = way.norm_square();
+            nearest = q;
+          }
+      }
+    return least_of_points[(&face - boundary.faces.data()) * points.size() +
+                           nearest];
+  }
+
+
+
+  template <int dim>
+  bool
+  AdhesionIntegral<dim>::has_broken_points() const
+  {
+    return !least_of_points.empty();
+  }
+
+
+
+  template <int dim>
+  double
+  AdhesionIntegral<dim>::open_measure(const VectorView &s) const
+  {
+    const BranchMinimum &branches = law.branches();
+    double               sum      = 0.;
+    for (const Point &point : points(s))
+      {
+        const double trace = point.trace(s) / point.bonds.stretch;
+        if (trace < 0. &&
+            (point.bonds.energy == 0. ||
+             std::max(point.least_piece, branches.index(trace)) + 1 ==
+               branches.size()))
+          sum += point.weight;
+      }
+    return sum;
+  }
+
+
+
+  template <int dim>
+  std::optional<double>
+  AdhesionIntegral<dim>::first_change(const VectorView &s,
+                                      const VectorView &ds,
+                                      const double      limit) const
+  {
+    const BranchMinimum &branches = law.branches();
+    double               first    = limit;
+    if (!quadrature.depends_on_trace())
+      {
+        for (const Point &point : points(s))
+          if (point.bonds.energy > 0.)
+            {
+              const double trace = point.trace(s) / point.bonds.stretch;
+              const double speed =
+                (point.trace(ds) - point.offset) / point.bonds.stretch;
+              const unsigned int k =
+                std::max(point.least_piece, branches.index(trace));
+              const bool changes = speed < 0. ?
+                                     k + 1 < branches.size() :
+                                     speed > 0. && k > point.least_piece;
+              if (changes)
+                first = std::min(first,
+                                 std::max(0.,
+                                          ((speed < 0. ? branches[k].lower :
+                                                         branches[k].upper) -
+                                           trace) /
+                                            speed));
+            }
+        return first;
+      }
+
+    for (const auto &face : boundary.faces)
+      {
+        const BondScale bonds = bonds_of(face, {});
+        if (bonds.energy == 0.)
+          continue;
+        const Trace trace = trace_on(face, s);
+        Trace       speed = {};
+        for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
+          if (face.node(k) != dealii::numbers::invalid_unsigned_int)
+            speed[k] = ds(face.node(k));
+        const auto range_at = [&](const double t) {
+          Trace there = {};
+          for (unsigned int k = 0; k < there.size(); ++k)
+            there[k] = (trace[k] + t * speed[k]) / bonds.stretch;
+          return range_on_simplex<dim>(there, boundary.degree);
+        };
+        const auto [lowest, highest] = range_at(0.);
+        const unsigned int k         = branches.index(lowest);
+        if (k != branches.index(highest))
+          return {};
+        const auto stays = [&](const double t) {
+          const auto [low, high] = range_at(t);
+          return low >= branches[k].lower &&
+                 (k == 0 || high <= branches[k].upper);
+        };
+        // The range's ends are a concave and a convex function of t.
+        if (stays(first))
+          continue;
+        double before = 0., after = first;
+        for (double middle = 0.5 * after; middle > before && middle < after;
+             middle        = 0.5 * (before + after))
+          (stays(middle) ? before : after) = middle;
+        first = before;
+      }
+    return first;
   }
 
 
@@ -403,6 +567,8 @@ namespace Debond
                   point.bonds       = bonds_at(face, k);
                   point.least_piece = least_piece_at(face, k);
                 }
+            if (!least_of_points.empty())
+              point.least_piece = least_of_points[point_list.size()];
             for (unsigned int k = 0; k < n_face_nodes; ++k)
               if (face.node(k) == dealii::numbers::invalid_unsigned_int)
                 point.offset += shape[k] * trace[k];
@@ -551,7 +717,8 @@ namespace Debond
   {
     const BondScale bonds = bonds_of(face, barycentric);
     return bonds.energy / bonds.stretch *
-           law.derivative(trace(face, barycentric, s) / bonds.stretch);
+           law.derivative(trace(face, barycentric, s) / bonds.stretch,
+                          least_piece_at(face, barycentric));
   }
 
 
@@ -590,6 +757,8 @@ namespace Debond
         if (!is_held)
           continue;
         const Trace trace = trace_on(face, s);
+        std::size_t index = (&face - boundary.faces.data()) *
+                            (least_of_points.empty() ? 0 : n_fixed_points());
         for (const auto &point : rule_on(face, trace))
           {
             BondScale   bonds = bonds_of(face, point.barycentric);
@@ -604,6 +773,8 @@ namespace Debond
                   bonds = bonds_at(face, k);
                   least = least_piece_at(face, k);
                 }
+            if (!least_of_points.empty())
+              least = least_of_points[index++];
             const double force =
               point.weight * face.measure * bonds.energy / bonds.stretch *
               law.derivative(at_point / bonds.stretch, least);

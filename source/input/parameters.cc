@@ -213,15 +213,17 @@ namespace Debond
           if (table.is_set(threshold + " " + name))
             check(threshold + " " + name, bonds.threshold);
         }
-      for (const auto &[entry, is_set] :
-           {std::make_pair("Load path/Bonds heal", !p.load_path.bonds_heal),
-            std::make_pair("Load path/Arc", p.load_path.arc)})
-        if (is_set &&
-            p.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
-          table.reject(entry,
-                       "needs Contact law/Quadrature = nodal, which gives each "
-                       "node a bond of its own",
-                       {"Contact law/Quadrature"});
+      using Rule = ContactQuadratureParameters::Rule;
+      if (!p.load_path.bonds_heal && p.quadrature.rule == Rule::exact)
+        table.reject("Load path/Bonds heal",
+                     "needs bonds that stay where they are: Contact "
+                     "law/Quadrature = nodal, midpoint or gauss N",
+                     {"Contact law/Quadrature"});
+      if (p.load_path.arc && p.degree == 1 && p.quadrature.rule != Rule::nodal)
+        table.reject("Load path/Arc",
+                     "needs Contact law/Quadrature = nodal, which gives each "
+                     "node a bond of its own",
+                     {"Contact law/Quadrature"});
     }
 
 
@@ -320,9 +322,9 @@ namespace Debond
       refuse(p.solver.prove,
              "Solver/Prove",
              "needs a bond for each node, which Mesh/Degree = 2 has not");
-      refuse(!p.load_path.factors.empty(),
-             "Load path/Factors",
-             "load paths are for Mesh/Degree = 1");
+      refuse(p.load_path.arc,
+             "Load path/Arc",
+             "needs a bond for each node, which Mesh/Degree = 2 has not");
     }
 
 
@@ -369,9 +371,6 @@ namespace Debond
       refuse(p.solver.prove,
              "Solver/Prove",
              "nothing is proved on meshes that are refined");
-      refuse(!p.load_path.factors.empty() && !p.load_path.bonds_heal,
-             "Load path/Bonds heal",
-             "the error of meshes is estimated for bonds that heal");
       refuse(p.checkpoints.interval > 0.,
              "Solver/Checkpoint interval",
              "there are no checkpoints of meshes that are refined");

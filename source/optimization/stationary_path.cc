@@ -195,25 +195,28 @@ namespace Debond
           return Event::degenerate;
       }
 
-    const double        end  = direction > 0. ? upper : lower;
-    double              step = std::max(0., direction * (end - parameter));
+    constexpr double    rounding = 1e-11;
+    const double        tied     = rounding * (upper - lower);
+    const double        end      = direction > 0. ? upper : lower;
+    double              step     = std::max(0., direction * (end - parameter));
     std::vector<double> steps(s.size(),
                               std::numeric_limits<double>::infinity());
-    bool                reaches_end = true;
+    // Changes that are as far as the end come after it.
+    const double before_end  = step - tied;
+    bool         reaches_end = true;
     for (unsigned int i = 0; i < s.size(); ++i)
       if (const double speed = direction * opening(i); speed != 0.)
         {
           steps[i] = std::max(0., distance(i, speed > 0.)) / std::abs(speed);
-          if (steps[i] <= step)
+          if (steps[i] < before_end && steps[i] <= step)
             {
               step        = steps[i];
               reaches_end = false;
             }
         }
 
-    constexpr double rounding = 1e-11;
-    const double     tie      = step + rounding * (upper - lower);
-    had_kink                  = false;
+    const double tie = step + tied;
+    had_kink         = false;
     for (unsigned int i = 0; i < s.size(); ++i)
       had_kink = had_kink || (segments[i] > 0 && !is_free(i));
     changes.clear();
@@ -222,11 +225,18 @@ namespace Debond
         if (steps[i] <= tie)
           changes.push_back(
             {i, direction * opening(i) > 0., segments[i], bonds[i].least});
-    parameter += direction * step;
+    parameter = reaches_end ? end : parameter + direction * step;
     if (!solve())
       return Event::no_stiffness;
     if (reaches_end)
-      return Event::end;
+      {
+        // What changes there has come to its change.
+        for (unsigned int i = 0; i < s.size(); ++i)
+          if (is_free(i) && steps[i] <= tie)
+            s(i) += direction * opening(i) > 0. ? -distance(i, true) :
+                                                  distance(i, false);
+        return Event::end;
+      }
     bool has_bonds = false;
     for (const Change &one : changes)
       {

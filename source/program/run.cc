@@ -167,12 +167,14 @@ namespace Debond
 
     template <int dim>
     void
-    estimate(const Scene<dim> &scene, RunResult<dim> &result)
+    estimate(const Scene<dim>            &scene,
+             const AdhesionIntegral<dim> &bonds,
+             RunResult<dim>              &result)
     {
       try
         {
           result.estimate = estimate_error(scene.problem(),
-                                           scene.adhesion(),
+                                           bonds,
                                            scene.conditions(),
                                            scene.supports(),
                                            scene.loads(),
@@ -200,13 +202,15 @@ namespace Debond
 
 
 
-    /// Verifies what the solver found and adds what else is to be said of it.
+    /// Verifies what the solver found and adds what else is to be said of it;
+    /// @p bonds are as the load path has left them.
     template <int dim>
     void
-    check_result(const Parameters  &parameters,
-                 const Scene<dim>  &scene,
-                 const std::string &shortfall,
-                 RunResult<dim>    &result)
+    check_result(const Parameters            &parameters,
+                 const Scene<dim>            &scene,
+                 const AdhesionIntegral<dim> &bonds,
+                 const std::string           &shortfall,
+                 RunResult<dim>              &result)
     {
       result.notes = result.solve.notes;
       append(result.solve.minimum.notes, result.notes);
@@ -243,7 +247,7 @@ namespace Debond
       if (is_solution)
         {
           timer.restart();
-          estimate(scene, result);
+          estimate(scene, bonds, result);
           result.times.emplace_back("error estimate", timer.wall_time());
         }
 
@@ -531,8 +535,9 @@ namespace Debond
 
     result.times = {{"mesh", scene->mesh_seconds()},
                     {"assembly", scene->assembly_seconds()}};
-    dealii::Timer timer;
-    std::string   shortfall;
+    dealii::Timer     timer;
+    std::string       shortfall;
+    FollowedPath<dim> path;
     if (parameters.accuracy.is_adaptive())
       {
         const auto report = [&](const AdaptiveLevel &level) {
@@ -545,7 +550,8 @@ namespace Debond
         AdaptiveResult adaptive;
         try
           {
-            adaptive = solve_adaptively(choice, parameters, report, scene);
+            adaptive =
+              solve_adaptively(choice, parameters, report, scene, &path);
           }
         catch (const BadInput &)
           {
@@ -582,15 +588,30 @@ namespace Debond
         *scene,
         [&](const LoadPathStep<dim>      &step,
             const dealii::Vector<double> &u,
-            const Verification<dim>      &verification) {
+            const Verification<dim>      &verification,
+            const AdhesionIntegral<dim>  &bonds) {
           result.verification = verification;
+          path.bonds = std::make_shared<const AdhesionIntegral<dim>>(bonds);
           path_output->add(step, u, verification);
         },
         record.has_details() ? &out : nullptr,
         result.path,
         result.arc);
+    else if (!path.steps.empty())
+      {
+        result.path         = path.steps;
+        result.verification = verify(scene->problem(),
+                                     *path.bonds,
+                                     scene->law(),
+                                     result.solve.u,
+                                     result.solve.load_factor);
+      }
     result.times.emplace_back("solve", timer.wall_time());
-    check_result(parameters, *scene, shortfall, result);
+    check_result(parameters,
+                 *scene,
+                 path.bonds ? *path.bonds : scene->adhesion(),
+                 shortfall,
+                 result);
     if (certifier && result.is_success() && !result.certificate)
       certify_result(*certifier, parameters, scene, result);
     std::string output_error = finish_checkpoints(checkpoints, result, written);

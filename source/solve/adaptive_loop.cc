@@ -129,12 +129,13 @@ namespace Debond
     template <int dim>
     ErrorEstimate
     estimate_of(const Scene<dim>             &scene,
+                const AdhesionIntegral<dim>  &bonds,
                 const dealii::Vector<double> &u,
                 const double                  functional,
                 const LoadFactors             factors)
     {
       return estimate_error(scene.problem(),
-                            scene.adhesion(),
+                            bonds,
                             scene.conditions(),
                             scene.supports(),
                             scene.loads(),
@@ -150,25 +151,28 @@ namespace Debond
     /// of the one that has the largest error relative to its J, @p functional.
     template <int dim>
     SolveResult
-    follow(const Parameters &parameters,
-           const Scene<dim> &scene,
-           ErrorEstimate    &largest,
-           double           &functional)
+    follow(const Parameters  &parameters,
+           const Scene<dim>  &scene,
+           ErrorEstimate     &largest,
+           double            &functional,
+           FollowedPath<dim> &path)
     {
-      LoadPathParameters path = parameters.load_path;
-      path.global_branch      = GlobalBranch::none;
-      path.arc                = false;
-      std::vector<LoadPathStep<dim>> steps, arc;
+      LoadPathParameters followed = parameters.load_path;
+      followed.global_branch      = GlobalBranch::none;
+      followed.arc                = false;
+      std::vector<LoadPathStep<dim>> arc;
       return follow_load_path<dim>(
-        path,
+        followed,
         parameters.solver,
         parameters.verification.tolerance,
         scene,
         [&](const LoadPathStep<dim>      &step,
             const dealii::Vector<double> &u,
-            const Verification<dim> &) {
+            const Verification<dim> &,
+            const AdhesionIntegral<dim> &bonds) {
+          path.bonds = std::make_shared<const AdhesionIntegral<dim>>(bonds);
           ErrorEstimate own =
-            estimate_of(scene, u, step.state.functional, step.factors());
+            estimate_of(scene, bonds, u, step.state.functional, step.factors());
           if (largest.cells.empty() || own.relative() > largest.relative())
             {
               largest    = std::move(own);
@@ -176,7 +180,7 @@ namespace Debond
             }
         },
         nullptr,
-        steps,
+        path.steps,
         arc);
     }
 
@@ -276,7 +280,8 @@ namespace Debond
   solve_adaptively(const MethodChoice                               &choice,
                    const Parameters                                 &parameters,
                    const std::function<void(const AdaptiveLevel &)> &report,
-                   std::shared_ptr<const Scene<dim>>                &scene)
+                   std::shared_ptr<const Scene<dim>>                &scene,
+                   FollowedPath<dim>                                *path)
   {
     Parameters quiet             = parameters;
     quiet.output.machine_details = false;
@@ -292,6 +297,7 @@ namespace Debond
         const bool        is_first = !next;
         const Scene<dim> &here     = is_first ? *scene : *next;
         ErrorEstimate     estimate;
+        FollowedPath<dim> path_here;
         SolveResult       solution;
         double            functional = 0.;
         try
@@ -303,11 +309,12 @@ namespace Debond
                 functional = solution.functional;
                 if (can_be_verified(solution.status) &&
                     !solution.minimum.interrupted)
-                  estimate =
-                    estimate_of(here, solution.u, solution.functional, 1.);
+                  estimate = estimate_of(
+                    here, here.adhesion(), solution.u, solution.functional, 1.);
               }
             else
-              solution = follow(parameters, here, estimate, functional);
+              solution =
+                follow(parameters, here, estimate, functional, path_here);
           }
         catch (const std::invalid_argument &error)
           {
@@ -323,7 +330,12 @@ namespace Debond
         result.solve = std::move(solution);
         if (!is_first)
           scene = std::move(next);
-        if (!can_be_verified(result.solve.status) ||
+        const bool comes_off_later =
+          result.solve.status == SolverStatus::comes_off &&
+          !path_here.steps.empty();
+        if (path != nullptr)
+          *path = std::move(path_here);
+        if (!(can_be_verified(result.solve.status) || comes_off_later) ||
             result.solve.minimum.interrupted)
           return result;
 
@@ -431,10 +443,12 @@ namespace Debond
   solve_adaptively(const MethodChoice &,
                    const Parameters &,
                    const std::function<void(const AdaptiveLevel &)> &,
-                   std::shared_ptr<const Scene<2>> &);
+                   std::shared_ptr<const Scene<2>> &,
+                   FollowedPath<2> *);
   template AdaptiveResult
   solve_adaptively(const MethodChoice &,
                    const Parameters &,
                    const std::function<void(const AdaptiveLevel &)> &,
-                   std::shared_ptr<const Scene<3>> &);
+                   std::shared_ptr<const Scene<3>> &,
+                   FollowedPath<3> *);
 } // namespace Debond

@@ -171,7 +171,7 @@ namespace Debond
                             eigen_view(points[0]),
                             sign * varied[0]);
         const auto     add = [&](const bool is_stable) {
-          const LoadFactors factors = factors_at(sign * path.t());
+          const LoadFactors factors = factors_at(sign * path.t() + 0.); // no -0
           bonds.scale_load(factors.displacements);
           if (!parameters.bonds_heal)
             bonds.break_for_good(path.point_before_kinks());
@@ -343,7 +343,7 @@ namespace Debond
           }
         points.push_back(s);
         steps.push_back(step);
-        observer(step, u, verification);
+        observer(step, u, verification, adhesion);
         return true;
       }
 
@@ -443,14 +443,20 @@ namespace Debond
         bool                 has_slope = false;
         for (unsigned int k = 0; k < branches.size(); ++k)
           has_slope = has_slope || branches[k].slope != 0.;
-        if (branches.size() == 1 || !adhesion.is_separable())
+        if (branches.size() == 1)
           return {};
         // Without a slope, gaps and other factors displacements are
         // proportional to the factor.
-        if (last_factors.loads != 0. && !has_slope &&
-            !scene.problem().unknowns().has_gap() &&
-            parameters.displacement_factors.empty() &&
-            parameters.dead_loads.empty())
+        const bool is_proportional = last_factors.loads != 0. && !has_slope &&
+                                     !scene.problem().unknowns().has_gap() &&
+                                     parameters.displacement_factors.empty() &&
+                                     parameters.dead_loads.empty();
+        if (!adhesion.is_separable())
+          return change_between_nodes(is_proportional,
+                                      last_factors,
+                                      last,
+                                      factors);
+        if (is_proportional)
           return proportional_change(last_factors.loads, last, factors.loads);
 
         const Eigen::VectorXd load  = load_at(last_factors);
@@ -463,21 +469,95 @@ namespace Debond
                             parameters.bonds_heal,
                             eigen_view(last),
                             0.);
-        // Contact that comes and goes.
+        // Contact that comes and goes. Changes at the end of the step count.
         using Event = StationaryPath::Event;
         Event event = Event::contact;
         for (unsigned int k = 0; event == Event::contact && k < 2 * s.size();
              ++k)
-          event = path.advance(0., 1.);
+          event = path.advance(0., 1. + 1e-10);
         if (event != Event::bond)
           return {};
-        const double first = factors.loads != last_factors.loads ?
-                               last_factors.loads :
-                               last_factors.displacements;
-        const double end   = factors.loads != last_factors.loads ?
-                               factors.loads :
-                               factors.displacements;
-        return first + path.t() * (end - first);
+        return factor_between(last_factors, factors, std::min(1., path.t()));
+      }
+
+      /// That which changes.
+      static double
+      factor_between(const LoadFactors first,
+                     const LoadFactors last,
+                     const double      part)
+      {
+        return first.loads != last.loads ?
+                 first.loads + part * (last.loads - first.loads) :
+                 first.displacements +
+                   part * (last.displacements - first.displacements);
+      }
+
+      /// The same where bonds are not at nodes. On the way to their first
+      /// change they are linear springs.
+      std::optional<double>
+      change_between_nodes(const bool                    is_proportional,
+                           const LoadFactors             last_factors,
+                           const dealii::Vector<double> &last,
+                           const LoadFactors             factors)
+      {
+        const Eigen::VectorXd start = eigen_view(last);
+        // What is prescribed on the contact boundary changes the springs'
+        // forces.
+        if (!scene.problem()
+               .unknowns()
+               .contact()
+               .boundary()
+               .held_vertices.empty())
+          return {};
+        if (is_proportional)
+          {
+            const double whole = factors.loads / last_factors.loads - 1.;
+            const Eigen::VectorXd       way = whole * start;
+            const std::optional<double> part =
+              adhesion.first_change(start, way, 1.);
+            if (!part || *part == 1.)
+              return {};
+            return factor_between(last_factors, factors, *part);
+          }
+
+        const Eigen::VectorXd             load  = load_at(last_factors);
+        const Eigen::VectorXd             slope = load_at(factors) - load;
+        const Eigen::SparseMatrix<double> bonds = adhesion.curvature(start);
+        Eigen::MatrixXd                   stiffness =
+          symmetric_view(condensed.schur_complement());
+        stiffness += bonds;
+        const BranchMinimum   no_law({{0., 0., 0., ""}});
+        const Eigen::VectorXd spring_load =
+          load - adhesion.subgradient(start) + bonds * start;
+        StationaryPath path(stiffness,
+                            spring_load,
+                            slope,
+                            no_law,
+                            std::vector<StationaryPath::Bond>(last.size(),
+                                                              {0., 1., 0}),
+                            true,
+                            start,
+                            0.);
+        using Event = StationaryPath::Event;
+        Event event = Event::contact;
+        for (unsigned int k = 0; event == Event::contact && k < 2 * s.size();
+             ++k)
+          {
+            const Eigen::VectorXd before = path.point();
+            const double          t      = path.t();
+            event                        = path.advance(0., 1.);
+            if (event != Event::contact && event != Event::end)
+              return {};
+            const std::optional<double> part =
+              adhesion.first_change(before, path.point() - before, 1.);
+            if (!part)
+              return {};
+            if (*part < 1.)
+              return factor_between(last_factors,
+                                    factors,
+                                    t + *part * (path.t() - t));
+          }
+        return {};
       }
 
       /// The same if displacements are proportional to the factor.

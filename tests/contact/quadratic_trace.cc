@@ -88,6 +88,60 @@ test_basis()
 
 
 
+/// Beside the values on a fine lattice, which miss the least and the largest
+/// one by the square of its width; it is exact on affine functions.
+template <std::size_t n>
+void
+test_range()
+{
+  constexpr unsigned int                 width = 200;
+  std::mt19937                           random(5);
+  std::uniform_real_distribution<double> unit(-1., 1.);
+  double                                 error = 0., affine_error = 0.;
+  for (unsigned int trial = 0; trial < 50; ++trial)
+    {
+      std::array<double, n_coefficients(n, 2)> quadratic, affine;
+      for (double &coefficient : quadratic)
+        coefficient = unit(random);
+      std::copy_n(quadratic.begin(), n, affine.begin());
+      for (unsigned int e = 0; e < n_simplex_edges(n); ++e)
+        affine[n + e] =
+          0.5 * (affine[simplex_edges[e][0]] + affine[simplex_edges[e][1]]);
+      std::pair<double, double> sampled(1e300, -1e300);
+      for (unsigned int i = 0; i <= width; ++i)
+        for (unsigned int j = 0; j <= (n == 2 ? 0 : width - i); ++j)
+          {
+            std::array<double, n> point = {};
+            point[0]                    = double(i) / width;
+            point[n - 2] += n == 2 ? 0. : double(j) / width;
+            point[n - 1]     = double(width - i - j) / width;
+            const auto basis = bernstein(point, 2);
+            double     value = 0.;
+            for (unsigned int k = 0; k < basis.size(); ++k)
+              value += basis[k] * quadratic[k];
+            sampled.first  = std::min(sampled.first, value);
+            sampled.second = std::max(sampled.second, value);
+          }
+      const auto range = range_on_simplex<n>(quadratic, 2);
+      error            = std::max({error,
+                                   std::abs(range.first - sampled.first),
+                                   std::abs(range.second - sampled.second)});
+      const auto ends = std::minmax_element(affine.begin(), affine.begin() + n);
+      const auto of_one = range_on_simplex<n>(affine, 1),
+                 of_two = range_on_simplex<n>(affine, 2);
+      affine_error      = std::max({affine_error,
+                                    std::abs(of_one.first - *ends.first),
+                                    std::abs(of_one.second - *ends.second),
+                                    std::abs(of_two.first - *ends.first),
+                                    std::abs(of_two.second - *ends.second)});
+    }
+  const std::string vertices = std::to_string(n) + " vertices";
+  check("range on " + vertices, error, 1e-4);
+  check("range on " + vertices + ", affine functions", affine_error, 1e-15);
+}
+
+
+
 /// Two lines, or two triangles with a common edge; one node is held.
 template <int dim>
 ContactBoundary<dim>
@@ -310,6 +364,8 @@ main(int argc, char **)
   test_basis<2>();
   test_basis<3>();
   test_basis<4>();
+  test_range<2>();
+  test_range<3>();
   test_integral<2>("exact", 1e-8);
   test_integral<2>("gauss 8", 2e-2);
   test_integral<3>("gauss 7", 2e-2);

@@ -84,3 +84,27 @@ grep -q "(interrupted): load path, step $steps, factor .*the path is not complet
   fail "The files are not those of $steps steps."
 grep -q '"status": "interrupted"' interrupted/summary.json || fail "no status"
 grep -q "\"steps\": $steps," interrupted/summary.json || fail "no steps"
+
+# On refined meshes it leaves the path on the last mesh that was finished.
+set -m
+"$debond" bar.prm --set "Output/Directory=refined" \
+  --set "Load path/Factors=0:0.5:2, 1" --set "Load path/Global branch=none" \
+  --set "Solver/Method=automatic" --set "Accuracy/Target=1e-7" \
+  --set "Output/Load path plots=false" >log 2>errors &
+process=$!
+set +m
+for _ in $(seq 600); do
+  grep -q "mesh 6" log && break
+  sleep 0.05
+done
+kill -s INT $process
+code=0
+wait $process || code=$?
+[ $code -eq 4 ] || fail "exit code $code in place of 4: $(cat errors)"
+grep -q "that of the last mesh that was finished" errors || fail "$(cat errors)"
+[ "$(rows refined)" -eq 6 ] || fail "$(rows refined) factors in place of 6"
+last=$(grep " mesh [0-9]" log | tail -1 | sed 's/.* J \([-0-9.e+]*\),.*/\1/')
+column refined/load_path.csv J | awk -v last="$last" '
+  ($1 - last)^2 < 1e-18 * last^2 { found = 1 } END { exit !found }' ||
+  fail "No factor has the J of the last mesh, $last."
+grep -q '"estimated_error": [0-9]' refined/summary.json || fail "no estimate"

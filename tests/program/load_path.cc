@@ -165,12 +165,9 @@ namespace
   /// |u_nu| = t / (E/H + a) until that is M. Broken: |u_nu| = t / (E/H) as long
   /// as that is more than M.
   template <int dim>
-  void
-  test_column()
+  std::vector<std::string>
+  column(const std::vector<std::string> &others)
   {
-    const double E = 10., H = 0.2, a = 150., M = 0.01, k = E / H;
-    const double area = dim == 2 ? 0.3 : 0.3 * 0.1;
-
     std::vector<std::string> scene = {
       "Material/Young modulus=10",
       "Material/Poisson ratio=0",
@@ -179,7 +176,6 @@ namespace
       "Contact law/Bond threshold=0.01",
       "Contact law/Tangential displacement=free",
       "Load path/Factors=0:0.07:2.8, 2.8:-0.07:0",
-      "Load path/Global branch=prove",
       "Boundary conditions/Clamped boundaries=top"};
     if (dim == 2)
       scene.insert(scene.end(),
@@ -192,7 +188,27 @@ namespace
                     "Mesh/Lengths=0.3, 0.2, 0.1",
                     "Mesh/Cells=2, 2, 1",
                     "Loads/Traction bottom=0; 1; 0"});
-    const Path<dim> path = follow<dim>(scene);
+    scene.insert(scene.end(), others.begin(), others.end());
+    return scene;
+  }
+
+
+
+  /// @p quadrature: of quadratic displacements, empty for linear ones with a
+  /// proof.
+  template <int dim>
+  void
+  test_column(const std::string &quadrature = "")
+  {
+    const double E = 10., H = 0.2, a = 150., M = 0.01, k = E / H;
+    const double area         = dim == 2 ? 0.3 : 0.3 * 0.1;
+    const bool   is_quadratic = !quadrature.empty();
+
+    const Path<dim> path = follow<dim>(
+      is_quadratic ? column<dim>({"Mesh/Degree=2",
+                                  "Contact law/Quadrature=" + quadrature,
+                                  "Load path/Global branch=search"}) :
+                     column<dim>({"Load path/Global branch=prove"}));
 
     const double snap = M * (k + a), closing = M * k;
     const double exchange = M * std::sqrt(k * (k + a));
@@ -229,11 +245,14 @@ namespace
         energy_error = std::max(energy_error,
                                 std::abs(step.global->functional -
                                          energy(step.factor, least_is_broken)));
-        words        = words && step.global->minimum == "global" &&
+        const std::string known =
+          is_quadratic && step.factor != 0. ? "best known" : "global";
+        words = words && step.global->minimum == known &&
                 step.state.minimum ==
-                  (broken == least_is_broken ? "global" : "local minimum");
+                  (broken == least_is_broken ? known : "local minimum");
       }
-    std::cout << "Column in " << dim << "D\n";
+    std::cout << "Column in " << dim << "D"
+              << (is_quadratic ? ", quadratic, " + quadrature : "") << '\n';
     check("  81 steps", path.steps.size() == 81);
     check("  states of both branches as in theory", states);
     check("  words", words);
@@ -242,6 +261,115 @@ namespace
     check("  error of J", energy_error / scale, 1e-12);
     check("  error of the gap", gap_error, 1e-13);
     check("  law violation", law_violation, 1e-11);
+  }
+
+
+
+  /// The same column with bonds that do not heal: once broken, it stays on the
+  /// second branch, also where it would close, and is pressed on the foundation
+  /// without bonds.
+  template <int dim>
+  void
+  test_column_for_good(const std::string &quadrature, const int degree)
+  {
+    const double    a = 150., M = 0.01, k = 10. / 0.2;
+    const double    area = dim == 2 ? 0.3 : 0.3 * 0.1;
+    const Path<dim> path = follow<dim>(
+      column<dim>({"Mesh/Degree=" + std::to_string(degree),
+                   "Contact law/Quadrature=" + quadrature,
+                   "Load path/Factors=-1, 0:0.07:2.8, 2.8:-0.07:0, -1, 1",
+                   "Load path/Bonds heal=false"}));
+    double energy_error = 0., dissipated_error = 0., zone_error = 0.,
+           snap_error      = 1.;
+    unsigned int n_changes = 0;
+    bool         broken    = false;
+    for (const auto &step : path.steps)
+      {
+        broken              = broken || step.factor > M * (k + a);
+        const double pulled = std::max(0., step.factor);
+        energy_error =
+          std::max(energy_error,
+                   std::abs(step.state.functional -
+                            area *
+                              (broken ?
+                                 0.5 * a * M * M - 0.5 * pulled * pulled / k :
+                                 -0.5 * pulled * pulled / (k + a))));
+        dissipated_error =
+          std::max(dissipated_error,
+                   std::abs(step.state.dissipated_energy -
+                            (broken ? 0.5 * a * M * M * area : 0.)));
+        // Closed cracks are not open.
+        zone_error =
+          std::max(zone_error,
+                   std::abs(step.state.broken_zone -
+                            (broken && step.factor > 0. ? area : 0.)));
+        if (step.change_factor)
+          {
+            ++n_changes;
+            snap_error = std::abs(*step.change_factor - M * (k + a));
+          }
+      }
+    const double scale = area * a * M * M;
+    std::cout << "Bonds that do not heal in " << dim << "D, degree " << degree
+              << ", " << quadrature << '\n';
+    check("  all steps", path.steps.size() == 84);
+    check("  one change, the snap", n_changes == 1);
+    check("  error of the snap", snap_error, 1e-12);
+    check("  error of J", energy_error / scale, 1e-12);
+    check("  error of the dissipated energy", dissipated_error / scale, 1e-12);
+    check("  error of the broken zone", zone_error / area, 1e-12);
+  }
+
+
+
+  /// Pulled by its top, the column has a linear way from the prescribed
+  /// displacement d = 0 to the snap at M (1 + a/k), and closes at M.
+  template <int dim>
+  void
+  test_moved_column(const std::string &quadrature)
+  {
+    const double    a = 150., M = 0.01, k = 10. / 0.2;
+    const double    area = dim == 2 ? 0.3 : 0.3 * 0.1, snap = M * (1. + a / k);
+    const Path<dim> path = follow<dim>(column<dim>(
+      {"Mesh/Degree=2",
+       "Contact law/Quadrature=" + quadrature,
+       "Boundary conditions/Clamped boundaries=",
+       std::string("Boundary conditions/Displacement top=0; 1") +
+         (dim == 3 ? "; 0" : ""),
+       std::string("Loads/Traction bottom=0; 0") + (dim == 3 ? "; 0" : ""),
+       "Load path/Factors=",
+       "Load path/Displacement factors=-0.01, 0:0.003:0.06, 0.06:-0.003:0"}));
+    double error = 0., force_error = 0., snap_error = 1., closing_error = 1.;
+    bool   broken = false;
+    for (const auto &step : path.steps)
+      {
+        const double d          = std::max(0., step.displacement_factor);
+        const bool   was_broken = broken;
+        broken                  = broken ? d > M : d > snap;
+        if (step.change_factor)
+          (was_broken ? closing_error : snap_error) =
+            std::abs(*step.change_factor - (was_broken ? M : snap));
+        const double energy =
+          step.displacement_factor < 0. ?
+            0.5 * k * step.displacement_factor * step.displacement_factor :
+          broken ? 0.5 * a * M * M :
+                   0.5 * k * a / (k + a) * d * d;
+        error =
+          std::max(error, std::abs(step.state.functional - area * energy));
+        force_error = std::max(force_error,
+                               std::abs(step.state.unit_displacement_work -
+                                        area * (step.displacement_factor < 0. ?
+                                                  k * step.displacement_factor :
+                                                broken ? 0. :
+                                                         k * a / (k + a) * d)));
+      }
+    std::cout << "Column moved in " << dim << "D, quadratic, " << quadrature
+              << '\n';
+    check("  all steps", path.steps.size() == 43);
+    check("  error of the snap", snap_error / snap, 1e-12);
+    check("  error of the closing", closing_error / snap, 1e-12);
+    check("  error of J", error / (area * a * M * M), 1e-12);
+    check("  error of dJ/d(factor)", force_error / (area * a * M), 1e-12);
   }
 
 
@@ -383,6 +511,77 @@ namespace
 
 
 
+  /// The derivative of J between changes of bonds, and J beside linear
+  /// displacements on a mesh so fine that the error left is known to a tenth.
+  void
+  test_quadratic_benchmark()
+  {
+    const auto on = [](const std::vector<std::string> &others) {
+      std::vector<std::string> scene = {
+        "Load path/Factors=0:0.1:2.5, 2.5:-0.1:0",
+        "Load path/Global branch=none"};
+      scene.insert(scene.end(), others.begin(), others.end());
+      return follow<2>(benchmark(scene));
+    };
+    const Path<2> linear = on({"Mesh/Cells=160,16"});
+    for (const std::string quadrature : {"gauss 4", "exact"})
+      {
+        std::cout << "Benchmark, quadratic, " << quadrature << '\n';
+        const Path<2> path = on({"Mesh/Degree=2",
+                                 "Mesh/Cells=40,4",
+                                 "Contact law/Quadrature=" + quadrature});
+        double        work = 0., violation = 0., difference = 0.;
+        unsigned int  n_compared = 0;
+        for (unsigned int k = 0; k < path.steps.size(); ++k)
+          {
+            const auto &state = path.steps[k].state;
+            violation         = std::max({violation,
+                                          state.law_violation,
+                                          state.equilibrium_residual,
+                                          state.force_imbalance});
+            // Up to the snap; the last closing is at other factors.
+            if (k > 0 && k <= 20)
+              difference =
+                std::max(difference,
+                         std::abs(state.functional /
+                                    linear.steps[k].state.functional -
+                                  1.));
+            if (k == 0 || k >= 20)
+              continue;
+            // J is a parabola until bonds break.
+            const auto  &before = path.steps[k - 1], &after = path.steps[k + 1];
+            const double h = after.factor - before.factor;
+            work           = std::max(
+              work,
+              std::abs((after.state.functional - before.state.functional) / h +
+                       state.unit_load_work) /
+                std::abs(state.unit_load_work));
+            ++n_compared;
+          }
+        check("  derivatives", n_compared == 19);
+        check("  error of dJ/d(factor) = -<f, u>", work, 1e-10);
+        check("  violation of the law", violation, 1e-9);
+        check("  J beside linear displacements on 160x16", difference, 1e-2);
+        const LoadPathTotals totals = load_path_totals(path.steps, 51);
+        const LoadPathTotals others = load_path_totals(linear.steps, 51);
+        check("  the snap beside that of linear displacements",
+              std::abs(*totals.largest_break->change_factor /
+                         *others.largest_break->change_factor -
+                       1.),
+              1e-3);
+        check("  of which the largest gap is M",
+              std::abs(0.002 / path.steps[10].state.largest_gap /
+                         *totals.largest_break->change_factor -
+                       1.),
+              quadrature == "exact" ? 1e-11 : 1e-2);
+        const auto &last = path.steps.back().state;
+        check("  nothing is left at rest",
+              last.functional == 0. && last.largest_gap == 0.);
+      }
+  }
+
+
+
   void
   test_single_factor()
   {
@@ -425,16 +624,21 @@ namespace
                            "Contact law/Quadrature=gauss 2",
                            "Load path/Global branch=none"}));
     double error = 0., largest = 0.;
-    bool   known = false;
     for (const auto &step : gauss.steps)
       {
         error   = std::max(error, step.state.law_violation);
         largest = std::max(largest, step.state.broken_part);
-        known   = known || step.change_factor;
       }
     check("  violation of the law", error, 1e-9);
     check("  bonds break", largest > 0.5);
-    check("  no factor of the change", !known);
+    const LoadPathTotals totals = load_path_totals(gauss.steps, 51);
+    const double         snap   = *totals.largest_break->change_factor;
+    check("  the factor of the snap is in its step",
+          snap <= totals.largest_break->factor &&
+            snap >= totals.largest_break->factor - 0.1);
+    // The largest gap at a Gauss point is less than that at a node.
+    check("  after that of nodes",
+          snap >= 0.002 / gauss.steps[10].state.largest_gap * (1. - 1e-12));
 
     std::cout << "No adhesion, both signs of the load\n";
     const Path<2> contact =
@@ -583,18 +787,30 @@ namespace
 
 
 
-  /// One mesh for all factors, beside a uniform one that is much finer (of the
-  /// least J its own is off by 7e-4).
-  void
-  test_refined()
+  struct Refined
   {
-    std::cout << "A path on a refined mesh\n";
-    const std::vector<std::string> scene   = {"Contact law/Bond stiffness=69",
-                                              "Mesh/Cells=20,2",
-                                              "Load path/Factors=0.5:0.5:2",
-                                              "Load path/Global branch=none"};
-    constexpr double               target  = 5e-3;
-    std::vector<std::string>       refined = benchmark(scene);
+    std::string              name;
+    std::vector<std::string> scene;
+    double                   target;
+    std::vector<std::string> uniform; ///< much finer
+    unsigned int             most_unknowns;
+  };
+
+
+
+  /// One mesh for all factors, beside a uniform one that is much finer (of the
+  /// least J that of linear displacements is off by 7e-4).
+  void
+  test_refined(const Refined &test)
+  {
+    std::cout << "A path on a refined mesh, " << test.name << '\n';
+    std::vector<std::string> scene = {"Contact law/Bond stiffness=69",
+                                      "Mesh/Cells=20,2",
+                                      "Load path/Factors=0.5:0.5:2",
+                                      "Load path/Global branch=none"};
+    scene.insert(scene.end(), test.scene.begin(), test.scene.end());
+    const double             target  = test.target;
+    std::vector<std::string> refined = benchmark(scene);
     refined.push_back("Accuracy/Target=" + std::to_string(target));
     refined.emplace_back("Solver/Method=automatic");
     const Parameters   parameters = parameters_of(refined);
@@ -616,16 +832,119 @@ namespace
 
     const Path<2>            on_refined = follow<2>(parameters, *mesh);
     std::vector<std::string> uniform    = benchmark(scene);
-    uniform.emplace_back("Mesh/Cells=160,16");
+    uniform.insert(uniform.end(), test.uniform.begin(), test.uniform.end());
     const Path<2> on_uniform = follow<2>(uniform);
-    double        error      = 0.;
+    check("  all factors", on_refined.steps.size() == on_uniform.steps.size());
+    double error = 0.;
     for (unsigned int k = 0; k < on_uniform.steps.size(); ++k)
       error = std::max(error,
                        std::abs(1. - on_refined.steps[k].state.functional /
                                        on_uniform.steps[k].state.functional));
     check("  J at all factors", error, 1.25 * target);
     check("  fewer unknowns than the uniform mesh",
-          mesh->problem().unknowns().n_dofs() < 6000);
+          mesh->problem().unknowns().n_dofs() < test.most_unknowns);
+  }
+
+
+
+  /// All bonds break, and the body is unloaded until their gaps are less than
+  /// M: what is left is that without bonds, and so is its estimate, also on
+  /// refined meshes.
+  void
+  test_estimate_for_good()
+  {
+    for (const int degree : {1, 2})
+      {
+        std::cout << "The estimate after unloading, bonds do not heal, degree "
+                  << degree << '\n';
+        const std::vector<std::string> scene = {
+          "Loads/Traction top=0; 0.69",
+          "Load path/Global branch=none",
+          "Contact law/Bond threshold=1e-6",
+          "Mesh/Degree=" + std::to_string(degree),
+          std::string("Contact law/Quadrature=") +
+            (degree == 1 ? "nodal" : "gauss 3"),
+          "Solver/Method=automatic"};
+        const auto estimate = [&](const std::vector<std::string> &others) {
+          std::vector<std::string> assignments = benchmark(scene);
+          assignments.insert(assignments.end(), others.begin(), others.end());
+          const Parameters             parameters = parameters_of(assignments);
+          const Scene<2>               here(parameters,
+                              matrix_storage(choose_method(parameters)));
+          std::vector<LoadPathStep<2>> steps, arc;
+          double                       result = 0.;
+          follow_load_path<2>(
+            parameters.load_path,
+            parameters.solver,
+            parameters.verification.tolerance,
+            here,
+            [&](const auto &step,
+                const auto &u,
+                const auto & /*verification*/,
+                const auto &bonds) {
+              result = estimate_error(here.problem(),
+                                      bonds,
+                                      here.conditions(),
+                                      here.supports(),
+                                      here.loads(),
+                                      u,
+                                      step.state.functional,
+                                      step.factors(),
+                                      &here.dead_loads())
+                         .functional;
+            },
+            nullptr,
+            steps,
+            arc);
+          return result;
+        };
+        const double for_good =
+          estimate({"Load path/Factors=1, 1e-5", "Load path/Bonds heal=false"});
+        const double none =
+          estimate({"Load path/Factors=1, 1e-5", "Contact law/Law=none"});
+        const double healed = estimate({"Load path/Factors=1, 1e-5"});
+        // Of nodes those of the clamped corners hold.
+        check("  is that without bonds",
+              std::abs(for_good / none - 1.),
+              degree == 1 ? 3e-3 : 1e-9);
+        check("  which is not that with bonds",
+              std::abs(healed / none - 1.) > 0.1);
+      }
+  }
+
+
+
+  /// A body that only bonds hold comes off on the way: the factors before that
+  /// have a mesh.
+  void
+  test_refined_until_it_comes_off()
+  {
+    std::cout << "A body that comes off, on a refined mesh\n";
+    const Parameters parameters = parameters_of(
+      benchmark({"Boundary conditions/Clamped boundaries=",
+                 "Contact law/Bond stiffness=69",
+                 "Contact law/Tangential displacement=fixed",
+                 "Loads/Traction top=0; if(x < 0.2, 0.069, 0.0345)",
+                 "Mesh/Cells=20,2",
+                 "Load path/Factors=0.5, 1, 10",
+                 "Accuracy/Target=1e-4",
+                 "Solver/Method=automatic"}));
+    const MethodChoice choice = choose_method(parameters);
+    auto mesh = make_first_scene<2>(parameters, matrix_storage(choice));
+    std::vector<AdaptiveLevel> levels;
+    FollowedPath<2>            path;
+    const AdaptiveResult       result = solve_adaptively<2>(
+      choice,
+      parameters,
+      [&](const AdaptiveLevel &level) { levels.push_back(level); },
+      mesh,
+      &path);
+    check("  it comes off", result.solve.status == SolverStatus::comes_off);
+    check("  after two factors", path.steps.size() == 2);
+    check("  several meshes", levels.size() > 2);
+    check("  the estimate is below the target",
+          levels.back().estimated_error,
+          1e-4);
   }
 
 
@@ -691,6 +1010,20 @@ namespace
             }
         check("  the first break of the path is on it", error, 1e-10);
       }
+
+    std::cout << "  back to rest\n";
+    const Path<2> back = follow<2>(benchmark({"Load path/Factors=2:-0.5:0",
+                                              "Load path/Global branch=none",
+                                              "Load path/Arc=true"}));
+    check("  ends at rest", !back.arc.empty() && back.arc.back().factor == 0.);
+    check("  where all is zero",
+          !back.arc.empty() && back.arc.back().state.largest_gap == 0. &&
+            back.arc.back().state.functional == 0.);
+    check("  each state is verified",
+          std::all_of(back.arc.begin(), back.arc.end(), [](const auto &step) {
+            return step.status == "stable" || step.status == "unstable";
+          }));
+    check("  without a note", back.result.notes.empty());
   }
 } // namespace
 
@@ -703,13 +1036,40 @@ main(int argc, char *[])
   test_factors();
   test_column<2>();
   test_column<3>();
+  test_column<2>("gauss 3");
+  test_column<2>("exact");
+  test_column<3>("gauss 3");
+  test_column_for_good<2>("nodal", 1);
+  test_column_for_good<2>("gauss 2", 1);
+  test_column_for_good<2>("gauss 3", 2);
+  test_column_for_good<3>("gauss 2", 2);
+  test_moved_column<2>("gauss 3");
+  test_moved_column<2>("exact");
+  test_moved_column<3>("gauss 2");
   test_column_arc<2>(false);
   test_column_arc<3>(false);
   test_column_arc<2>(true);
   test_column_arc<3>(true);
   test_arcs();
-  test_refined();
+  test_refined({"linear", {}, 5e-3, {"Mesh/Cells=160,16"}, 6000});
+  test_refined({"quadratic",
+                {"Mesh/Degree=2", "Contact law/Quadrature=exact"},
+                1e-3,
+                {"Mesh/Cells=80,8"},
+                2000});
+  test_refined({"bonds that do not heal",
+                {"Mesh/Degree=2",
+                 "Contact law/Quadrature=gauss 4",
+                 "Contact law/Bond stiffness=690",
+                 "Load path/Factors=0.5:0.5:2.5, 1, 0.5",
+                 "Load path/Bonds heal=false"},
+                1e-2,
+                {"Mesh/Cells=80,8"},
+                4000});
+  test_estimate_for_good();
+  test_refined_until_it_comes_off();
   test_benchmark();
+  test_quadratic_benchmark();
   test_single_factor();
   test_other_laws();
   test_failures();

@@ -9,6 +9,7 @@
 #include <debond/optimization/piecewise_quadratic.h>
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace Debond
@@ -40,13 +41,40 @@ namespace Debond
     scale_load(const double factor);
 
     /// From now on bonds do not return to pieces of the law that they have left
-    /// at @p s or before. Needs the nodal rule.
+    /// at @p s or before: those of each point of the rule, which must not
+    /// depend on the trace.
     void
     break_for_good(const VectorView &s);
 
-    /// The piece of the law that the bonds of a node have not left for good.
+    /// The piece of the law that the bonds of a node have not left for good, of
+    /// all points of its faces where points are not nodes.
     unsigned int
     least_piece(const unsigned int node) const;
+
+    /// The same of the bonds at a point of one of the boundary's faces: those
+    /// of the point of the rule that is next to it.
+    unsigned int
+    least_piece_at(const typename ContactBoundary<dim>::Face &face,
+                   const std::array<double, dim> &barycentric) const;
+
+    /// Whether points that are not nodes have bonds that have broken for good.
+    bool
+    has_broken_points() const;
+
+    /// The length (area) of the points of the rule whose bonds are on the last
+    /// piece of the law and have a gap.
+    double
+    open_measure(const VectorView &s) const;
+
+    /// How far on the way from s to s + @p limit ds bonds come before some
+    /// leave their piece of the law, as a multiple of ds: @p limit if none do.
+    /// What is prescribed stays as it is. Nothing where a rule that depends on
+    /// the trace has two pieces on a face already: there bonds change
+    /// continuously.
+    std::optional<double>
+    first_change(const VectorView &s,
+                 const VectorView &ds,
+                 const double      limit) const;
 
     /// What bonds that do not return have taken: Phi(0) with nothing
     /// prescribed.
@@ -190,6 +218,10 @@ namespace Debond
     void
     update_points();
 
+    /// Of a rule that does not depend on the trace: on each face.
+    unsigned int
+    n_fixed_points() const;
+
     /// Replaces the points of point_list that are on a node by one for each
     /// node.
     void
@@ -210,6 +242,9 @@ namespace Debond
     /// Pieces that bonds have not left for good; empty if they return.
     std::vector<unsigned int> least_of_nodes;
     std::vector<unsigned int> least_of_held;
+
+    /// The same by point, face by face, unless points are nodes.
+    std::vector<unsigned int> least_of_points;
 
     /// Made once unless the rule depends on the trace.
     mutable std::vector<Point> point_list;

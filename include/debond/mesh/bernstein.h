@@ -2,8 +2,10 @@
 #ifndef debond_mesh_bernstein_h
 #define debond_mesh_bernstein_h
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 
 namespace Debond
 {
@@ -67,6 +69,61 @@ namespace Debond
         values[n + e] = 2. * barycentric[simplex_edges[e][0]] *
                         barycentric[simplex_edges[e][1]];
     return values;
+  }
+
+
+
+  /// The least and the largest value on a line or a triangle of the polynomial
+  /// with these coefficients: at vertices, and of degree 2 where it is
+  /// stationary, on an edge or inside.
+  template <std::size_t n>
+  std::pair<double, double>
+  range_on_simplex(const std::array<double, n_coefficients(n, 2)> &coefficients,
+                   const unsigned int                              degree)
+  {
+    static_assert(n == 2 || n == 3);
+    std::pair<double, double> range =
+      std::minmax({coefficients[0], coefficients[1], coefficients[n - 1]});
+    if (degree == 1)
+      return range;
+
+    const auto add = [&](const std::array<double, n> &point) {
+      const auto shape = bernstein(point, 2);
+      double     value = 0.;
+      for (unsigned int k = 0; k < coefficients.size(); ++k)
+        value += shape[k] * coefficients[k];
+      range.first  = std::min(range.first, value);
+      range.second = std::max(range.second, value);
+    };
+    const auto is_inside = [](const double x) { return x > 0. && x < 1.; };
+    for (unsigned int e = 0; e < n_simplex_edges(n); ++e)
+      {
+        const auto &[a, b]  = simplex_edges[e];
+        const double before = coefficients[n + e] - coefficients[a],
+                     after  = coefficients[b] - coefficients[n + e],
+                     x      = before / (before - after);
+        if (before != after && is_inside(x))
+          {
+            std::array<double, n> point = {};
+            point[a]                    = 1. - x;
+            point[b]                    = x;
+            add(point);
+          }
+      }
+    if constexpr (n == 3)
+      {
+        // The derivatives towards the vertices 1 and 2 are affine.
+        const auto  &c  = coefficients;
+        const double x0 = c[3] - c[0], x1 = c[1] - c[3], x2 = c[4] - c[5],
+                     y0 = c[5] - c[0], y1 = c[4] - c[3], y2 = c[2] - c[5];
+        const double det = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0);
+        const double l1  = ((x2 - x0) * y0 - (y2 - y0) * x0) / det,
+                     l2  = ((y1 - y0) * x0 - (x1 - x0) * y0) / det;
+        if (det != 0. && is_inside(l1) && is_inside(l2) &&
+            is_inside(1. - l1 - l2))
+          add({{1. - l1 - l2, l1, l2}});
+      }
+    return range;
   }
 } // namespace Debond
 

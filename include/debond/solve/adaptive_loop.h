@@ -4,6 +4,8 @@
 
 #include <debond/check/error_estimate.h>
 #include <debond/solve/certificate.h>
+#include <debond/solve/load_path_steps.h>
+#include <debond/solve/scene.h>
 #include <debond/solve/solve.h>
 
 #include <functional>
@@ -25,6 +27,18 @@ namespace Debond
     double       estimated_error; ///< ErrorEstimate::relative()
     double       gap; ///< Certificate::width(), 0 without Certificate/Target
     double       seconds; ///< wall time of mesh, assembly and solve
+  };
+
+
+
+  /// The states of a load path on a mesh.
+  template <int dim>
+  struct FollowedPath
+  {
+    std::vector<LoadPathStep<dim>> steps;
+
+    /// As they are after the last step. Has references to the scene.
+    std::shared_ptr<const AdhesionIntegral<dim>> bonds;
   };
 
 
@@ -51,15 +65,17 @@ namespace Debond
   /// parts of the gap, from the state before; with the search that the scene
   /// wants on each. A load path is followed on each mesh, without its global
   /// branch and its arc, for the estimate of the factor that has the largest
-  /// one relative to its J; the result is that of the last factor. @p scene
-  /// becomes that of the result, the last mesh on which there is one. @p report
-  /// gets each level when it is done.
+  /// one relative to its J; the result is that of the last factor, and @p path
+  /// gets all, unless it is null; where the body comes off on the way, the
+  /// factors before that count. @p scene becomes that of the result, the last
+  /// mesh on which there is one. @p report gets each level when it is done.
   template <int dim>
   AdaptiveResult
   solve_adaptively(const MethodChoice                               &choice,
                    const Parameters                                 &parameters,
                    const std::function<void(const AdaptiveLevel &)> &report,
-                   std::shared_ptr<const Scene<dim>>                &scene);
+                   std::shared_ptr<const Scene<dim>>                &scene,
+                   FollowedPath<dim> *path = nullptr);
 } // namespace Debond
 
 #endif

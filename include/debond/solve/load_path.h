@@ -14,11 +14,13 @@
 
 namespace Debond
 {
-  /// Called after each factor, with the displacement and its verification.
+  /// Called after each factor, with the displacement, its verification and the
+  /// bonds as they are.
   template <int dim>
   using LoadPathObserver = std::function<void(const LoadPathStep<dim> &,
                                               const dealii::Vector<double> &,
-                                              const Verification<dim> &)>;
+                                              const Verification<dim> &,
+                                              const AdhesionIntegral<dim> &)>;
 
   /**
    * Applies the factors of the scene's load path to its loads one after the
