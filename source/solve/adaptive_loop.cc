@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <queue>
 #include <sstream>
 
@@ -18,15 +19,92 @@ namespace Debond
 {
   namespace
   {
-    /// The next mesh has so many times the cells, without those that have to be
-    /// cut for others.
-    constexpr double growth = 1.7;
+    /// The next mesh has at most, and unless it would be too large at least, so
+    /// many times the cells, without those that have to be cut for others. The
+    /// error of a mesh with so many cells does not depend on how many meshes
+    /// led to it with linear displacements; with quadratic ones it does
+    /// (doc/notes/speed.md).
+    constexpr double
+    largest_growth(const unsigned int degree)
+    {
+      return degree == 1 ? 4. : 1.7;
+    }
+
+    constexpr double least_growth = 1.25;
+
+    /// The same if parts of a certificate's gap are to become smaller.
+    constexpr double growth_for_gaps = 1.7;
+
+    /// The part of Accuracy/Target that a mesh is made for.
+    constexpr double aim = 0.9;
+
+    /// Cells that are cut for others.
+    constexpr double closure = 1.1;
+
+
+
+    /// How the estimate falls from mesh to mesh.
+    class MeshGrowth
+    {
+    public:
+      MeshGrowth(const AccuracyParameters &accuracy,
+                 const unsigned int        dim,
+                 const unsigned int        degree)
+        : accuracy(accuracy)
+        , largest(largest_growth(degree))
+        , smooth_rate(2. * degree / dim)
+        , rate(smooth_rate)
+      {}
+
+      /// A mesh has been estimated.
+      void
+      add(const double n_unknowns, const double relative_error)
+      {
+        if (unknowns > 0. && error > 0. && relative_error > 0.)
+          rate = std::clamp(std::log(error / relative_error) /
+                              std::log(n_unknowns / unknowns),
+                            0.5 * smooth_rate,
+                            1.5 * smooth_rate);
+        unknowns = n_unknowns;
+        error    = relative_error;
+      }
+
+      /// That of the next mesh: equal steps to the mesh that meets the target,
+      /// or to the largest one that is allowed.
+      double
+      next() const
+      {
+        double whole = std::numeric_limits<double>::infinity();
+        if (accuracy.target > 0.)
+          whole = std::pow(error / (aim * accuracy.target), 1. / rate);
+        if (accuracy.maximum_unknowns > 0)
+          whole =
+            std::min(whole, accuracy.maximum_unknowns / (closure * unknowns));
+        if (!std::isfinite(whole))
+          return largest;
+        const double steps =
+          std::max(1., std::ceil(std::log(whole) / std::log(largest)));
+        return std::max(least_growth, std::pow(whole, 1. / steps));
+      }
+
+    private:
+      const AccuracyParameters &accuracy;
+      const double              largest;
+      const double              smooth_rate;
+      double                    rate; ///< error ~ unknowns^-rate
+      double                    unknowns = 0.;
+      double                    error    = 0.;
+    };
+
+
 
     /// How often each cell is to be cut. The cell with the largest part of the
     /// estimate is next until there are enough; where the solution is smooth, a
     /// half has 2^(-(2 + dim) / dim) of its part.
     std::vector<unsigned int>
-    divisions(const std::vector<double> &parts, const unsigned int dim)
+    divisions(const std::vector<double> &parts,
+              const unsigned int         dim,
+              const double               growth)
     {
       struct Piece
       {
@@ -291,7 +369,9 @@ namespace Debond
     const InterruptGuard                          guard;
     dealii::Timer                                 timer;
     std::shared_ptr<const Scene<dim>>             next;
+    std::shared_ptr<const Body<dim>>              finished, latest;
     std::unique_ptr<const dealii::Vector<double>> start;
+    MeshGrowth growth(parameters.accuracy, dim, parameters.degree);
     while (true)
       {
         const bool        is_first = !next;
@@ -324,6 +404,11 @@ namespace Debond
           }
         if (!is_first && solution.status == SolverStatus::interrupted)
           {
+            if (!scene)
+              scene =
+                std::make_shared<const Scene<dim>>(parameters,
+                                                   finished,
+                                                   matrix_storage(choice));
             interrupt(result.solve);
             return result;
           }
@@ -391,11 +476,19 @@ namespace Debond
         timer.restart();
         const bool by_gaps =
           width > target && !result.certificate->gaps.empty();
-        const std::shared_ptr<const BisectedBody<dim>> body =
-          bisected(*scene).refined(
-            divisions(by_gaps ? result.certificate->gaps : estimate.cells,
-                      dim));
-        const std::string limit = too_large<dim>(parameters, *body);
+        growth.add(unknowns.n_free_dofs(), estimate.relative());
+        double times = by_gaps || target > 0. ? growth_for_gaps : growth.next();
+        std::shared_ptr<const BisectedBody<dim>> body;
+        std::string                              limit;
+        while (true)
+          {
+            body  = bisected(*scene).refined(divisions(
+              by_gaps ? result.certificate->gaps : estimate.cells, dim, times));
+            limit = too_large<dim>(parameters, *body);
+            if (limit.empty() || times <= least_growth)
+              break;
+            times = std::max(least_growth, 0.75 * times);
+          }
         if (!limit.empty() || estimate.functional == 0.)
           {
             if (target > 0.)
@@ -430,6 +523,11 @@ namespace Debond
           }
         start = std::make_unique<const dealii::Vector<double>>(
           on_next_mesh(*scene, result.solve.u, *body, *next));
+        // Its memory is for the next mesh; the state of a path knows it.
+        finished = latest;
+        latest   = body;
+        if (finished && (path == nullptr || path->steps.empty()))
+          scene.reset();
       }
   }
 
