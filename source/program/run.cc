@@ -720,7 +720,7 @@ namespace Debond
     if (dealii::Utilities::MPI::broadcast(ranks, result.is_success()))
       {
         timer.restart();
-        estimate(scene, result);
+        estimate(scene, scene.adhesion(), result);
         result.times.emplace_back("error estimate", timer.wall_time());
       }
     append(plausibility_notes(scene.body().shape(),
