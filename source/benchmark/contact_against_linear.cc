@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <string>
 
 namespace Debond
@@ -17,17 +16,15 @@ namespace Debond
   {
     template <int dim>
     Job
-    contact_job(const MethodChoice &choice,
-                const Parameters   &parameters,
-                const Scene<dim>   &scene)
+    contact_job(const MethodChoice     &choice,
+                const SolverParameters &solver,
+                const Scene<dim>       &scene)
     {
       const auto result = std::make_shared<SolveResult>();
       return {"contact",
-              [&choice, &parameters, &scene, result] {
+              [&choice, &solver, &scene, result] {
                 *result = SolveResult();
-                std::ostringstream log;
-                *result =
-                  solve(choice, parameters, scene, log, /*terminal=*/false);
+                *result = solve(choice, solver, scene);
               },
               [result]() -> nlohmann::json {
                 return {{"status", to_string(result->status)},
@@ -67,20 +64,22 @@ namespace Debond
                                  const Parameters     &parameters,
                                  const BenchmarkStudy &study)
   {
-    const MethodChoice choice = choose_method(parameters);
+    const MethodChoice choice = choose_method(parameters, parameters.solver);
 
     // The same scene once or twice, as the solvers need its matrix.
     std::map<MatrixStorage, std::unique_ptr<Scene<dim>>> scenes;
     const auto scene = [&](const MatrixStorage storage) -> const Scene<dim> & {
       if (scenes[storage] == nullptr)
-        scenes[storage] = std::make_unique<Scene<dim>>(parameters, storage);
+        scenes[storage] = std::make_unique<Scene<dim>>(parameters,
+                                                       storage,
+                                                       parameters.start_file());
       return *scenes[storage];
     };
     const ElasticProblem<dim> &problem =
       scene(matrix_storage(choice)).problem();
 
     std::vector<Job> jobs = {
-      contact_job(choice, parameters, scene(matrix_storage(choice)))};
+      contact_job(choice, parameters.solver, scene(matrix_storage(choice)))};
     for (const std::string &solver : study.linear_solvers)
       jobs.push_back(
         linear_job(solver,

@@ -470,9 +470,9 @@ namespace Debond
 
     template <int dim>
     void
-    report_verification(const Parameters     &parameters,
-                        const RunResult<dim> &result,
-                        Record               &record)
+    report_verification(const ProblemParameters &problem,
+                        const RunResult<dim>    &result,
+                        Record                  &record)
     {
       const bool               details      = record.has_details();
       const Verification<dim> &verification = result.verification;
@@ -483,7 +483,7 @@ namespace Debond
       record.add("/law_violation", verification.law_violation);
       record.line("law violation",
                   error(verification.law_violation) +
-                    (parameters.law.name == "none" ?
+                    (problem.law.name == "none" ?
                        ", relative to the contact forces" :
                        ", relative to what bonds bear and to the contact "
                        "forces"));
@@ -534,8 +534,8 @@ namespace Debond
       report_force("tangential_reaction",
                    "  tangential part",
                    verification.tangential_reaction,
-                   details && (parameters.tangential_displacement_fixed ||
-                               !parameters.tangential_displacements.empty()),
+                   details && (problem.tangential_displacement_fixed ||
+                               !problem.tangential_displacements.empty()),
                    record);
     }
 
@@ -558,9 +558,9 @@ namespace Debond
 
     /// As the scene says it.
     void
-    report_data(const Parameters  &parameters,
-                const unsigned int n_contact_nodes,
-                Record            &record)
+    report_data(const ProblemParameters &problem,
+                const unsigned int       n_contact_nodes,
+                Record                  &record)
     {
       const auto list = [](const std::set<std::string> &names) {
         return join({names.begin(), names.end()}, ", ");
@@ -574,48 +574,48 @@ namespace Debond
                        "" :
                        words(", alpha = ", material.thermal_expansion));
       };
-      const Material &material = parameters.materials.everywhere;
+      const Material &material = problem.materials.everywhere;
       record.line("material",
                   numbers(material) +
-                    (parameters.dimension == 3 ? "" :
+                    (problem.dimension == 3 ? "" :
                      material.hypothesis == Material::Hypothesis::plane_stress ?
-                                                 ", plane stress" :
-                                                 ", plane strain"));
-      for (const auto &[region, own] : parameters.materials.of_regions())
+                                              ", plane stress" :
+                                              ", plane strain"));
+      for (const auto &[region, own] : problem.materials.of_regions())
         record.line("material " + region, numbers(own));
-      record.line("clamped", list(parameters.clamped_boundaries));
-      if (!parameters.supports.rollers.empty())
-        record.line("roller", list(parameters.supports.rollers));
-      if (!parameters.supports.symmetry_planes.empty())
-        record.line("symmetry", list(parameters.supports.symmetry_planes));
-      for (const auto &[side, displacement] : parameters.supports.displacements)
+      record.line("clamped", list(problem.clamped_boundaries));
+      if (!problem.supports.rollers.empty())
+        record.line("roller", list(problem.supports.rollers));
+      if (!problem.supports.symmetry_planes.empty())
+        record.line("symmetry", list(problem.supports.symmetry_planes));
+      for (const auto &[side, displacement] : problem.supports.displacements)
         record.line("displacement " + side, displacement);
-      if (!parameters.supports.gap.empty())
-        record.line("initial gap", parameters.supports.gap);
-      for (const auto &[side, gap] : parameters.supports.gaps)
+      if (!problem.supports.gap.empty())
+        record.line("initial gap", problem.supports.gap);
+      for (const auto &[side, gap] : problem.supports.gaps)
         record.line("initial gap " + side, gap);
-      if (!parameters.loads.body_force.empty())
-        record.line("body force", parameters.loads.body_force);
-      for (const auto &[side, traction] : parameters.loads.tractions)
+      if (!problem.loads.body_force.empty())
+        record.line("body force", problem.loads.body_force);
+      for (const auto &[side, traction] : problem.loads.tractions)
         record.line("traction " + side, traction);
-      if (!parameters.loads.temperature_change.empty())
-        record.line("temperature change", parameters.loads.temperature_change);
+      if (!problem.loads.temperature_change.empty())
+        record.line("temperature change", problem.loads.temperature_change);
       record.add("/contact_nodes", n_contact_nodes);
       record.line("contact",
-                  words(list(parameters.contact_boundaries),
+                  words(list(problem.contact_boundaries),
                         ", ",
                         n_contact_nodes,
                         " nodes"));
       record.line("contact law",
-                  parameters.law.name +
-                    (parameters.law.data.empty() ?
+                  problem.law.name +
+                    (problem.law.data.empty() ?
                        "" :
-                       ", " + parameters.law.data + ", " +
-                         parameters.quadrature_name + " quadrature"));
-      for (const auto &[side, bonds] : parameters.law.boundaries)
+                       ", " + problem.law.data + ", " +
+                         problem.quadrature_name + " quadrature"));
+      for (const auto &[side, bonds] : problem.law.boundaries)
         record.line("bonds " + side,
                     "a = " + bonds.stiffness + ", M = " + bonds.threshold);
-      for (const auto &[side, text] : parameters.tangential_displacements)
+      for (const auto &[side, text] : problem.tangential_displacements)
         record.line("tangential " + side, text);
     }
   } // namespace
@@ -624,32 +624,32 @@ namespace Debond
 
   template <int dim>
   void
-  report_problem(const Parameters   &parameters,
-                 const Scene<dim>   &scene,
+  report_problem(const Scene<dim>   &scene,
                  const MethodChoice &choice,
+                 const double        bundle_weight,
                  Record             &record)
   {
+    const ProblemParameters &problem = scene.parameters();
     report_program(record);
     record.heading("Problem");
-    record.add("/scene", parameters.scene);
+    record.add("/scene", problem.scene);
     if (record.has_details())
-      record.line("scene", parameters.scene);
+      record.line("scene", problem.scene);
     record.add("/dimension", dim);
     record.add("/cells", scene.n_cells());
-    record.add("/degree", parameters.degree);
+    record.add("/degree", problem.degree);
     record.line("mesh",
                 words(scene.n_cells(),
                       dim == 2 ? " triangles" : " tetrahedra",
-                      parameters.degree == 2 ? ", quadratic displacements" :
-                                               ""));
+                      problem.degree == 2 ? ", quadratic displacements" : ""));
 
     const unsigned int n_dofs = scene.n_unknowns();
     const unsigned int n_nodes =
       static_cast<unsigned int>(scene.contact_boundary().nodes.size());
     // The paper counts the tangential displacements of the contact nodes,
     // although they are fixed: 710 on its mesh 40x4.
-    const bool is_fixed = parameters.tangential_displacement_fixed &&
-                          parameters.tangential_displacements.empty();
+    const bool is_fixed = problem.tangential_displacement_fixed &&
+                          problem.tangential_displacements.empty();
     const unsigned int n_dofs_paper =
       n_dofs + (is_fixed ? (dim - 1) * n_nodes : 0);
     record.add("/degrees_of_freedom", n_dofs);
@@ -659,7 +659,7 @@ namespace Debond
                   (is_fixed ?
                      words(", with fixed tangential ones ", n_dofs_paper) :
                      ""));
-    report_data(parameters, n_nodes, record);
+    report_data(problem, n_nodes, record);
     if (const auto &motions =
           scene.problem().unknowns().held_by_contact().names;
         !motions.empty())
@@ -674,7 +674,7 @@ namespace Debond
                      ", " + choice.linear_solver + " linear solver" :
                      "") +
                   (choice.method == SolverMethod::euclidean_bundle ?
-                     words(", u_k = ", parameters.solver.bundle.u) :
+                     words(", u_k = ", bundle_weight) :
                      "") +
                   (choice.reason.empty() ? "" :
                                            ", chosen since " + choice.reason));
@@ -715,21 +715,20 @@ namespace Debond
 
   template <int dim>
   void
-  report_result(const Parameters     &parameters,
-                const Scene<dim>     &scene,
+  report_result(const Scene<dim>     &scene,
                 const MethodChoice   &choice,
                 const RunResult<dim> &result,
                 Record               &record)
   {
+    const LoadPathParameters &load_path = scene.parameters().load_path;
     if (!result.path.empty())
       {
-        report_load_path(
-          load_path_totals(result.path,
-                           static_cast<unsigned int>(
-                             parameters.load_path.factors.size())),
-          result.solve.comes_off_at,
-          record);
-        report_arc(result.arc, parameters.load_path.arc, record);
+        report_load_path(load_path_totals(result.path,
+                                          static_cast<unsigned int>(
+                                            load_path.factors.size())),
+                         result.solve.comes_off_at,
+                         record);
+        report_arc(result.arc, load_path.arc, record);
       }
     if (!result.levels.empty())
       {
@@ -753,7 +752,7 @@ namespace Debond
       return;
     report_state(result.verification, result.largest, record);
     report_probes(result, record);
-    report_verification(parameters, result, record);
+    report_verification(scene.parameters(), result, record);
     if (result.certificate)
       report_certificate(*result.certificate, record);
   }
@@ -828,24 +827,22 @@ namespace Debond
 
 
   template void
-  report_problem(const Parameters &,
-                 const Scene<2> &,
+  report_problem(const Scene<2> &,
                  const MethodChoice &,
+                 const double,
                  Record &);
   template void
-  report_problem(const Parameters &,
-                 const Scene<3> &,
+  report_problem(const Scene<3> &,
                  const MethodChoice &,
+                 const double,
                  Record &);
   template void
-  report_result(const Parameters &,
-                const Scene<2> &,
+  report_result(const Scene<2> &,
                 const MethodChoice &,
                 const RunResult<2> &,
                 Record &);
   template void
-  report_result(const Parameters &,
-                const Scene<3> &,
+  report_result(const Scene<3> &,
                 const MethodChoice &,
                 const RunResult<3> &,
                 Record &);

@@ -115,9 +115,12 @@ namespace Debond
       if (!only_validate)
         return run<dim>(parameters, std::cout, isatty(STDOUT_FILENO) == 1);
 
-      const MethodChoice choice = choose_method(parameters);
-      const Scene<dim>   scene(parameters);
-      check_supports_of_method(choice, parameters, scene);
+      const MethodChoice choice =
+        choose_method(parameters, parameters.solver, parameters.accuracy);
+      const Scene<dim> scene(parameters,
+                             MatrixStorage::serial,
+                             parameters.start_file());
+      check_supports_of_method(choice, parameters.solver, scene);
       std::cout << parameters.scene << ": valid" << std::endl;
       return ExitCode::success;
     }

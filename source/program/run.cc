@@ -26,48 +26,47 @@ namespace Debond
   namespace
   {
     std::string
-    output_path(const Parameters &parameters, const std::string &name)
+    output_path(const std::string &directory, const std::string &name)
     {
-      return (std::filesystem::path(parameters.output.directory) / name)
-        .string();
+      return (std::filesystem::path(directory) / name).string();
     }
 
 
 
     /// Returns the path.
     std::string
-    write_effective_scene(const Parameters &parameters)
+    write_effective_scene(const std::string &scene,
+                          const std::string &directory)
     {
-      const std::string path = output_path(parameters, "parameters.prm");
-      write_atomically(path, [&](std::ostream &file) {
-        file << parameters.effective_scene;
-      });
+      const std::string path = output_path(directory, "parameters.prm");
+      write_atomically(path, [&](std::ostream &file) { file << scene; });
       return path;
     }
 
 
 
-    /// If it is known; then throws BadInput if it is not finite somewhere.
+    /// The difference from the exact displacement, if that is known; then
+    /// throws BadInput if it is not finite somewhere.
     template <int dim>
     std::optional<DisplacementError>
-    error_of(const Parameters             &parameters,
-             const ElasticProblem<dim>    &problem,
+    error_of(const std::string            &exact_displacement,
+             const Scene<dim>             &scene,
              const dealii::Vector<double> &u)
     {
-      if (parameters.verification.exact_displacement.empty())
+      if (exact_displacement.empty())
         return {};
       try
         {
           return displacement_error(
-            problem,
+            scene.problem(),
             u,
-            *make_function<dim>(parameters.verification.exact_displacement,
-                                parameters.loads.constants));
+            *make_function<dim>(exact_displacement,
+                                scene.parameters().loads.constants));
         }
       catch (const std::invalid_argument &error)
         {
           throw BadInput(
-            {parameters.scene +
+            {scene.parameters().scene +
              ": Verification/Exact displacement: " + error.what()});
         }
     }
@@ -106,16 +105,13 @@ namespace Debond
     /// step of a load path that it has something against; empty if nothing.
     template <int dim>
     std::string
-    verification_message(const Parameters     &parameters,
-                         const RunResult<dim> &result)
+    verification_message(const double tolerance, const RunResult<dim> &result)
     {
       for (const LoadPathStep<dim> &step : result.path)
         if (!step.message.empty())
           return step.message;
       const double error = result.verification.error();
-      return error <= parameters.verification.tolerance ?
-               "" :
-               verification_failure(error, parameters.verification.tolerance);
+      return error <= tolerance ? "" : verification_failure(error, tolerance);
     }
 
 
@@ -202,19 +198,20 @@ namespace Debond
 
 
 
-    /// Verifies what the solver found and adds what else is to be said of it;
-    /// @p bonds are as the load path has left them.
+    /// Verifies what the solver found and adds what else is to be said of it.
+    /// @p notes: on the scene; @p bonds are as the load path has left them.
     template <int dim>
     void
-    check_result(const Parameters            &parameters,
-                 const Scene<dim>            &scene,
-                 const AdhesionIntegral<dim> &bonds,
-                 const std::string           &shortfall,
-                 RunResult<dim>              &result)
+    check_result(const VerificationParameters   &verification,
+                 const std::vector<std::string> &notes,
+                 const Scene<dim>               &scene,
+                 const AdhesionIntegral<dim>    &bonds,
+                 const std::string              &shortfall,
+                 RunResult<dim>                 &result)
     {
       result.notes = result.solve.notes;
       append(result.solve.minimum.notes, result.notes);
-      append(parameters.notes, result.notes);
+      append(notes, result.notes);
       append(scene.notes(), result.notes);
       if (result.solve.status == SolverStatus::comes_off && result.path.empty())
         {
@@ -237,7 +234,9 @@ namespace Debond
                                           result.solve.u,
                                           result.solve.load_factor);
       result.times.emplace_back("verification", timer.wall_time());
-      judge(verification_message(parameters, result), shortfall, result);
+      judge(verification_message(verification.tolerance, result),
+            shortfall,
+            result);
 
       // A loop that was interrupted has the solution of the mesh before.
       const bool is_solution =
@@ -261,10 +260,10 @@ namespace Debond
                  scene.problem().fields().applied_nodal_forces().linfty_norm() >
                    0.,
                result.largest,
-               parameters.degree),
+               scene.parameters().degree),
              result.notes);
       result.displacement_error =
-        error_of(parameters, scene.problem(), result.solve.u);
+        error_of(verification.exact_displacement, scene, result.solve.u);
     }
 
 
@@ -274,33 +273,35 @@ namespace Debond
     template <int dim>
     std::unique_ptr<const Certifier>
     make_certifier(
-      [[maybe_unused]] const Parameters                        &parameters,
+      [[maybe_unused]] const CertificateKind                    kind,
       [[maybe_unused]] const std::shared_ptr<const Scene<dim>> &scene)
     {
       if constexpr (dim == 2)
-        if (parameters.certificate.kind != CertificateKind::none)
+        if (kind != CertificateKind::none)
           try
             {
-              return std::make_unique<const Certifier>(
-                parameters.certificate.kind, scene);
+              return std::make_unique<const Certifier>(kind, scene);
             }
           catch (const EquilibriumError &error)
             {
               const std::string entry = "Certificate/Kind";
-              throw BadInput({parameters.locations.at(entry) + ": " + entry +
-                              ": " + error.what()});
+              throw BadInput({scene->parameters().locations.at(entry) + ": " +
+                              entry + ": " + error.what()});
             }
       return nullptr;
     }
 
 
 
-    /// @p certifier: of the scene as it was before its mesh was refined.
+    /// @p certifier: of the scene as it was before its mesh was refined, if it
+    /// was. @p kind is that of a certificate on the last mesh.
     template <int dim>
     void
     certify_result(
       const Certifier                                          &certifier,
-      const Parameters                                         &parameters,
+      [[maybe_unused]] const CertificateKind                    kind,
+      const bool                                                is_refined,
+      const BranchAndBoundParameters                           &proof,
       [[maybe_unused]] const std::shared_ptr<const Scene<dim>> &scene,
       RunResult<dim>                                           &result)
     {
@@ -309,10 +310,9 @@ namespace Debond
       const auto           certify = [&](const Certifier &current) {
         if constexpr (dim == 2)
           result.certificate =
-            current.certify(*scene,
-                            result.solve.u,
-                            parameters.solver.proof,
-                            [&guard]() { return !guard.requested(); });
+            current.certify(*scene, result.solve.u, proof, [&guard]() {
+              return !guard.requested();
+            });
         if (guard.requested())
           result.solve.minimum.interrupted = true;
       };
@@ -320,9 +320,8 @@ namespace Debond
         {
           if constexpr (dim == 2)
             {
-              if (parameters.accuracy.is_adaptive() &&
-                  !certifier.is_for_finer_meshes())
-                certify(Certifier(parameters.certificate.kind, scene));
+              if (is_refined && !certifier.is_for_finer_meshes())
+                certify(Certifier(kind, scene));
               else
                 certify(certifier);
             }
@@ -483,33 +482,35 @@ namespace Debond
   ExitCode
   run(const Parameters &parameters, std::ostream &out, const bool terminal)
   {
-    dealii::Timer                     total;
-    MethodChoice                      choice = choose_method(parameters);
-    const std::unique_ptr<MPI>        mpi    = initialize_mpi(choice);
-    std::shared_ptr<const Scene<dim>> scene =
-      make_first_scene<dim>(parameters, matrix_storage(choice));
-    check_supports_of_method(choice, parameters, *scene);
+    dealii::Timer             total;
+    const SolverParameters   &solver      = parameters.solver;
+    const LoadPathParameters &load_path   = parameters.load_path;
+    const CertificateKind     certificate = parameters.certificate.kind;
+    const OutputParameters   &output      = parameters.output;
+    const AccuracyParameters &accuracy    = parameters.accuracy;
+    MethodChoice choice = choose_method(parameters, solver, accuracy);
+    const std::unique_ptr<MPI>        mpi   = initialize_mpi(choice);
+    std::shared_ptr<const Scene<dim>> scene = make_first_scene<dim>(
+      parameters, accuracy, matrix_storage(choice), parameters.start_file());
+    check_supports_of_method(choice, solver, *scene);
     // Before the solve, so that nothing is lost if it is not finite somewhere.
-    error_of(parameters,
-             scene->problem(),
+    error_of(parameters.verification.exact_displacement,
+             *scene,
              dealii::Vector<double>(scene->problem().unknowns().n_dofs()));
     const std::unique_ptr<const Certifier> certifier =
-      make_certifier(parameters, scene);
+      make_certifier(certificate, scene);
     RunCheckpoints checkpoints(parameters.checkpoints,
-                               parameters.output.directory,
+                               output.directory,
                                choice);
 
     RunResult<dim>          result;
     std::string             no_pictures;
     std::vector<OutputFile> files =
-      output_files(parameters.output, *scene, result, no_pictures);
+      output_files(output, *scene, result, no_pictures);
     std::optional<LoadPathOutput<dim>> path_output;
     const auto                         add_path_output = [&]() {
-      path_output.emplace(parameters.output,
-                          scene->problem(),
-                          result.path,
-                          result.arc,
-                          no_pictures);
+      path_output.emplace(
+        output, scene->problem(), result.path, result.arc, no_pictures);
       append(path_output->files(), files);
     };
     add_path_output();
@@ -517,10 +518,11 @@ namespace Debond
     std::vector<std::string>     written;
     try
       {
-        lock.emplace(parameters.output.directory);
-        remove_files(files, parameters.output.directory);
+        lock.emplace(output.directory);
+        remove_files(files, output.directory);
         path_output->remove_steps();
-        written.push_back(write_effective_scene(parameters));
+        written.push_back(
+          write_effective_scene(parameters.effective_scene, output.directory));
       }
     catch (const std::runtime_error &error)
       {
@@ -528,8 +530,8 @@ namespace Debond
         return ExitCode::output_not_saved;
       }
 
-    Record record(parameters.output.machine_details);
-    report_problem(parameters, *scene, choice, record);
+    Record record(output.machine_details);
+    report_problem(*scene, choice, solver.bundle.u, record);
     report_checkpoints(checkpoints, record);
     record.print(out);
 
@@ -538,7 +540,7 @@ namespace Debond
     dealii::Timer     timer;
     std::string       shortfall;
     FollowedPath<dim> path;
-    if (parameters.accuracy.is_adaptive())
+    if (accuracy.is_adaptive())
       {
         const auto report = [&](const AdaptiveLevel &level) {
           report_level(static_cast<unsigned int>(result.levels.size()),
@@ -550,8 +552,14 @@ namespace Debond
         AdaptiveResult adaptive;
         try
           {
-            adaptive =
-              solve_adaptively(choice, parameters, report, scene, &path);
+            adaptive = solve_adaptively(choice,
+                                        solver,
+                                        accuracy,
+                                        certificate,
+                                        parameters.verification.tolerance,
+                                        report,
+                                        scene,
+                                        &path);
           }
         catch (const BadInput &)
           {
@@ -571,19 +579,23 @@ namespace Debond
                                                parameters.contact_boundaries,
                                                parameters.degree),
                                     dim);
-        files = output_files(parameters.output, *scene, result, no_pictures);
+        files = output_files(output, *scene, result, no_pictures);
         add_path_output();
       }
-    else if (parameters.load_path.factors.empty())
-      result.solve =
-        solve(choice, parameters, *scene, out, terminal, &checkpoints);
+    else if (load_path.factors.empty())
+      result.solve = solve(choice,
+                           solver,
+                           *scene,
+                           record.has_details() ? &out : nullptr,
+                           terminal,
+                           &checkpoints);
     // On a refined mesh the states are computed again, now with all that is
     // written of them.
-    if (!parameters.load_path.factors.empty() &&
+    if (!load_path.factors.empty() &&
         result.solve.status != SolverStatus::interrupted)
       result.solve = follow_load_path<dim>(
-        parameters.load_path,
-        parameters.solver,
+        load_path,
+        solver,
         parameters.verification.tolerance,
         *scene,
         [&](const LoadPathStep<dim>      &step,
@@ -607,24 +619,31 @@ namespace Debond
                                      result.solve.load_factor);
       }
     result.times.emplace_back("solve", timer.wall_time());
-    check_result(parameters,
+    check_result(parameters.verification,
+                 parameters.notes,
                  *scene,
                  path.bonds ? *path.bonds : scene->adhesion(),
                  shortfall,
                  result);
     if (certifier && result.is_success() && !result.certificate)
-      certify_result(*certifier, parameters, scene, result);
+      certify_result(*certifier,
+                     certificate,
+                     accuracy.is_adaptive(),
+                     solver.proof,
+                     scene,
+                     result);
     std::string output_error = finish_checkpoints(checkpoints, result, written);
-    report_result(parameters, *scene, choice, result, record);
+    report_result(*scene, choice, result, record);
 
     timer.restart();
     try
       {
-        append(write_files(files, parameters.output.directory), written);
+        append(write_files(files, output.directory), written);
         result.times.emplace_back("output", timer.wall_time());
         result.times.emplace_back("total", total.wall_time());
         report_cost(result, choice, peak_memory(), record);
-        const std::string summary = output_path(parameters, "summary.json");
+        const std::string summary =
+          output_path(output.directory, "summary.json");
         record.write(summary);
         written.push_back(summary);
       }
@@ -641,31 +660,33 @@ namespace Debond
 
   template <int dim>
   ExitCode
-  run_on_ranks(const Parameters &scene_parameters,
+  run_on_ranks(const Parameters &parameters,
                const MPI_Comm    ranks,
                std::ostream     &out,
                const bool        terminal)
   {
-    dealii::Timer total;
-    Parameters    parameters        = scene_parameters;
-    const bool    is_first          = first_of(ranks);
-    parameters.solver.linear_solver = LinearSolver::multigrid;
-    const auto         piece        = make_piece<dim>(scene_parameters, ranks);
-    const MethodChoice choice       = choose_method(parameters);
-    const Scene<dim>   scene(parameters, piece, ranks);
+    dealii::Timer    total;
+    const bool       is_first      = first_of(ranks);
+    const auto       piece         = make_piece<dim>(parameters, ranks);
+    SolverParameters solver        = parameters.solver;
+    solver.linear_solver           = LinearSolver::multigrid;
+    const OutputParameters &output = parameters.output;
+    const MethodChoice      choice = choose_method(parameters, solver);
+    const Scene<dim>        scene(parameters, piece, ranks);
 
     RunResult<dim>                result;
     std::string                   no_pictures, failure;
     const std::vector<OutputFile> files =
-      output_files(parameters.output, scene, result, no_pictures);
+      output_files(output, scene, result, no_pictures);
     std::optional<DirectoryLock> lock;
     std::vector<std::string>     written;
     if (is_first)
       try
         {
-          lock.emplace(parameters.output.directory);
-          remove_files(files, parameters.output.directory);
-          written.push_back(write_effective_scene(parameters));
+          lock.emplace(output.directory);
+          remove_files(files, output.directory);
+          written.push_back(write_effective_scene(parameters.effective_scene,
+                                                  output.directory));
         }
       catch (const std::runtime_error &error)
         {
@@ -679,8 +700,8 @@ namespace Debond
         return ExitCode::output_not_saved;
       }
 
-    Record record(parameters.output.machine_details);
-    report_problem(parameters, scene, choice, record);
+    Record record(output.machine_details);
+    report_problem(scene, choice, solver.bundle.u, record);
     if (record.has_details())
       record.line("ranks",
                   std::to_string(
@@ -690,7 +711,8 @@ namespace Debond
     result.times = {{"mesh", scene.mesh_seconds()},
                     {"assembly", scene.assembly_seconds()}};
     dealii::Timer timer;
-    result.solve = solve(choice, parameters, scene, out, terminal);
+    result.solve = solve(
+      choice, solver, scene, record.has_details() ? &out : nullptr, terminal);
     result.times.emplace_back("solve", timer.wall_time());
 
     timer.restart();
@@ -716,7 +738,9 @@ namespace Debond
     result.notes = result.solve.notes;
     append(result.solve.minimum.notes, result.notes);
     append(parameters.notes, result.notes);
-    judge(verification_message(parameters, result), "", result);
+    judge(verification_message(parameters.verification.tolerance, result),
+          "",
+          result);
     if (dealii::Utilities::MPI::broadcast(ranks, result.is_success()))
       {
         timer.restart();
@@ -733,13 +757,13 @@ namespace Debond
     timer.restart();
     try
       {
-        if (parameters.output.body_vtu)
+        if (output.body_vtu)
           append(write_body_pieces(scene.problem(),
                                    *scene.piece(),
                                    result.solve.u,
                                    result.estimate ? &*result.estimate :
                                                      nullptr,
-                                   parameters.output.directory),
+                                   output.directory),
                  written);
       }
     catch (const std::runtime_error &error)
@@ -756,14 +780,15 @@ namespace Debond
         for (const std::string &other : all_failures)
           if (failure.empty())
             failure = other;
-        report_result(parameters, scene, choice, result, record);
+        report_result(scene, choice, result, record);
         try
           {
-            append(write_files(files, parameters.output.directory), written);
+            append(write_files(files, output.directory), written);
             result.times.emplace_back("output", timer.wall_time());
             result.times.emplace_back("total", total.wall_time());
             report_cost(result, choice, memory, record);
-            const std::string summary = output_path(parameters, "summary.json");
+            const std::string summary =
+              output_path(output.directory, "summary.json");
             record.write(summary);
             written.push_back(summary);
           }

@@ -3,6 +3,7 @@
 
 #include <debond/base/interrupt.h>
 #include <debond/elasticity/mesh_transfer.h>
+#include <debond/input/bad_input.h>
 #include <debond/mesh/bisected_body.h>
 #include <debond/solve/adaptive_loop.h>
 #include <debond/solve/load_path.h>
@@ -147,15 +148,18 @@ namespace Debond
 
 
     /// Why there can be no mesh as large as that of @p body; empty if there
-    /// can.
+    /// can. @p memory_limit: 0 for what is there.
     template <int dim>
     std::string
-    too_large(const Parameters &parameters, const Body<dim> &body)
+    too_large(const ProblemParameters  &problem,
+              const AccuracyParameters &accuracy,
+              const double              memory_limit,
+              const Body<dim>          &body)
     {
       const SceneSize size =
-        scene_size(body, dim, parameters.contact_boundaries, parameters.degree);
+        scene_size(body, dim, problem.contact_boundaries, problem.degree);
       SceneSize largest = size;
-      if (parameters.accuracy.certified_width > 0.)
+      if (accuracy.certified_width > 0.)
         {
           // Four unknowns of stresses on each of 3/2 sides a triangle, two kept
           // on each side in contact.
@@ -165,13 +169,11 @@ namespace Debond
       std::ostringstream text;
       text << "the next mesh would have " << std::fixed << std::setprecision(0)
            << size.unknowns << " unknowns, ";
-      const double limit = parameters.solver.memory_limit > 0. ?
-                             parameters.solver.memory_limit :
-                             available_memory();
-      if (parameters.accuracy.maximum_unknowns > 0 &&
-          size.unknowns > parameters.accuracy.maximum_unknowns)
-        text << "Accuracy/Maximum unknowns is "
-             << parameters.accuracy.maximum_unknowns;
+      const double limit =
+        memory_limit > 0. ? memory_limit : available_memory();
+      if (accuracy.maximum_unknowns > 0 &&
+          size.unknowns > accuracy.maximum_unknowns)
+        text << "Accuracy/Maximum unknowns is " << accuracy.maximum_unknowns;
       else if (memory_with_factorisation(largest, dim) > limit)
         text << "which need about " << std::setprecision(1)
              << memory_with_factorisation(largest, dim) / (1 << 30)
@@ -229,20 +231,21 @@ namespace Debond
     /// of the one that has the largest error relative to its J, @p functional.
     template <int dim>
     SolveResult
-    follow(const Parameters  &parameters,
-           const Scene<dim>  &scene,
-           ErrorEstimate     &largest,
-           double            &functional,
-           FollowedPath<dim> &path)
+    follow(const SolverParameters &solver,
+           const double            tolerance,
+           const Scene<dim>       &scene,
+           ErrorEstimate          &largest,
+           double                 &functional,
+           FollowedPath<dim>      &path)
     {
-      LoadPathParameters followed = parameters.load_path;
+      LoadPathParameters followed = scene.parameters().load_path;
       followed.global_branch      = GlobalBranch::none;
       followed.arc                = false;
       std::vector<LoadPathStep<dim>> arc;
       return follow_load_path<dim>(
         followed,
-        parameters.solver,
-        parameters.verification.tolerance,
+        solver,
+        tolerance,
         scene,
         [&](const LoadPathStep<dim>      &step,
             const dealii::Vector<double> &u,
@@ -271,7 +274,9 @@ namespace Debond
     template <int dim>
     Certificate
     certify_level(
-      [[maybe_unused]] const Parameters                        &parameters,
+      [[maybe_unused]] const CertificateKind                    kind,
+      [[maybe_unused]] const double                             target,
+      [[maybe_unused]] const BranchAndBoundParameters          &proof,
       [[maybe_unused]] const std::shared_ptr<const Scene<dim>> &scene,
       [[maybe_unused]] const dealii::Vector<double>            &u,
       [[maybe_unused]] const bool                               is_last,
@@ -279,17 +284,16 @@ namespace Debond
     {
       if constexpr (dim == 2)
         {
-          const auto certify = [&](const CertificateKind kind) {
-            return Certifier(kind, scene)
-              .certify(*scene, u, parameters.solver.proof, may_go_on);
+          const auto certify = [&](const CertificateKind kind_of_this) {
+            return Certifier(kind_of_this, scene)
+              .certify(*scene, u, proof, may_go_on);
           };
-          const CertificateKind kind = parameters.certificate.kind;
           if (kind == CertificateKind::global && !is_last)
             try
               {
                 const Certificate first = certify(CertificateKind::fixed_state);
                 if (first.minimum == CertifiedMinimum::global ||
-                    first.width() > parameters.accuracy.certified_width)
+                    first.width() > target)
                   return first;
               }
             catch (const EquilibriumError &)
@@ -305,12 +309,11 @@ namespace Debond
 
 
     std::string
-    too_wide(const Certificate &certificate, const Parameters &parameters)
+    too_wide(const Certificate &certificate, const double target)
     {
       std::ostringstream text;
       text << "The interval is " << std::setprecision(2) << certificate.width()
-           << " of |J| wide, Certificate/Target is "
-           << parameters.accuracy.certified_width;
+           << " of |J| wide, Certificate/Target is " << target;
       return text.str();
     }
 
@@ -329,49 +332,53 @@ namespace Debond
 
   template <int dim>
   std::shared_ptr<const Scene<dim>>
-  make_first_scene(const Parameters &parameters, const MatrixStorage storage)
+  make_first_scene(const ProblemParameters  &problem,
+                   const AccuracyParameters &accuracy,
+                   const MatrixStorage       storage,
+                   const std::string        &start)
   {
-    if (!parameters.accuracy.is_adaptive())
-      return std::make_shared<const Scene<dim>>(parameters, storage);
+    if (!accuracy.is_adaptive())
+      return std::make_shared<const Scene<dim>>(problem, storage, start);
     std::shared_ptr<const Body<dim>> body;
     try
       {
         body = std::make_shared<const BisectedBody<dim>>(
-          std::dynamic_pointer_cast<const Body<dim>>(parameters.body));
+          std::dynamic_pointer_cast<const Body<dim>>(problem.body));
       }
     catch (const PartError &)
       {
         // The scene without refinement says which entry that is.
-        return std::make_shared<const Scene<dim>>(parameters, storage);
+        return std::make_shared<const Scene<dim>>(problem, storage, start);
       }
     catch (const std::invalid_argument &error)
       {
-        throw BadInput({parameters.scene + ": Accuracy: " + error.what()});
+        throw BadInput({problem.scene + ": Accuracy: " + error.what()});
       }
-    return std::make_shared<const Scene<dim>>(parameters, body, storage);
+    return std::make_shared<const Scene<dim>>(problem, body, storage, start);
   }
 
 
 
   template <int dim>
   AdaptiveResult
-  solve_adaptively(const MethodChoice                               &choice,
-                   const Parameters                                 &parameters,
+  solve_adaptively(const MethodChoice       &choice,
+                   const SolverParameters   &solver,
+                   const AccuracyParameters &accuracy,
+                   const CertificateKind     certificate,
+                   const double              tolerance,
                    const std::function<void(const AdaptiveLevel &)> &report,
                    std::shared_ptr<const Scene<dim>>                &scene,
                    FollowedPath<dim>                                *path)
   {
-    Parameters quiet             = parameters;
-    quiet.output.machine_details = false;
-    std::ostringstream no_log;
-
+    // Of all meshes.
+    const ProblemParameters                       problem = scene->parameters();
     AdaptiveResult                                result;
     const InterruptGuard                          guard;
     dealii::Timer                                 timer;
     std::shared_ptr<const Scene<dim>>             next;
     std::shared_ptr<const Body<dim>>              finished, latest;
     std::unique_ptr<const dealii::Vector<double>> start;
-    MeshGrowth growth(parameters.accuracy, dim, parameters.degree);
+    MeshGrowth growth(accuracy, dim, problem.degree);
     while (true)
       {
         const bool        is_first = !next;
@@ -382,10 +389,10 @@ namespace Debond
         double            functional = 0.;
         try
           {
-            if (parameters.load_path.factors.empty())
+            if (problem.load_path.factors.empty())
               {
                 solution = solve(
-                  choice, quiet, here, no_log, false, nullptr, start.get());
+                  choice, solver, here, nullptr, false, nullptr, start.get());
                 functional = solution.functional;
                 if (can_be_verified(solution.status) &&
                     !solution.minimum.interrupted)
@@ -393,8 +400,8 @@ namespace Debond
                     here, here.adhesion(), solution.u, solution.functional, 1.);
               }
             else
-              solution =
-                follow(parameters, here, estimate, functional, path_here);
+              solution = follow(
+                solver, tolerance, here, estimate, functional, path_here);
           }
         catch (const std::invalid_argument &error)
           {
@@ -406,7 +413,7 @@ namespace Debond
           {
             if (!scene)
               scene =
-                std::make_shared<const Scene<dim>>(parameters,
+                std::make_shared<const Scene<dim>>(problem,
                                                    finished,
                                                    matrix_storage(choice));
             interrupt(result.solve);
@@ -426,13 +433,15 @@ namespace Debond
 
         if (!result.shortfall.empty())
           return result;
-        const double target  = parameters.accuracy.certified_width;
+        const double target  = accuracy.certified_width;
         const auto   certify = [&](const bool is_last) {
           result.certificate.reset();
           try
             {
               result.certificate =
-                certify_level<dim>(parameters,
+                certify_level<dim>(certificate,
+                                   target,
+                                   solver.proof,
                                    scene,
                                    result.solve.u,
                                    is_last,
@@ -461,16 +470,15 @@ namespace Debond
                 timer.wall_time() + (is_first ? scene->mesh_seconds() +
                                                   scene->assembly_seconds() :
                                                 0.)});
-        const bool is_accurate =
-          estimate.relative() <= parameters.accuracy.target;
+        const bool is_accurate = estimate.relative() <= accuracy.target;
         if (target > 0. && guard.requested())
           {
             interrupt(result.solve);
             return result;
           }
-        if (target > 0. ? width <= target &&
-                            (is_accurate || parameters.accuracy.target == 0.) :
-                          is_accurate)
+        if (target > 0. ?
+              width <= target && (is_accurate || accuracy.target == 0.) :
+              is_accurate)
           return result;
 
         timer.restart();
@@ -482,9 +490,10 @@ namespace Debond
         std::string                              limit;
         while (true)
           {
-            body  = bisected(*scene).refined(divisions(
+            body = bisected(*scene).refined(divisions(
               by_gaps ? result.certificate->gaps : estimate.cells, dim, times));
-            limit = too_large<dim>(parameters, *body);
+            limit =
+              too_large<dim>(problem, accuracy, solver.memory_limit, *body);
             if (limit.empty() || times <= least_growth)
               break;
             times = std::max(least_growth, 0.75 * times);
@@ -493,27 +502,28 @@ namespace Debond
           {
             if (target > 0.)
               {
-                if (parameters.certificate.kind == CertificateKind::global &&
+                if (certificate == CertificateKind::global &&
                     result.certificate->minimum != CertifiedMinimum::global)
                   certify(true);
                 if (!result.shortfall.empty())
                   return result;
                 if (result.certificate->width() > target)
-                  result.shortfall = too_wide(*result.certificate, parameters) +
-                                     ": " + limit + '.';
+                  result.shortfall =
+                    too_wide(*result.certificate, target) + ": " + limit + '.';
               }
-            if (!is_accurate && parameters.accuracy.target > 0.)
+            if (!is_accurate && accuracy.target > 0.)
               {
                 std::ostringstream text;
                 text << (result.shortfall.empty() ? "" : " ")
                      << "The estimated error of " << std::setprecision(2)
-                     << estimate.relative() << " is above Accuracy/Target = "
-                     << parameters.accuracy.target << ": " << limit << '.';
+                     << estimate.relative()
+                     << " is above Accuracy/Target = " << accuracy.target
+                     << ": " << limit << '.';
                 result.shortfall += text.str();
               }
             return result;
           }
-        next = std::make_shared<const Scene<dim>>(parameters,
+        next = std::make_shared<const Scene<dim>>(problem,
                                                   body,
                                                   matrix_storage(choice));
         if (guard.requested())
@@ -534,18 +544,30 @@ namespace Debond
 
 
   template std::shared_ptr<const Scene<2>>
-  make_first_scene(const Parameters &, const MatrixStorage);
+  make_first_scene(const ProblemParameters &,
+                   const AccuracyParameters &,
+                   const MatrixStorage,
+                   const std::string &);
   template std::shared_ptr<const Scene<3>>
-  make_first_scene(const Parameters &, const MatrixStorage);
+  make_first_scene(const ProblemParameters &,
+                   const AccuracyParameters &,
+                   const MatrixStorage,
+                   const std::string &);
   template AdaptiveResult
   solve_adaptively(const MethodChoice &,
-                   const Parameters &,
+                   const SolverParameters &,
+                   const AccuracyParameters &,
+                   const CertificateKind,
+                   const double,
                    const std::function<void(const AdaptiveLevel &)> &,
                    std::shared_ptr<const Scene<2>> &,
                    FollowedPath<2> *);
   template AdaptiveResult
   solve_adaptively(const MethodChoice &,
-                   const Parameters &,
+                   const SolverParameters &,
+                   const AccuracyParameters &,
+                   const CertificateKind,
+                   const double,
                    const std::function<void(const AdaptiveLevel &)> &,
                    std::shared_ptr<const Scene<3>> &,
                    FollowedPath<3> *);

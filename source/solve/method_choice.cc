@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
+#include <debond/input/bad_input.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/scene_size.h>
 
@@ -54,12 +55,13 @@ namespace Debond
 
     /// A path needs S for its many loads.
     void
-    check_load_path(const Parameters &parameters, const MethodChoice &choice)
+    check_load_path(const ProblemParameters &problem,
+                    const bool               proves,
+                    const MethodChoice      &choice)
     {
-      const auto refuse = [&parameters](const std::string &entry,
-                                        const std::string &reason) {
-        throw BadInput(
-          {parameters.scene + ": Load path/" + entry + " " + reason});
+      const auto refuse = [&problem](const std::string &entry,
+                                     const std::string &reason) {
+        throw BadInput({problem.scene + ": Load path/" + entry + " " + reason});
       };
       if (choice.method != SolverMethod::majorise_minimise)
         refuse("Factors",
@@ -69,18 +71,17 @@ namespace Debond
         refuse("Factors",
                "needs Solver/Linear solver = direct, not " +
                  choice.linear_solver);
-      if (parameters.solver.prove)
+      if (proves)
         refuse("Factors",
                "follows minima that need not be global: in place of "
                "Solver/Prove = true use Load path/Global branch = prove");
-      if (parameters.load_path.global_branch == GlobalBranch::prove &&
-          !parameters.load_path.has_global_branch())
+      if (problem.load_path.global_branch == GlobalBranch::prove &&
+          !problem.load_path.has_global_branch())
         refuse("Global branch",
                "= prove needs bonds that heal and the same factors for "
                "prescribed displacements");
-      if (parameters.load_path.global_branch == GlobalBranch::prove &&
-          parameters.quadrature.rule !=
-            ContactQuadratureParameters::Rule::nodal)
+      if (problem.load_path.global_branch == GlobalBranch::prove &&
+          problem.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
         refuse("Global branch",
                "= prove needs Contact law/Quadrature = nodal, which gives "
                "each node a bond of its own");
@@ -102,13 +103,14 @@ namespace Debond
 
 
   MethodChoice
-  choose_method(const Parameters &parameters)
+  choose_method(const ProblemParameters  &problem,
+                const SolverParameters   &solver,
+                const AccuracyParameters &accuracy)
   {
-    const SolverParameters &solver = parameters.solver;
-    const SceneSize         size   = scene_size(parameters);
-    const unsigned int      dim    = parameters.dimension;
-    const double            limit  = memory_limit(solver);
-    const double direct_memory     = memory_with_factorisation(size, dim);
+    const SceneSize    size          = scene_size(problem);
+    const unsigned int dim           = problem.dimension;
+    const double       limit         = memory_limit(solver);
+    const double       direct_memory = memory_with_factorisation(size, dim);
 
     MethodChoice choice = {solver.method, solver.linear_solver, "", 0., false};
     if (choice.method == SolverMethod::euclidean_bundle)
@@ -130,21 +132,20 @@ namespace Debond
           {
             if (choice.linear_solver == LinearSolver::multigrid)
               throw BadInput(
-                {parameters.scene +
+                {problem.scene +
                  ": Solver/Method = energy bundle needs the Schur complement "
                  "of a factorisation; Solver/Linear solver must be direct or "
                  "automatic"});
             choice.linear_solver = LinearSolver::direct;
           }
         else if (choice.linear_solver == LinearSolver::automatic &&
-                 (parameters.accuracy.is_adaptive() || parameters.degree == 2))
+                 (accuracy.is_adaptive() || problem.degree == 2))
           choice.linear_solver = LinearSolver::direct;
         else if (choice.linear_solver == LinearSolver::automatic)
           {
-            choice.linear_solver = LinearSolver::direct;
-            const double direct_seconds =
-              seconds_with_factorisation(parameters);
-            const double multigrid_seconds = seconds_with_multigrid(parameters);
+            choice.linear_solver        = LinearSolver::direct;
+            const double direct_seconds = seconds_with_factorisation(problem);
+            const double multigrid_seconds = seconds_with_multigrid(problem);
             std::string  reason;
             if (direct_memory > limit)
               reason = "a factorisation would take about " +
@@ -167,30 +168,30 @@ namespace Debond
                  " s with multigrid");
           }
         choice.has_levels = choice.linear_solver == LinearSolver::multigrid &&
-                            parameters.body->has_coarse_levels();
+                            problem.body->has_coarse_levels();
         choice.memory = choice.linear_solver == LinearSolver::direct ?
                           direct_memory :
                           memory_with_multigrid(size, dim, choice.has_levels);
       }
 
-    if (!parameters.load_path.factors.empty())
-      check_load_path(parameters, choice);
+    if (!problem.load_path.factors.empty())
+      check_load_path(problem, solver.prove, choice);
     const bool searches = solver.search == BondSearchChoice::quick ||
                           solver.search == BondSearchChoice::full;
     if ((searches || solver.prove) &&
         choice.linear_solver != LinearSolver::direct)
       throw BadInput(
-        {parameters.scene + ": Solver/" + (searches ? "Search" : "Prove") +
+        {problem.scene + ": Solver/" + (searches ? "Search" : "Prove") +
          " needs a method with a direct linear solver, not " + choice.method +
          " with the linear solver " + choice.linear_solver});
     if (solver.prove &&
-        parameters.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
-      throw BadInput({parameters.scene +
+        problem.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
+      throw BadInput({problem.scene +
                       ": Solver/Prove needs Contact law/Quadrature = nodal, "
                       "which gives each node a bond of its own"});
 
     if (choice.memory > limit)
-      throw BadInput({parameters.scene + ": about " + rounded(size.unknowns) +
+      throw BadInput({problem.scene + ": about " + rounded(size.unknowns) +
                       " unknowns need about " + in_gib(choice.memory) +
                       " of memory with " + choice.method +
                       (choice.linear_solver == LinearSolver::none ?

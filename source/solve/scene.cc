@@ -7,6 +7,7 @@
 #include <debond/check/error_estimate.h>
 #include <debond/contact/field_value.h>
 #include <debond/elasticity/temperature_load.h>
+#include <debond/input/bad_input.h>
 #include <debond/input/expression.h>
 #include <debond/input/probe_parameters.h>
 #include <debond/linear_algebra/eigen_view.h>
@@ -76,12 +77,12 @@ namespace Debond
     /// which something is set by entries, @p entries by their names.
     template <typename Function>
     void
-    for_contact_boundaries(const Parameters                         &parameters,
+    for_contact_boundaries(const ProblemParameters                  &given,
                            const std::map<std::string, std::string> &entries,
                            const BoundaryConditions                 &conditions,
                            const Function                           &function)
     {
-      const std::set<std::string> &in_contact = parameters.contact_boundaries;
+      const std::set<std::string> &in_contact = given.contact_boundaries;
       std::map<dealii::types::boundary_id, std::string> taken;
       for (const auto &[name, entry] : entries)
         for (const dealii::types::boundary_id id : conditions.names.at(name))
@@ -116,20 +117,20 @@ namespace Debond
 
 
     BoundaryConditions
-    make_conditions(const Parameters    &parameters,
-                    const BoundaryNames &boundaries)
+    make_conditions(const ProblemParameters &given,
+                    const BoundaryNames     &boundaries)
     {
       BoundaryConditions conditions;
-      for (const std::string &name : parameters.clamped_boundaries)
+      for (const std::string &name : given.clamped_boundaries)
         insert(boundaries.at(name), conditions.clamped);
-      for (const std::string &name : parameters.contact_boundaries)
+      for (const std::string &name : given.contact_boundaries)
         insert(boundaries.at(name), conditions.contact);
       conditions.names = boundaries;
       conditions.tangential_displacement_fixed =
-        parameters.tangential_displacement_fixed;
-      const auto &own = parameters.tangential_displacements;
+        given.tangential_displacement_fixed;
+      const auto &own = given.tangential_displacements;
       for_contact_boundaries(
-        parameters,
+        given,
         entries_of("Contact law/Tangential displacement", own),
         conditions,
         [&](const std::string &name, const dealii::types::boundary_id id) {
@@ -235,28 +236,27 @@ namespace Debond
 
     template <int dim>
     Supports<dim>
-    make_supports(const Parameters         &parameters,
+    make_supports(const ProblemParameters  &given,
                   const BoundaryConditions &conditions)
     {
       const BoundaryNames                 &boundaries = conditions.names;
-      const std::map<std::string, double> &constants =
-        parameters.loads.constants;
-      Supports<dim> supports;
-      for (const auto &[name, text] : parameters.supports.displacements)
+      const std::map<std::string, double> &constants  = given.loads.constants;
+      Supports<dim>                        supports;
+      for (const auto &[name, text] : given.supports.displacements)
         {
           supports.displacements.push_back(
             prescribed_displacement<dim>(name, text, constants));
           supports.displacements.back().boundaries = boundaries.at(name);
         }
-      for (const std::string &name : parameters.supports.all_rollers())
+      for (const std::string &name : given.supports.all_rollers())
         supports.displacements.push_back({name, boundaries.at(name), true});
-      if (!parameters.supports.gap.empty())
+      if (!given.supports.gap.empty())
         for (const dealii::types::boundary_id id : conditions.contact)
           supports.gaps[id] = {
-            "", make_function<dim>(parameters.supports.gap, constants, 1)};
-      const auto &own = parameters.supports.gaps;
+            "", make_function<dim>(given.supports.gap, constants, 1)};
+      const auto &own = given.supports.gaps;
       for_contact_boundaries(
-        parameters,
+        given,
         entries_of("Contact law/Initial gap", own),
         conditions,
         [&](const std::string &name, const dealii::types::boundary_id id) {
@@ -270,7 +270,7 @@ namespace Debond
 
     template <int dim>
     std::unique_ptr<BondField<dim>>
-    make_bond_field(const Parameters         &parameters,
+    make_bond_field(const ProblemParameters  &given,
                     const AdhesiveLaw        &law,
                     const BoundaryConditions &conditions)
     {
@@ -282,33 +282,32 @@ namespace Debond
         if (double number; read_number(text, number))
           return std::make_shared<
             const dealii::Functions::ConstantFunction<dim>>(number);
-        return make_function<dim>(text, parameters.loads.constants, 1);
+        return make_function<dim>(text, given.loads.constants, 1);
       };
       std::map<std::string, std::string> entries;
       std::map<std::string, Bonds>       bonds;
-      for (const auto &[name, texts] : parameters.law.boundaries)
+      for (const auto &[name, texts] : given.law.boundaries)
         {
           bonds[name] = {name, field(texts.stiffness), field(texts.threshold)};
           for (const std::string entry : {"Bond stiffness", "Bond threshold"})
             if (const std::string path = "Contact law/" + entry + ' ' + name;
-                parameters.locations.count(path) > 0)
+                given.locations.count(path) > 0)
               entries.emplace(name, path);
         }
       std::map<dealii::types::boundary_id, Bonds> boundaries;
-      for_contact_boundaries(parameters,
+      for_contact_boundaries(given,
                              entries,
                              conditions,
                              [&](const std::string               &name,
                                  const dealii::types::boundary_id id) {
                                boundaries[id] = bonds[name];
                              });
-      return std::make_unique<BondField<dim>>(
-        law.curvature(0.),
-        law.bond_threshold(),
-        Bonds{"",
-              field(parameters.law.stiffness),
-              field(parameters.law.threshold)},
-        boundaries);
+      return std::make_unique<BondField<dim>>(law.curvature(0.),
+                                              law.bond_threshold(),
+                                              Bonds{"",
+                                                    field(given.law.stiffness),
+                                                    field(given.law.threshold)},
+                                              boundaries);
     }
 
 
@@ -388,40 +387,46 @@ namespace Debond
 
 
   template <int dim>
-  Scene<dim>::Scene(const Parameters &parameters, const MatrixStorage storage)
-    : Scene(parameters,
-            std::dynamic_pointer_cast<const Body<dim>>(parameters.body),
-            storage)
+  Scene<dim>::Scene(const ProblemParameters &given,
+                    const MatrixStorage      storage,
+                    const std::string       &start)
+    : Scene(given,
+            std::dynamic_pointer_cast<const Body<dim>>(given.body),
+            storage,
+            start)
   {}
 
 
 
   template <int dim>
-  Scene<dim>::Scene(const Parameters                &parameters,
-                    std::shared_ptr<const Body<dim>> body,
-                    const MatrixStorage              storage)
-    : Scene(parameters, std::move(body), storage, nullptr, MPI_COMM_NULL)
-  {}
-
-
-
-  template <int dim>
-  Scene<dim>::Scene(const Parameters                    &parameters,
-                    std::shared_ptr<const BoxPiece<dim>> piece,
-                    const MPI_Comm                       ranks)
-    : Scene(parameters, piece, MatrixStorage::serial, piece.get(), ranks)
-  {}
-
-
-
-  template <int dim>
-  Scene<dim>::Scene(const Parameters                &parameters,
+  Scene<dim>::Scene(const ProblemParameters         &given,
                     std::shared_ptr<const Body<dim>> body,
                     const MatrixStorage              storage,
+                    const std::string               &start)
+    : Scene(given, std::move(body), storage, start, nullptr, MPI_COMM_NULL)
+  {}
+
+
+
+  template <int dim>
+  Scene<dim>::Scene(const ProblemParameters             &given,
+                    std::shared_ptr<const BoxPiece<dim>> piece,
+                    const MPI_Comm                       ranks)
+    : Scene(given, piece, MatrixStorage::serial, "", piece.get(), ranks)
+  {}
+
+
+
+  template <int dim>
+  Scene<dim>::Scene(const ProblemParameters         &given,
+                    std::shared_ptr<const Body<dim>> body,
+                    const MatrixStorage              storage,
+                    const std::string               &start,
                     const BoxPiece<dim>             *box_piece,
                     const MPI_Comm                   ranks)
-    : elastic_body(std::move(body))
-    , body_materials(parameters.materials.everywhere)
+    : given(given)
+    , elastic_body(std::move(body))
+    , body_materials(given.materials.everywhere)
   {
     BoundaryNames boundaries;
     dealii::Timer timer;
@@ -436,10 +441,9 @@ namespace Debond
       catch (const std::invalid_argument &error)
         {
           if (const auto *load = dynamic_cast<const LoadError *>(&error))
-            entry =
-              load->boundary ?
-                traction_entry(parameters.loads, boundaries, *load->boundary) :
-                "Loads/Body force";
+            entry = load->boundary ?
+                      traction_entry(given.loads, boundaries, *load->boundary) :
+                      "Loads/Body force";
           if (dynamic_cast<const TemperatureError *>(&error) != nullptr)
             entry = "Loads/Temperature change";
           if (const auto *piece = dynamic_cast<const PieceError *>(&error))
@@ -447,7 +451,7 @@ namespace Debond
           if (const auto *part = dynamic_cast<const PartError *>(&error))
             entry = "Parts/" + part->part;
           if (const auto *support = dynamic_cast<const SupportError *>(&error))
-            entry = entry_of(*support, parameters.supports);
+            entry = entry_of(*support, given.supports);
           if (const auto *probe = dynamic_cast<const ProbeError *>(&error))
             entry = "Probes/" + probe->probe;
           if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))
@@ -456,11 +460,10 @@ namespace Debond
                                                "Contact law/Bond threshold" :
                                                "Contact law/Bond stiffness";
               entry                        = everywhere + ' ' + bonds->boundary;
-              if (parameters.locations.count(entry) == 0)
+              if (given.locations.count(entry) == 0)
                 entry = everywhere;
             }
-          return parameters.locations.at(entry) + ": " + entry + ": " +
-                 error.what();
+          return given.locations.at(entry) + ": " + entry + ": " + error.what();
         }
     };
 
@@ -473,9 +476,8 @@ namespace Debond
           throw BadInput({error});
     };
 
-    throw_error_of_any(attempt([&]() {
-      add_problem(parameters, storage, box_piece, boundaries, entry);
-    }));
+    throw_error_of_any(
+      attempt([&]() { add_problem(storage, box_piece, boundaries, entry); }));
     if (box_piece != nullptr)
       problem_piece =
         std::make_unique<const ProblemPiece<dim>>(*box_piece,
@@ -483,9 +485,9 @@ namespace Debond
                                                   ranks);
     throw_error_of_any(attempt([&]() {
       entry = "Contact law/Quadrature";
-      add_contact(parameters, storage);
+      add_contact(storage);
       entry = "Solver/Euclidean bundle/Start";
-      add_start(parameters);
+      add_start(start);
     }));
     seconds_for_assembly = timer.wall_time() - seconds_for_mesh;
   }
@@ -494,8 +496,7 @@ namespace Debond
 
   template <int dim>
   void
-  Scene<dim>::add_problem(const Parameters    &parameters,
-                          const MatrixStorage  storage,
+  Scene<dim>::add_problem(const MatrixStorage  storage,
                           const BoxPiece<dim> *box_piece,
                           BoundaryNames       &boundaries,
                           std::string         &entry)
@@ -507,28 +508,27 @@ namespace Debond
     seconds_for_mesh       = timer.wall_time();
 
     entry               = "Boundary conditions/Clamped boundaries";
-    boundary_conditions = make_conditions(parameters, boundaries);
-    body_supports       = make_supports<dim>(parameters, boundary_conditions);
+    boundary_conditions = make_conditions(given, boundaries);
+    body_supports       = make_supports<dim>(given, boundary_conditions);
     elastic_problem     = std::make_unique<ElasticProblem<dim>>(
       triangulation,
       boundary_conditions,
       body_supports,
-      parameters.degree,
+      given.degree,
       box_piece == nullptr ? std::vector<unsigned int>() :
                                  node_order(*box_piece, triangulation));
     check_held_vertices(elastic_problem->unknowns(),
-                        displacement_factors(parameters.load_path));
+                        displacement_factors(given.load_path));
     entry                                   = "Material/Poisson ratio";
-    const std::set<std::string> &dead_loads = parameters.load_path.dead_loads;
-    body_loads =
-      make_loads<dim>(parameters.loads, dead_loads, false, boundaries);
+    const std::set<std::string> &dead_loads = given.load_path.dead_loads;
+    body_loads = make_loads<dim>(given.loads, dead_loads, false, boundaries);
     body_dead_loads =
-      make_loads<dim>(parameters.loads, dead_loads, true, boundaries);
+      make_loads<dim>(given.loads, dead_loads, true, boundaries);
     if (box_piece != nullptr)
       for (const auto &[side, id] : box_sides<dim>())
         body_loads.n_faces[id] = body_dead_loads.n_faces[id] =
           box_piece->n_faces_on(side);
-    body_materials = make_materials(parameters.materials, names.regions);
+    body_materials = make_materials(given.materials, names.regions);
     elastic_problem->assemble(body_materials,
                               body_loads,
                               storage,
@@ -539,17 +539,16 @@ namespace Debond
     if (box_piece == nullptr)
       named_probes = Probes<dim>(elastic_problem->unknowns(),
                                  names,
-                                 make_probes<dim>(parameters.probes));
+                                 make_probes<dim>(given.probes));
   }
 
 
 
   template <int dim>
   void
-  Scene<dim>::add_start(const Parameters &parameters)
+  Scene<dim>::add_start(const std::string &file)
   {
-    // A run that restarts has its start already.
-    if (parameters.solver.start.empty() || parameters.checkpoints.restart)
+    if (file.empty())
       {
         const ContactSpace<dim> &contact =
           elastic_problem->unknowns().contact();
@@ -557,23 +556,22 @@ namespace Debond
         contact.add_normal(eigen_view(contact.at_rest()), first_iterate);
       }
     else
-      first_iterate = read_start(parameters.solver.start, *elastic_problem);
+      first_iterate = read_start(file, *elastic_problem);
   }
 
 
 
   template <int dim>
   void
-  Scene<dim>::add_contact(const Parameters   &parameters,
-                          const MatrixStorage storage)
+  Scene<dim>::add_contact(const MatrixStorage storage)
   {
-    adhesive_law = std::make_unique<AdhesiveLaw>(parameters.law.branches);
-    quadrature = std::make_unique<ContactQuadrature<dim>>(parameters.quadrature,
+    adhesive_law = std::make_unique<AdhesiveLaw>(given.law.branches);
+    quadrature   = std::make_unique<ContactQuadrature<dim>>(given.quadrature,
                                                           adhesive_law->kinks(),
-                                                          parameters.degree);
-    if (parameters.law.has_field())
+                                                          given.degree);
+    if (given.law.has_field())
       bond_field =
-        make_bond_field<dim>(parameters, *adhesive_law, boundary_conditions);
+        make_bond_field<dim>(given, *adhesive_law, boundary_conditions);
     adhesion_integral = std::make_unique<AdhesionIntegral<dim>>(
       contact_boundary(), *adhesive_law, *quadrature, bond_field.get());
     // Asks for the bonds at points of its own, where they may be wrong.
@@ -599,6 +597,15 @@ namespace Debond
       make_functional(elastic_problem->matrix());
     else
       make_functional(elastic_problem->trilinos_matrix());
+  }
+
+
+
+  template <int dim>
+  const ProblemParameters &
+  Scene<dim>::parameters() const
+  {
+    return given;
   }
 
 

@@ -38,14 +38,14 @@ namespace Debond
     /// How many times as many cycles as at nu = 1/3 the largest Poisson ratio
     /// takes.
     double
-    more_cycles(const Parameters &parameters)
+    more_cycles(const ProblemParameters &problem)
     {
-      const Material &everywhere = parameters.materials.everywhere;
-      if (parameters.dimension == 2 &&
+      const Material &everywhere = problem.materials.everywhere;
+      if (problem.dimension == 2 &&
           everywhere.hypothesis == Material::Hypothesis::plane_stress)
         return 1.;
       double largest = everywhere.poisson_ratio;
-      for (const auto &[region, material] : parameters.materials.of_regions())
+      for (const auto &[region, material] : problem.materials.of_regions())
         largest = std::max(largest, material.poisson_ratio);
       return std::pow(std::min(1., 3. * (1. - 2. * largest)), -0.4);
     }
@@ -78,12 +78,12 @@ namespace Debond
 
 
   SceneSize
-  scene_size(const Parameters &parameters)
+  scene_size(const ProblemParameters &problem)
   {
-    return scene_size(*parameters.body,
-                      parameters.dimension,
-                      parameters.contact_boundaries,
-                      parameters.degree);
+    return scene_size(*problem.body,
+                      problem.dimension,
+                      problem.contact_boundaries,
+                      problem.degree);
   }
 
 
@@ -126,14 +126,14 @@ namespace Debond
 
 
   double
-  seconds_with_factorisation(const Parameters &parameters)
+  seconds_with_factorisation(const ProblemParameters &problem)
   {
-    const SceneSize       size = scene_size(parameters);
+    const SceneSize       size = scene_size(problem);
     std::array<double, 3> n    = size.shape.cells;
     const double          N    = size.unknowns;
     // In 2D what was measured of bars, strips and pads up to 650000 unknowns
     // and 4000 contact nodes: the factor, and what is done with S.
-    if (parameters.dimension == 2)
+    if (problem.dimension == 2)
       return 3e-7 * std::pow(N, 1.25) +
              2.2e-7 * std::pow(size.contact_nodes, 2.2);
 
@@ -150,25 +150,23 @@ namespace Debond
 
 
   double
-  seconds_with_multigrid(const Parameters &parameters)
+  seconds_with_multigrid(const ProblemParameters &problem)
   {
-    const SceneSize size    = scene_size(parameters);
+    const SceneSize size    = scene_size(problem);
     const double    N       = size.unknowns;
     const auto     &lengths = size.shape.lengths;
     const double    slenderness =
-      *std::max_element(lengths.begin(),
-                        lengths.begin() + parameters.dimension) /
-      *std::min_element(lengths.begin(),
-                        lengths.begin() + parameters.dimension);
-    if (parameters.body->has_coarse_levels())
-      return (parameters.dimension == 2 ? 0.3 + 4e-6 * N : 1.5 + 1.2e-5 * N) *
-             more_cycles(parameters) * std::max(1., slenderness / 50.);
-    if (parameters.dimension == 2)
+      *std::max_element(lengths.begin(), lengths.begin() + problem.dimension) /
+      *std::min_element(lengths.begin(), lengths.begin() + problem.dimension);
+    if (problem.body->has_coarse_levels())
+      return (problem.dimension == 2 ? 0.3 + 4e-6 * N : 1.5 + 1.2e-5 * N) *
+             more_cycles(problem) * std::max(1., slenderness / 50.);
+    if (problem.dimension == 2)
       return 5e-6 * N;
 
     // The cycle has no grip on the bending of thin bodies unless their contact
     // side is held.
-    const double bending = parameters.tangential_displacement_fixed ?
+    const double bending = problem.tangential_displacement_fixed ?
                              1. :
                              std::max(1., slenderness / 1.5);
     return 1e-4 * N * bending;

@@ -12,6 +12,7 @@
 #include <debond/elasticity/multigrid.h>
 #include <debond/elasticity/multigrid_problem.h>
 #include <debond/elasticity/refinement.h>
+#include <debond/input/bad_input.h>
 #include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/bundle/metric_direction.h>
 #include <debond/optimization/majorise/coarse_start.h>
@@ -470,11 +471,11 @@ namespace Debond
 
     template <int dim>
     void
-    solve_by_multigrid(const Parameters     &parameters,
-                       const Scene<dim>     &scene,
-                       const InterruptGuard &guard,
-                       Watch                &watch,
-                       SolveResult          &result);
+    solve_by_multigrid(const SolverParameters &parameters,
+                       const Scene<dim>       &scene,
+                       const InterruptGuard   &guard,
+                       Watch                  &watch,
+                       SolveResult            &result);
 
 
 
@@ -484,7 +485,7 @@ namespace Debond
     /// gets its counts.
     template <int dim>
     Vector
-    solution_on_coarser_mesh(const Parameters         &parameters,
+    solution_on_coarser_mesh(const SolverParameters   &parameters,
                              const Scene<dim>         &scene,
                              const InterruptGuard     &guard,
                              const Watch              &fine_watch,
@@ -494,14 +495,14 @@ namespace Debond
       std::unique_ptr<const Body<dim>> coarse_body = scene.body().coarser();
       if (!coarse_body)
         return Vector(scene.problem().unknowns().n_dofs());
-      Parameters coarse = parameters;
-      coarse.solver.start.clear(); // belongs to the finest mesh
-      coarse.solver.prove = false;
+      SolverParameters coarse = parameters;
+      coarse.prove            = false;
 
-      const bool factorised =
-        scene_size(*coarse_body, dim, coarse.contact_boundaries).unknowns <=
-        largest_coarse_factorisation;
-      const Scene<dim> coarse_scene(coarse,
+      const std::set<std::string> &contact =
+        scene.parameters().contact_boundaries;
+      const bool factorised = scene_size(*coarse_body, dim, contact).unknowns <=
+                              largest_coarse_factorisation;
+      const Scene<dim> coarse_scene(scene.parameters(),
                                     std::move(coarse_body),
                                     factorised ? MatrixStorage::serial :
                                                  MatrixStorage::trilinos);
@@ -509,7 +510,7 @@ namespace Debond
       SolveResult      result;
       if (factorised)
         solve_condensed(SolverMethod::majorise_minimise,
-                        coarse.solver,
+                        coarse,
                         coarse_scene,
                         nullptr,
                         nullptr,
@@ -546,14 +547,14 @@ namespace Debond
     /// to. @p energy is that of what is prescribed, which the problem does not
     /// know.
     void
-    minimise_on_all_unknowns(const Parameters &parameters,
-                             const double      energy,
-                             MajorantProblem  &problem,
-                             Watch            &watch,
-                             SolveResult      &result)
+    minimise_on_all_unknowns(const SolverParameters &parameters,
+                             const double            energy,
+                             MajorantProblem        &problem,
+                             Watch                  &watch,
+                             SolveResult            &result)
     {
       const dealii::Timer timer;
-      add_majorise_result(MajoriseMinimise(parameters.solver.majorise_minimise)
+      add_majorise_result(MajoriseMinimise(parameters.majorise_minimise)
                             .minimize(problem, std::ref(watch)),
                           energy,
                           result);
@@ -564,11 +565,11 @@ namespace Debond
 
     template <int dim>
     void
-    solve_by_multigrid(const Parameters     &parameters,
-                       const Scene<dim>     &scene,
-                       const InterruptGuard &guard,
-                       Watch                &watch,
-                       SolveResult          &result)
+    solve_by_multigrid(const SolverParameters &parameters,
+                       const Scene<dim>       &scene,
+                       const InterruptGuard   &guard,
+                       Watch                  &watch,
+                       SolveResult            &result)
     {
       dealii::Timer timer;
       result.u = solution_on_coarser_mesh(
@@ -625,20 +626,20 @@ namespace Debond
     /// of the level @p last_level > 0, or the start on the finest one.
     template <int dim>
     Vector
-    start_from_levels(const MethodChoice   &choice,
-                      const Parameters     &parameters,
-                      const Scene<dim>     &scene,
-                      ElasticLevels<dim>   &levels,
-                      const unsigned int    last_level,
-                      const InterruptGuard &guard,
-                      const Watch          &fine_watch,
-                      SolveResult          &result)
+    start_from_levels(const MethodChoice     &choice,
+                      const SolverParameters &parameters,
+                      const Scene<dim>       &scene,
+                      ElasticLevels<dim>     &levels,
+                      const unsigned int      last_level,
+                      const InterruptGuard   &guard,
+                      const Watch            &fine_watch,
+                      SolveResult            &result)
     {
       std::shared_ptr<const Body<dim>> body = scene.body().coarser();
       unsigned int                     l    = 1;
-      for (; body &&
-             scene_size(*body, dim, parameters.contact_boundaries).unknowns >
-               largest_coarse_factorisation;
+      for (;
+           body && scene_size(*body, dim, scene.parameters().contact_boundaries)
+                       .unknowns > largest_coarse_factorisation;
            ++l)
         body = body->coarser();
 
@@ -646,16 +647,17 @@ namespace Debond
       const bool is_solved = body != nullptr;
       if (is_solved)
         {
-          Parameters coarse = parameters;
-          coarse.solver.start.clear(); // belongs to the finest mesh
-          coarse.solver.prove = false;
-          const Scene<dim> coarse_scene(coarse, body, MatrixStorage::serial);
+          SolverParameters coarse = parameters;
+          coarse.prove            = false;
+          const Scene<dim> coarse_scene(scene.parameters(),
+                                        body,
+                                        MatrixStorage::serial);
           // A piece does not know what holds the whole.
           check_supports_of_method(choice, parameters, coarse_scene);
           Watch       watch(guard, fine_watch);
           SolveResult start;
           solve_condensed(SolverMethod::majorise_minimise,
-                          coarse.solver,
+                          coarse,
                           coarse_scene,
                           nullptr,
                           nullptr,
@@ -693,7 +695,7 @@ namespace Debond
         }
 
       MajoriseMinimiseParameters coarse_parameters =
-        parameters.solver.majorise_minimise;
+        parameters.majorise_minimise;
       coarse_parameters.tolerance =
         std::max(coarse_parameters.tolerance, coarse_level_tolerance);
       const unsigned int solved_level = is_solved ? l : levels.n_levels();
@@ -728,13 +730,13 @@ namespace Debond
     /// The same where ranks share the finest level: the root has the others.
     template <int dim>
     Vector
-    start_from_root(const MethodChoice   &choice,
-                    const Parameters     &parameters,
-                    const Scene<dim>     &scene,
-                    ElasticLevels<dim>   &levels,
-                    const InterruptGuard &guard,
-                    const Watch          &fine_watch,
-                    SolveResult          &result)
+    start_from_root(const MethodChoice     &choice,
+                    const SolverParameters &parameters,
+                    const Scene<dim>       &scene,
+                    ElasticLevels<dim>     &levels,
+                    const InterruptGuard   &guard,
+                    const Watch            &fine_watch,
+                    SolveResult            &result)
     {
       Vector                   u;
       std::vector<std::string> errors;
@@ -769,16 +771,16 @@ namespace Debond
     /// The search on coarser meshes knows fronts to the size of their elements.
     template <int dim>
     void
-    improve_fronts(const Parameters &parameters,
-                   const Scene<dim> &scene,
-                   const double      energy,
-                   MajorantProblem  &problem,
-                   Watch            &watch,
-                   SolveResult      &result)
+    improve_fronts(const SolverParameters &parameters,
+                   const Scene<dim>       &scene,
+                   const double            energy,
+                   MajorantProblem        &problem,
+                   Watch                  &watch,
+                   SolveResult            &result)
     {
       if (scene.law().curvature(0.) == 0.)
         return;
-      const MajoriseMinimise method(parameters.solver.majorise_minimise);
+      const MajoriseMinimise method(parameters.majorise_minimise);
       WhichMinimum          &minimum = result.minimum;
       for (unsigned int round = 1; can_be_verified(result.status); ++round)
         {
@@ -809,12 +811,12 @@ namespace Debond
     /// majorant.
     template <int dim>
     void
-    solve_by_levels(const MethodChoice   &choice,
-                    const Parameters     &parameters,
-                    const Scene<dim>     &scene,
-                    const InterruptGuard &guard,
-                    Watch                &watch,
-                    SolveResult          &result)
+    solve_by_levels(const MethodChoice     &choice,
+                    const SolverParameters &parameters,
+                    const Scene<dim>       &scene,
+                    const InterruptGuard   &guard,
+                    Watch                  &watch,
+                    SolveResult            &result)
     {
       dealii::Timer timer;
       const double  energy =
@@ -849,7 +851,7 @@ namespace Debond
       LevelCorrection<dim> solver(*levels);
       minimise_on_all_unknowns(parameters, energy, problem, watch, result);
       // Windows are cut out of a whole mesh.
-      if (wants_search(parameters.solver) && scene.piece() == nullptr)
+      if (wants_search(parameters) && scene.piece() == nullptr)
         improve_fronts(parameters, scene, energy, problem, watch, result);
       refine_result(scene, solver, watch, result);
     }
@@ -859,17 +861,18 @@ namespace Debond
 
   template <int dim>
   void
-  check_supports_of_method(const MethodChoice &choice,
-                           const Parameters   &parameters,
-                           const Scene<dim>   &scene)
+  check_supports_of_method(const MethodChoice     &choice,
+                           const SolverParameters &parameters,
+                           const Scene<dim>       &scene)
   {
     const std::vector<std::string> &motions =
       scene.problem().unknowns().held_by_contact().names;
     if (motions.empty())
       return;
-    const auto refuse = [&](const std::string &entry,
+    const ProblemParameters &problem = scene.parameters();
+    const auto               refuse  = [&](const std::string &entry,
                             const std::string &wanted) {
-      throw BadInput({parameters.scene + ": Solver/" + entry +
+      throw BadInput({problem.scene + ": Solver/" + entry +
                       ": only bonds and the foundation hold the body (" +
                       join(motions, ", ") + "), which needs " + wanted});
     };
@@ -878,16 +881,16 @@ namespace Debond
     if (choice.linear_solver != LinearSolver::direct)
       refuse("Linear solver",
              "the Schur complement of a factorisation: direct");
-    if (parameters.solver.prove)
+    if (parameters.prove)
       refuse("Prove",
              "false: J may fall without end, and then there is no global "
              "minimum");
-    if (parameters.solver.search == BondSearchChoice::quick ||
-        parameters.solver.search == BondSearchChoice::full)
+    if (parameters.search == BondSearchChoice::quick ||
+        parameters.search == BondSearchChoice::full)
       refuse("Search", "none: J may fall without end");
-    if (!parameters.load_path.factors.empty() &&
-        parameters.load_path.global_branch == GlobalBranch::prove)
-      throw BadInput({parameters.scene +
+    if (!problem.load_path.factors.empty() &&
+        problem.load_path.global_branch == GlobalBranch::prove)
+      throw BadInput({problem.scene +
                       ": Load path/Global branch: only bonds and the "
                       "foundation hold the body (" +
                       join(motions, ", ") +
@@ -910,13 +913,13 @@ namespace Debond
 
   template <int dim>
   SolveResult
-  solve(const MethodChoice &choice,
-        const Parameters   &parameters,
-        const Scene<dim>   &scene,
-        std::ostream       &out,
-        const bool          terminal,
-        Checkpoints        *checkpoints,
-        const Vector       *start)
+  solve(const MethodChoice     &choice,
+        const SolverParameters &parameters,
+        const Scene<dim>       &scene,
+        std::ostream           *out,
+        const bool              terminal,
+        Checkpoints            *checkpoints,
+        const Vector           *start)
   {
     SolveResult result;
     {
@@ -925,27 +928,22 @@ namespace Debond
                                      MPI_COMM_NULL :
                                      scene.piece()->nodes().communicator();
       const bool           is_logged =
-        parameters.output.machine_details &&
+        out != nullptr &&
         (scene.piece() == nullptr ||
          dealii::Utilities::MPI::this_mpi_process(ranks) == 0);
       const auto watch =
-        is_logged ? std::make_unique<Watch>(guard, out, terminal, ranks) :
+        is_logged ? std::make_unique<Watch>(guard, *out, terminal, ranks) :
                     std::make_unique<Watch>(guard, ranks);
       if (choice.method == SolverMethod::euclidean_bundle)
         solve_by_euclidean_bundle(
-          parameters.solver.bundle, scene, checkpoints, *watch, result);
+          parameters.bundle, scene, checkpoints, *watch, result);
       else if (choice.has_levels)
         solve_by_levels(choice, parameters, scene, guard, *watch, result);
       else if (choice.linear_solver == LinearSolver::multigrid)
         solve_by_multigrid(parameters, scene, guard, *watch, result);
       else
-        solve_condensed(choice.method,
-                        parameters.solver,
-                        scene,
-                        checkpoints,
-                        start,
-                        *watch,
-                        result);
+        solve_condensed(
+          choice.method, parameters, scene, checkpoints, start, *watch, result);
     }
     if (choice.linear_solver != LinearSolver::direct)
       result.minimum.kind = kind_without_search(scene.law(),
@@ -961,28 +959,28 @@ namespace Debond
 
   template void
   check_supports_of_method(const MethodChoice &,
-                           const Parameters &,
+                           const SolverParameters &,
                            const Scene<2> &);
   template void
   check_supports_of_method(const MethodChoice &,
-                           const Parameters &,
+                           const SolverParameters &,
                            const Scene<3> &);
 
 
 
   template SolveResult
   solve(const MethodChoice &,
-        const Parameters &,
+        const SolverParameters &,
         const Scene<2> &,
-        std::ostream &,
+        std::ostream *,
         const bool,
         Checkpoints *,
         const Vector *);
   template SolveResult
   solve(const MethodChoice &,
-        const Parameters &,
+        const SolverParameters &,
         const Scene<3> &,
-        std::ostream &,
+        std::ostream *,
         const bool,
         Checkpoints *,
         const Vector *);

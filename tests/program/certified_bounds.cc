@@ -194,8 +194,9 @@ namespace
   SolveResult
   solution(const Parameters &parameters, const Scene<2> &scene)
   {
-    std::ostringstream log;
-    return solve(choose_method(parameters), parameters, scene, log, false);
+    return solve(choose_method(parameters, parameters.solver),
+                 parameters.solver,
+                 scene);
   }
 
 

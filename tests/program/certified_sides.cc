@@ -23,10 +23,12 @@ namespace
   dealii::Vector<double>
   solution(const Values &values)
   {
-    const Parameters   parameters = parameters_of(values);
-    const Scene<2>     scene(parameters);
-    std::ostringstream log;
-    return solve(choose_method(parameters), parameters, scene, log, false).u;
+    const Parameters parameters = parameters_of(values);
+    const Scene<2>   scene(parameters);
+    return solve(choose_method(parameters, parameters.solver),
+                 parameters.solver,
+                 scene)
+      .u;
   }
 
 

@@ -40,11 +40,11 @@ namespace
     for (const std::string &assignment : assignments)
       table.assign(assignment);
     const Parameters   parameters = table.parameters("benchmark.prm");
-    const MethodChoice choice     = choose_method(parameters);
-    const Scene<2>     scene(parameters, matrix_storage(choice));
-    std::ostringstream log;
-    Run                run;
-    run.result = solve(choice, parameters, scene, log, false);
+    const MethodChoice choice =
+      choose_method(parameters, parameters.solver, parameters.accuracy);
+    const Scene<2> scene(parameters, matrix_storage(choice));
+    Run            run;
+    run.result = solve(choice, parameters.solver, scene);
     run.verification =
       verify(scene.problem(), scene.adhesion(), scene.law(), run.result.u);
     return run;

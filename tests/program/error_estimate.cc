@@ -35,8 +35,9 @@ namespace
       : parameters(p)
       , scene(parameters)
     {
-      std::ostringstream log;
-      result = solve(choose_method(parameters), parameters, scene, log, false);
+      result   = solve(choose_method(parameters, parameters.solver),
+                     parameters.solver,
+                     scene);
       estimate = estimate_error(scene.problem(),
                                 scene.adhesion(),
                                 scene.conditions(),
@@ -236,19 +237,30 @@ namespace
   void
   check_refinement(const std::string &name, const Values &values)
   {
-    const Parameters           parameters = parameters_of(values);
-    const MethodChoice         choice     = choose_method(parameters);
+    const Parameters   parameters = parameters_of(values);
+    const MethodChoice choice =
+      choose_method(parameters, parameters.solver, parameters.accuracy);
     std::vector<AdaptiveLevel> levels;
     const auto                 report = [&](const AdaptiveLevel &level) {
       levels.push_back(level);
     };
     const auto follow = [&](auto scene) {
-      return solve_adaptively(choice, parameters, report, scene);
+      return solve_adaptively(choice,
+                              parameters.solver,
+                              parameters.accuracy,
+                              parameters.certificate.kind,
+                              parameters.verification.tolerance,
+                              report,
+                              scene);
     };
     const AdaptiveResult result =
       parameters.dimension == 2 ?
-        follow(make_first_scene<2>(parameters, matrix_storage(choice))) :
-        follow(make_first_scene<3>(parameters, matrix_storage(choice)));
+        follow(make_first_scene<2>(parameters,
+                                   parameters.accuracy,
+                                   matrix_storage(choice))) :
+        follow(make_first_scene<3>(parameters,
+                                   parameters.accuracy,
+                                   matrix_storage(choice)));
 
     bool falls = true, is_estimated = true, grows = true;
     for (unsigned int k = 1; k < levels.size(); ++k)
@@ -359,7 +371,10 @@ $EndElements
                            "Loads/Body force=0; 0; 1",
                            "Accuracy/Target=1e-2"};
     print_error([&] {
-      make_first_scene<3>(parameters_of(values), MatrixStorage::serial);
+      const Parameters parameters = parameters_of(values);
+      make_first_scene<3>(parameters,
+                          parameters.accuracy,
+                          MatrixStorage::serial);
     });
   }
 } // namespace

@@ -38,11 +38,11 @@ namespace
   void
   test(const std::string &name, const Values &values, const int shift)
   {
-    const Parameters   searching = parameters_of(values);
-    const Scene<dim>   scene(searching);
-    std::ostringstream log;
-    const SolveResult  best =
-      solve(choose_method(searching), searching, scene, log, false);
+    const Parameters  searching = parameters_of(values);
+    const Scene<dim>  scene(searching);
+    const SolveResult best = solve(choose_method(searching, searching.solver),
+                                   searching.solver,
+                                   scene);
 
     // The patches of broken bonds grow by some nodes, or shrink.
     const auto             &contact = scene.problem().unknowns().contact();
@@ -62,10 +62,10 @@ namespace
     const Parameters following =
       parameters_of(with(values, {"Solver/Search=none"}));
     const auto follow = [&](const Vector &start) {
-      return solve(choose_method(following),
-                   following,
+      return solve(choose_method(following, following.solver),
+                   following.solver,
                    scene,
-                   log,
+                   nullptr,
                    false,
                    nullptr,
                    &start);

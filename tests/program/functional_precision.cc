@@ -255,10 +255,10 @@ namespace
     for (const std::string &assignment : assignments)
       table.assign(assignment);
     const Parameters   parameters = table.parameters("benchmark.prm");
-    const MethodChoice choice     = choose_method(parameters);
-    const Scene<2>     scene(parameters, matrix_storage(choice));
-    std::ostringstream log;
-    const SolveResult  result = solve(choice, parameters, scene, log, false);
+    const MethodChoice choice =
+      choose_method(parameters, parameters.solver, parameters.accuracy);
+    const Scene<2>    scene(parameters, matrix_storage(choice));
+    const SolveResult result = solve(choice, parameters.solver, scene);
 
     const ExtendedMinimum minimum =
       extended_minimum(parameters, scene, result.u);

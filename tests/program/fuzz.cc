@@ -523,7 +523,8 @@ subsection Loads
         std::istringstream input(scene);
         table.read(input, "fuzz.prm");
         Parameters         parameters = table.parameters("fuzz.prm");
-        const MethodChoice choice     = choose_method(parameters);
+        const MethodChoice choice =
+          choose_method(parameters, parameters.solver, parameters.accuracy);
         ++counts.read;
         is_read = true;
         if (scene_size(parameters).unknowns > largest_scene_to_solve)

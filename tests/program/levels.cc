@@ -79,10 +79,11 @@ namespace
              const bool        compare)
   {
     Outcome            outcome = {};
-    const MethodChoice choice  = choose_method(parameters);
-    const Scene<dim>   scene(parameters, matrix_storage(choice));
-    const auto        &problem = scene.problem();
-    dealii::Timer      timer;
+    const MethodChoice choice =
+      choose_method(parameters, parameters.solver, parameters.accuracy);
+    const Scene<dim> scene(parameters, matrix_storage(choice));
+    const auto      &problem = scene.problem();
+    dealii::Timer    timer;
     {
       const auto levels = ElasticLevels<dim>::make(scene.body(), problem);
       dealii::Vector<double> u(problem.unknowns().n_dofs());
@@ -100,9 +101,8 @@ namespace
     }
     outcome.linear_seconds = timer.cpu_time();
 
-    std::ostringstream log;
     timer.restart();
-    outcome.result  = solve(choice, parameters, scene, log, false);
+    outcome.result  = solve(choice, parameters.solver, scene);
     outcome.seconds = timer.cpu_time();
     outcome.law_violation =
       verify(problem, scene.adhesion(), scene.law(), outcome.result.u).error();
@@ -111,13 +111,14 @@ namespace
 
     if (!compare)
       return outcome;
-    const SolveResult direct = solve(choose_method(direct_parameters),
-                                     direct_parameters,
-                                     scene,
-                                     log,
-                                     false,
-                                     nullptr,
-                                     &outcome.result.u);
+    const SolveResult direct =
+      solve(choose_method(direct_parameters, direct_parameters.solver),
+            direct_parameters.solver,
+            scene,
+            nullptr,
+            false,
+            nullptr,
+            &outcome.result.u);
     outcome.J_error =
       std::abs(outcome.result.functional / direct.functional - 1.);
     const auto s = problem.unknowns().contact().trace(outcome.result.u);

@@ -70,7 +70,8 @@ namespace
   follow(const std::vector<std::string> &assignments)
   {
     const Parameters   parameters = parameters_of(assignments);
-    const MethodChoice choice     = choose_method(parameters);
+    const MethodChoice choice =
+      choose_method(parameters, parameters.solver, parameters.accuracy);
     return follow<dim>(parameters,
                        Scene<dim>(parameters, matrix_storage(choice)));
   }
@@ -588,10 +589,10 @@ namespace
     std::cout << "One factor\n";
     const Path<2>    path   = follow<2>(benchmark({"Load path/Factors=1"}));
     const Parameters single = parameters_of(benchmark({"Solver/Search=none"}));
-    const MethodChoice     choice = choose_method(single);
+    const MethodChoice choice =
+      choose_method(single, single.solver, single.accuracy);
     const Scene<2>         scene(single, matrix_storage(choice));
-    std::ostringstream     log;
-    const SolveResult      result = solve(choice, single, scene, log, false);
+    const SolveResult      result     = solve(choice, single.solver, scene);
     dealii::Vector<double> difference = result.u;
     difference -= path.result.u;
     check("  the same number of iterations as a single run",
@@ -814,12 +815,18 @@ namespace
     refined.push_back("Accuracy/Target=" + std::to_string(target));
     refined.emplace_back("Solver/Method=automatic");
     const Parameters   parameters = parameters_of(refined);
-    const MethodChoice choice     = choose_method(parameters);
-    auto mesh = make_first_scene<2>(parameters, matrix_storage(choice));
+    const MethodChoice choice =
+      choose_method(parameters, parameters.solver, parameters.accuracy);
+    auto                       mesh = make_first_scene<2>(parameters,
+                                    parameters.accuracy,
+                                    matrix_storage(choice));
     std::vector<AdaptiveLevel> levels;
     const AdaptiveResult       result = solve_adaptively<2>(
       choice,
-      parameters,
+      parameters.solver,
+      parameters.accuracy,
+      parameters.certificate.kind,
+      parameters.verification.tolerance,
       [&](const AdaptiveLevel &level) { levels.push_back(level); },
       mesh);
     check("  no shortfall", result.shortfall.empty());

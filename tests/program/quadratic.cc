@@ -25,8 +25,9 @@ namespace
       : parameters(parameters_of(values))
       , scene(parameters)
     {
-      std::ostringstream log;
-      result = solve(choose_method(parameters), parameters, scene, log, false);
+      result = solve(choose_method(parameters, parameters.solver),
+                     parameters.solver,
+                     scene);
       error  = verify(scene.problem(), scene.adhesion(), scene.law(), result.u)
                 .error();
       estimate = estimate_error(scene.problem(),
@@ -278,13 +279,19 @@ namespace
   void
   check_loop(const std::string &name, const Values &values)
   {
-    const Parameters           parameters = parameters_of(values);
-    const MethodChoice         choice     = choose_method(parameters);
+    const Parameters   parameters = parameters_of(values);
+    const MethodChoice choice =
+      choose_method(parameters, parameters.solver, parameters.accuracy);
     std::vector<AdaptiveLevel> levels;
-    auto scene = make_first_scene<2>(parameters, matrix_storage(choice));
-    const AdaptiveResult result = solve_adaptively(
+    auto                       scene  = make_first_scene<2>(parameters,
+                                     parameters.accuracy,
+                                     matrix_storage(choice));
+    const AdaptiveResult       result = solve_adaptively(
       choice,
-      parameters,
+      parameters.solver,
+      parameters.accuracy,
+      parameters.certificate.kind,
+      parameters.verification.tolerance,
       [&](const AdaptiveLevel &level) { levels.push_back(level); },
       scene);
     bool falls = true, is_held = true;

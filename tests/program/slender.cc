@@ -237,10 +237,10 @@ namespace
     for (const std::string &assignment : assignments)
       table.assign(assignment);
     const Parameters   parameters = table.parameters("strip.prm");
-    const MethodChoice choice     = choose_method(parameters);
-    const Scene<dim>   scene(parameters, matrix_storage(choice));
-    std::ostringstream log;
-    const SolveResult  result = solve(choice, parameters, scene, log, false);
+    const MethodChoice choice =
+      choose_method(parameters, parameters.solver, parameters.accuracy);
+    const Scene<dim>  scene(parameters, matrix_storage(choice));
+    const SolveResult result = solve(choice, parameters.solver, scene);
 
     const dealii::Vector<double> reference =
       extended_minimiser(parameters, scene, result.u);

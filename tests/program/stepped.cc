@@ -89,10 +89,10 @@ namespace
       const std::vector<std::string> &others)
   {
     const Parameters   parameters = parameters_of(scene, others);
-    const MethodChoice choice     = choose_method(parameters);
-    const Scene<2>     mesh(parameters, matrix_storage(choice));
-    std::ostringstream log;
-    return solve(choice, parameters, mesh, log, false);
+    const MethodChoice choice =
+      choose_method(parameters, parameters.solver, parameters.accuracy);
+    const Scene<2> mesh(parameters, matrix_storage(choice));
+    return solve(choice, parameters.solver, mesh);
   }
 
 
@@ -173,7 +173,8 @@ namespace
       parameters_of(small,
                     {"Load path/Factors=0:0.1:2, 2:-0.1:0.5",
                      "Load path/Global branch=prove"});
-    const MethodChoice           choice = choose_method(parameters);
+    const MethodChoice choice =
+      choose_method(parameters, parameters.solver, parameters.accuracy);
     const Scene<2>               scene(parameters, matrix_storage(choice));
     std::vector<LoadPathStep<2>> steps, arc;
     const SolveResult            result = follow_load_path<2>(

@@ -260,11 +260,12 @@ namespace
     c.entries.push_back(
       text("Contact law/Bond stiffness=", stiffness * random.log10(-2.5, 1.)));
 
-    const Parameters   parameters = read(c.entries);
-    const Scene<dim>   scene(parameters, MatrixStorage::serial);
-    std::ostringstream log;
-    const SolveResult  result =
-      solve(choose_method(parameters), parameters, scene, log, false);
+    const Parameters  parameters = read(c.entries);
+    const Scene<dim>  scene(parameters, MatrixStorage::serial);
+    const SolveResult result =
+      solve(choose_method(parameters, parameters.solver),
+            parameters.solver,
+            scene);
     ++counts.scenes;
     if (result.status != SolverStatus::success)
       {

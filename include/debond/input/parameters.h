@@ -3,38 +3,20 @@
 #define debond_input_parameters_h
 
 #include <debond/base/parameter_table.h>
-#include <debond/contact/law.h>
-#include <debond/contact/quadrature.h>
 #include <debond/input/accuracy_parameters.h>
+#include <debond/input/bad_input.h>
 #include <debond/input/certificate_parameters.h>
-#include <debond/input/load_parameters.h>
-#include <debond/input/load_path_parameters.h>
-#include <debond/input/material_parameters.h>
 #include <debond/input/output_parameters.h>
+#include <debond/input/problem_parameters.h>
 #include <debond/input/solver_parameters.h>
-#include <debond/input/support_parameters.h>
 #include <debond/mesh/make_body.h>
 
 #include <map>
-#include <memory>
-#include <set>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace Debond
 {
-  /// A command line or a scene that cannot be used: one line an error.
-  class BadInput : public std::invalid_argument
-  {
-  public:
-    explicit BadInput(const std::vector<std::string> &errors);
-
-    const std::vector<std::string> lines;
-  };
-
-
-
   struct VerificationParameters
   {
     /// Largest Verification::error() of a result that counts.
@@ -46,33 +28,15 @@ namespace Debond
 
 
 
-  /// A scene: what each module is given.
-  struct Parameters
+  /// A scene: the problem, and what each module is given.
+  struct Parameters : ProblemParameters
   {
-    std::string                            scene; ///< path of the file
-    unsigned int                           dimension = 2;
-    std::shared_ptr<const BodyDescription> body;
-    unsigned int                           degree = 1; ///< of displacements
-    MaterialParameters                     materials;
-    std::set<std::string> clamped_boundaries            = {"left", "right"};
-    std::set<std::string> contact_boundaries            = {"bottom"};
-    bool                  tangential_displacement_fixed = true;
-
-    /// By the names of contact boundaries: "fixed" or "free".
-    std::map<std::string, std::string> tangential_displacements;
-    SupportParameters                  supports;
-    LoadParameters                     loads;
-    LoadPathParameters                 load_path;
-    std::map<std::string, std::string> probes; ///< texts by name
-    ContactLawParameters               law;
-    ContactQuadratureParameters        quadrature;
-    std::string                        quadrature_name = "nodal";
-    SolverParameters                   solver;
-    CheckpointParameters               checkpoints;
-    AccuracyParameters                 accuracy;
-    VerificationParameters             verification;
-    CertificateParameters              certificate;
-    OutputParameters                   output;
+    SolverParameters       solver;
+    CheckpointParameters   checkpoints;
+    AccuracyParameters     accuracy;
+    VerificationParameters verification;
+    CertificateParameters  certificate;
+    OutputParameters       output;
 
     /// The scene with all entries that it leaves to their defaults.
     std::string effective_scene;
@@ -80,8 +44,13 @@ namespace Debond
     /// What is odd in the scene, for its user.
     std::vector<std::string> notes;
 
-    /// Where entries were set, by path.
-    std::map<std::string, std::string> locations;
+    /// File with the first iterate, empty for that at rest. A run that restarts
+    /// has its own.
+    std::string
+    start_file() const
+    {
+      return checkpoints.restart ? "" : solver.start;
+    }
   };
 
 

@@ -2,7 +2,6 @@
 #ifndef debond_output_report_h
 #define debond_output_report_h
 
-#include <debond/input/parameters.h>
 #include <debond/output/record.h>
 #include <debond/output/run_result.h>
 #include <debond/solve/method_choice.h>
@@ -14,12 +13,13 @@
 
 namespace Debond
 {
-  /// Program, scene, size of the problem and method.
+  /// Program, scene, size of the problem and method, @p bundle_weight being the
+  /// u_k of the Euclidean one.
   template <int dim>
   void
-  report_problem(const Parameters   &parameters,
-                 const Scene<dim>   &scene,
+  report_problem(const Scene<dim>   &scene,
                  const MethodChoice &choice,
+                 const double        bundle_weight,
                  Record             &record);
 
   /// A mesh of a loop that refines, as the @p number-th one, when it is done.
@@ -35,8 +35,7 @@ namespace Debond
   /// Status, result and verification.
   template <int dim>
   void
-  report_result(const Parameters     &parameters,
-                const Scene<dim>     &scene,
+  report_result(const Scene<dim>     &scene,
                 const MethodChoice   &choice,
                 const RunResult<dim> &result,
                 Record               &record);

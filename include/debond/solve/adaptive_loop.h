@@ -3,6 +3,8 @@
 #define debond_solve_adaptive_loop_h
 
 #include <debond/check/error_estimate.h>
+#include <debond/input/accuracy_parameters.h>
+#include <debond/input/certificate_parameters.h>
 #include <debond/solve/certificate.h>
 #include <debond/solve/load_path_steps.h>
 #include <debond/solve/scene.h>
@@ -54,25 +56,33 @@ namespace Debond
     std::string shortfall;
   };
 
-  /// The scene on the first mesh, which can be refined if its parameters ask
-  /// for it. Throws as Scene does, and BadInput if the mesh cannot be refined.
+  /// The scene on the first mesh, which can be refined if @p accuracy asks for
+  /// it, with @p start as of Scene. Throws as Scene does, and BadInput if the
+  /// mesh cannot be refined.
   template <int dim>
   std::shared_ptr<const Scene<dim>>
-  make_first_scene(const Parameters &parameters, const MatrixStorage storage);
+  make_first_scene(const ProblemParameters  &problem,
+                   const AccuracyParameters &accuracy,
+                   const MatrixStorage       storage,
+                   const std::string        &start = "");
 
   /// Solves the scene of make_first_scene(), and again and again on a mesh that
   /// is refined where the estimate is large, or with Certificate/Target the
   /// parts of the gap, from the state before; with the search that the scene
   /// wants on each. A load path is followed on each mesh, without its global
   /// branch and its arc, for the estimate of the factor that has the largest
-  /// one relative to its J; the result is that of the last factor, and @p path
-  /// gets all, unless it is null; where the body comes off on the way, the
-  /// factors before that count. @p scene becomes that of the result, the last
-  /// mesh on which there is one. @p report gets each level when it is done.
+  /// one relative to its J, verified with @p tolerance; the result is that of
+  /// the last factor, and @p path gets all, unless it is null; where the body
+  /// comes off on the way, the factors before that count. @p scene becomes that
+  /// of the result, the last mesh on which there is one. @p report gets each
+  /// level when it is done.
   template <int dim>
   AdaptiveResult
-  solve_adaptively(const MethodChoice                               &choice,
-                   const Parameters                                 &parameters,
+  solve_adaptively(const MethodChoice       &choice,
+                   const SolverParameters   &solver,
+                   const AccuracyParameters &accuracy,
+                   const CertificateKind     certificate,
+                   const double              tolerance,
                    const std::function<void(const AdaptiveLevel &)> &report,
                    std::shared_ptr<const Scene<dim>>                &scene,
                    FollowedPath<dim> *path = nullptr);

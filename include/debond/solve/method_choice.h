@@ -2,7 +2,9 @@
 #ifndef debond_solve_method_choice_h
 #define debond_solve_method_choice_h
 
-#include <debond/input/parameters.h>
+#include <debond/input/accuracy_parameters.h>
+#include <debond/input/problem_parameters.h>
+#include <debond/input/solver_parameters.h>
 
 #include <string>
 
@@ -49,7 +51,9 @@ namespace Debond
   /// asks for a method and a linear solver that do not go together, or if the
   /// memory that is needed exceeds the limit.
   MethodChoice
-  choose_method(const Parameters &parameters);
+  choose_method(const ProblemParameters  &problem,
+                const SolverParameters   &solver,
+                const AccuracyParameters &accuracy = {});
 
 
 

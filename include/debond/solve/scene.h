@@ -8,7 +8,7 @@
 #include <debond/contact/functional.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/problem_piece.h>
-#include <debond/input/parameters.h>
+#include <debond/input/problem_parameters.h>
 #include <debond/mesh/by_region.h>
 
 #include <memory>
@@ -26,22 +26,29 @@ namespace Debond
   class Scene
   {
   public:
-    explicit Scene(const Parameters   &parameters,
-                   const MatrixStorage storage = MatrixStorage::serial);
+    /// @p start: a file with start(), empty for the body at rest.
+    explicit Scene(const ProblemParameters &given,
+                   const MatrixStorage      storage = MatrixStorage::serial,
+                   const std::string       &start   = "");
 
     /// On another mesh: that of @p body, which has the boundaries that the
-    /// parameters name.
-    Scene(const Parameters                &parameters,
+    /// problem names.
+    Scene(const ProblemParameters         &given,
           std::shared_ptr<const Body<dim>> body,
-          const MatrixStorage              storage);
+          const MatrixStorage              storage,
+          const std::string               &start = "");
 
     /// The piece that one of several ranks has. To be called by all of them; an
     /// error of one is thrown by all. There are no probes.
-    Scene(const Parameters                    &parameters,
+    Scene(const ProblemParameters             &given,
           std::shared_ptr<const BoxPiece<dim>> piece,
           const MPI_Comm                       ranks);
 
     Scene(const Scene &) = delete;
+
+    /// What it was made of, on whatever mesh.
+    const ProblemParameters &
+    parameters() const;
 
     const Body<dim> &
     body() const;
@@ -119,27 +126,28 @@ namespace Debond
     assembly_seconds() const;
 
   private:
-    Scene(const Parameters                &parameters,
+    Scene(const ProblemParameters         &given,
           std::shared_ptr<const Body<dim>> body,
           const MatrixStorage              storage,
+          const std::string               &start,
           const BoxPiece<dim>             *box_piece,
           const MPI_Comm                   ranks);
 
     /// All but what belongs to the contact boundary; @p entry is that of
     /// errors.
     void
-    add_problem(const Parameters    &parameters,
-                const MatrixStorage  storage,
+    add_problem(const MatrixStorage  storage,
                 const BoxPiece<dim> *box_piece,
                 BoundaryNames       &boundaries,
                 std::string         &entry);
 
     void
-    add_start(const Parameters &parameters);
+    add_start(const std::string &file);
 
     void
-    add_contact(const Parameters &parameters, const MatrixStorage storage);
+    add_contact(const MatrixStorage storage);
 
+    const ProblemParameters                            given;
     std::shared_ptr<const Body<dim>>                   elastic_body;
     dealii::Triangulation<dim>                         triangulation;
     std::vector<std::string>                           body_notes;

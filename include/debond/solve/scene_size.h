@@ -2,7 +2,7 @@
 #ifndef debond_solve_scene_size_h
 #define debond_solve_scene_size_h
 
-#include <debond/input/parameters.h>
+#include <debond/input/problem_parameters.h>
 
 namespace Debond
 {
@@ -25,7 +25,7 @@ namespace Debond
              const unsigned int           degree = 1);
 
   SceneSize
-  scene_size(const Parameters &parameters);
+  scene_size(const ProblemParameters &problem);
 
   /// Estimates of the program's peak memory, in bytes, from measured runs of
   /// the benchmark and of bars in 3D: mesh, A, solver and output.
@@ -48,10 +48,10 @@ namespace Debond
   /// and with multigrid, in seconds on one core as of 2024, from the box and
   /// the materials alone: within a factor of about 3 on the bodies measured.
   double
-  seconds_with_factorisation(const Parameters &parameters);
+  seconds_with_factorisation(const ProblemParameters &problem);
 
   double
-  seconds_with_multigrid(const Parameters &parameters);
+  seconds_with_multigrid(const ProblemParameters &problem);
 
   /// What the system can give to this process now, in bytes.
   double

@@ -2,7 +2,7 @@
 #ifndef debond_solve_solve_h
 #define debond_solve_solve_h
 
-#include <debond/input/parameters.h>
+#include <debond/input/solver_parameters.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/solve/method_choice.h>
@@ -69,16 +69,16 @@ namespace Debond
   /// Minimises the functional of the scene, whose matrix must be stored as
   /// matrix_storage() says, by the given method, the bundle methods with
   /// @p checkpoints if there are any. Iterations are printed to @p out unless
-  /// the scene wants no machine details. Methods with a factorisation begin at
-  /// @p start, if there is one. Ranks that share a scene call it together, with
-  /// a method that has levels; the first one has J and the notes.
+  /// it is null. Methods with a factorisation begin at @p start, if there is
+  /// one. Ranks that share a scene call it together, with a method that has
+  /// levels; the first one has J and the notes.
   template <int dim>
   SolveResult
   solve(const MethodChoice           &choice,
-        const Parameters             &parameters,
+        const SolverParameters       &parameters,
         const Scene<dim>             &scene,
-        std::ostream                 &out,
-        const bool                    terminal,
+        std::ostream                 *out         = nullptr,
+        const bool                    terminal    = false,
         Checkpoints                  *checkpoints = nullptr,
         const dealii::Vector<double> *start       = nullptr);
 
@@ -86,9 +86,9 @@ namespace Debond
   /// and the foundation hold.
   template <int dim>
   void
-  check_supports_of_method(const MethodChoice &choice,
-                           const Parameters   &parameters,
-                           const Scene<dim>   &scene);
+  check_supports_of_method(const MethodChoice     &choice,
+                           const SolverParameters &parameters,
+                           const Scene<dim>       &scene);
 
   /// How a method needs A.
   MatrixStorage

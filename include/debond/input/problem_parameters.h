@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_input_problem_parameters_h
+#define debond_input_problem_parameters_h
+
+#include <debond/contact/law.h>
+#include <debond/contact/quadrature.h>
+#include <debond/input/load_parameters.h>
+#include <debond/input/load_path_parameters.h>
+#include <debond/input/material_parameters.h>
+#include <debond/input/support_parameters.h>
+#include <debond/mesh/body.h>
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+namespace Debond
+{
+  /// What the least J is looked for of: the body with its discretisation, its
+  /// materials, what holds and loads it, and its bonds. Nothing about who finds
+  /// it, how well and what is written.
+  struct ProblemParameters
+  {
+    std::string                            scene; ///< path of the file
+    unsigned int                           dimension = 2;
+    std::shared_ptr<const BodyDescription> body;
+    unsigned int                           degree = 1; ///< of displacements
+    MaterialParameters                     materials;
+    std::set<std::string> clamped_boundaries            = {"left", "right"};
+    std::set<std::string> contact_boundaries            = {"bottom"};
+    bool                  tangential_displacement_fixed = true;
+
+    /// By the names of contact boundaries: "fixed" or "free".
+    std::map<std::string, std::string> tangential_displacements;
+    SupportParameters                  supports;
+    LoadParameters                     loads;
+    LoadPathParameters                 load_path;
+    std::map<std::string, std::string> probes; ///< texts by name
+    ContactLawParameters               law;
+    ContactQuadratureParameters        quadrature;
+    std::string                        quadrature_name = "nodal";
+
+    /// Where entries were set, by path.
+    std::map<std::string, std::string> locations;
+  };
+} // namespace Debond
+
+#endif
