@@ -108,7 +108,7 @@ namespace Debond
                         const unsigned int dimension,
                         const bool         has_levels)
   {
-    const double bytes = has_levels ? (dimension == 2 ? 1300. : 2700.) :
+    const double bytes = has_levels ? (dimension == 2 ? 1000. : 2200.) :
                                       (dimension == 2 ? 1700. : 4600.);
     return memory_of_program + bytes * size.unknowns;
   }
