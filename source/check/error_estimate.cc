@@ -251,19 +251,9 @@ namespace Debond
         double                 measure;
         dealii::Tensor<1, dim> normal;
 
-        /// In the order of ContactBoundary's faces.
-        std::array<dealii::Point<dim>, dim> vertices;
-        std::array<unsigned int, dim>       in_cell; ///< their numbers
-        std::array<unsigned int, dim>       indices; ///< in the mesh
-
-        dealii::Point<dim>
-        point(const std::array<double, dim> &barycentric) const
-        {
-          dealii::Point<dim> result;
-          for (unsigned int v = 0; v < dim; ++v)
-            result += barycentric[v] * vertices[v];
-          return result;
-        }
+        /// The numbers of its vertices in the cell, in the order of
+        /// ContactBoundary's faces.
+        std::array<unsigned int, dim> in_cell;
       };
 
       static double
@@ -347,21 +337,26 @@ namespace Debond
           }
       }
 
-      template <typename CellIterator>
-      Face
-      face_of(const CellIterator &cell, const unsigned int f) const
+      /// Of each face of a cell: asking ReferenceCell for each of them takes
+      /// longer than all the rest.
+      static std::array<std::array<unsigned int, dim>, dim + 1>
+      make_face_vertices()
       {
-        Face face = {
-          cell->active_cell_index(), dim * (dim + 1) / 2, 0., {}, {}, {}, {}};
-        for (unsigned int v = 0; v < dim; ++v)
-          {
-            const unsigned int vertex =
-              cell->reference_cell().face_to_cell_vertices(f, v, 1);
-            face.opposite -= vertex;
-            face.vertices[v] = cell->vertex(vertex);
-            face.in_cell[v]  = vertex;
-            face.indices[v]  = cell->vertex_index(vertex);
-          }
+        std::array<std::array<unsigned int, dim>, dim + 1> result;
+        for (unsigned int f = 0; f <= dim; ++f)
+          for (unsigned int v = 0; v < dim; ++v)
+            result[f][v] =
+              dealii::ReferenceCells::get_simplex<dim>().face_to_cell_vertices(
+                f, v, 1);
+        return result;
+      }
+
+      Face
+      face_of(const unsigned int cell, const unsigned int f) const
+      {
+        Face face = {cell, dim * (dim + 1) / 2, 0., {}, face_vertices[f]};
+        for (const unsigned int vertex : face.in_cell)
+          face.opposite -= vertex;
         const LinearSimplex<dim>     &simplex = cells[face.cell].simplex;
         const dealii::Tensor<1, dim> &inward = simplex.gradients[face.opposite];
         face.measure = dim * simplex.volume * inward.norm();
@@ -390,8 +385,10 @@ namespace Debond
                       const unsigned int  f,
                       const Face         &face) const
       {
-        return cells[face.cell].pressure_gradient *
-               (cell->face(f)->center() - cell->center());
+        return loads.temperature_change ?
+                 cells[face.cell].pressure_gradient *
+                   (cell->face(f)->center() - cell->center()) :
+                 0.;
       }
 
       double
@@ -415,15 +412,16 @@ namespace Debond
         const auto neighbor = cell->neighbor(f);
         if (neighbor->active_cell_index() < cell->active_cell_index())
           return;
-        const Face         face  = face_of(cell, f);
+        const Face         face  = face_of(cell->active_cell_index(), f);
         const unsigned int g     = cell->neighbor_face_no(f);
-        const Face         back  = face_of(neighbor, g);
+        const Face         back  = face_of(neighbor->active_cell_index(), g);
         const CellStress  &here  = cells[face.cell];
         const CellStress  &there = cells[back.cell];
         const double       a = bubble(face), b = bubble(back);
         if (degree == 2)
           {
-            const double energy = fall_of_linear_jump(face, back, a, b);
+            const double energy =
+              fall_of_linear_jump(cell, face, neighbor, back, a, b);
             parts[face.cell] += 0.5 * energy;
             parts[back.cell] += 0.5 * energy;
             return;
@@ -450,11 +448,14 @@ namespace Debond
       }
 
       /// The same of degree 2, where tractions are linear on the face.
+      template <typename CellIterator, typename OtherIterator>
       double
-      fall_of_linear_jump(const Face  &face,
-                          const Face  &back,
-                          const double a,
-                          const double b) const
+      fall_of_linear_jump(const CellIterator  &cell,
+                          const Face          &face,
+                          const OtherIterator &neighbor,
+                          const Face          &back,
+                          const double         a,
+                          const double         b) const
       {
         const CellStress &here  = cells[face.cell];
         const CellStress &there = cells[back.cell];
@@ -465,10 +466,12 @@ namespace Debond
         for (unsigned int v = 0; v < dim; ++v)
           {
             const unsigned int other =
-              back.in_cell[std::find(back.indices.begin(),
-                                     back.indices.end(),
-                                     face.indices[v]) -
-                           back.indices.begin()];
+              *std::find_if(back.in_cell.begin(),
+                            back.in_cell.end(),
+                            [&, index = cell->vertex_index(face.in_cell[v])](
+                              const unsigned int w) {
+                              return neighbor->vertex_index(w) == index;
+                            });
             const LinearStress &from = linear_stresses[face.cell];
             const LinearStress &to   = linear_stresses[back.cell];
             r[v] = (to.stresses[other] - from.stresses[face.in_cell[v]]) *
@@ -498,7 +501,7 @@ namespace Debond
         if (conditions.clamped.count(id) > 0)
           return;
 
-        const Face                   face = face_of(cell, f);
+        const Face face = face_of(cell->active_cell_index(), f);
         const dealii::Tensor<1, dim> inner =
           degree == 1 ? traction(cell, f, face) : dealii::Tensor<1, dim>();
         double square = 0.;
@@ -515,7 +518,9 @@ namespace Debond
               const auto entry = load.tractions.find(id);
               if (entry == load.tractions.end())
                 return;
-              const dealii::Point<dim> point = face.point(rule.barycentric[q]);
+              dealii::Point<dim> point;
+              for (unsigned int v = 0; v < dim; ++v)
+                point += rule.barycentric[q][v] * cell->vertex(face.in_cell[v]);
               for (unsigned int d = 0; d < dim; ++d)
                 r[d] += factor * field_value(*entry->second, point, d);
             };
@@ -576,17 +581,19 @@ namespace Debond
         return r;
       }
 
-      const unsigned int               degree;
-      const AdhesionIntegral<dim>     &adhesion;
-      const ContactBoundary<dim>      &boundary;
-      const BoundaryConditions        &conditions;
-      const Supports<dim>             &supports;
-      const Loads<dim>                &loads;
-      const dealii::Vector<double>     s;
-      const Loads<dim>                *dead_loads;
-      const double                     load_factor;
-      const double                     largest_s;
-      const FaceRule<dim>              rule;
+      const unsigned int                                       degree;
+      const AdhesionIntegral<dim>                             &adhesion;
+      const ContactBoundary<dim>                              &boundary;
+      const BoundaryConditions                                &conditions;
+      const Supports<dim>                                     &supports;
+      const Loads<dim>                                        &loads;
+      const dealii::Vector<double>                             s;
+      const Loads<dim>                                        *dead_loads;
+      const double                                             load_factor;
+      const double                                             largest_s;
+      const FaceRule<dim>                                      rule;
+      const std::array<std::array<unsigned int, dim>, dim + 1> face_vertices =
+        make_face_vertices();
       const dealii::QGaussSimplex<dim> cell_rule =
         dealii::QGaussSimplex<dim>(2);
       std::vector<CellStress>   cells;
