@@ -175,7 +175,7 @@ namespace Debond
           size.unknowns > accuracy.maximum_unknowns)
         text << "Accuracy/Maximum unknowns is " << accuracy.maximum_unknowns;
       else if (memory_with_factorisation(largest, dim) > limit)
-        text << "which need about " << std::setprecision(1)
+        text << "which need about " << std::setprecision(2)
              << memory_with_factorisation(largest, dim) / (1 << 30)
              << " GiB of memory, the limit is " << limit / (1 << 30) << " GiB";
       else

@@ -60,6 +60,7 @@ namespace Debond
              const unsigned int           degree)
   {
     SceneSize size;
+    size.degree        = degree;
     size.cells         = body.n_cells();
     size.unknowns      = dimension * body.n_vertices();
     size.contact_nodes = 0.;
@@ -95,7 +96,8 @@ namespace Debond
     // 3D.
     const double n = size.unknowns;
     const double factor =
-      dimension == 2 ? 29. * n * std::log2(n) : 100. * std::pow(n, 4. / 3.);
+      dimension == 2 ? 29. * n * std::log2(n) :
+                       (size.degree == 2 ? 125. : 100.) * std::pow(n, 4. / 3.);
     const double dense = 4. * 8. * size.contact_nodes * size.contact_nodes;
     return memory_of_program + (dimension == 2 ? 900. : 600.) * n + factor +
            dense;

@@ -268,14 +268,16 @@ namespace
         falls        = falls && levels[k].functional < levels[k - 1].functional;
         is_estimated = is_estimated && levels[k].estimated_error <
                                          levels[k - 1].estimated_error;
-        grows = grows && levels[k].unknowns > 1.3 * levels[k - 1].unknowns &&
-                levels[k].unknowns < 3. * levels[k - 1].unknowns;
+        grows = grows && levels[k].unknowns > 1.2 * levels[k - 1].unknowns &&
+                levels[k].unknowns < 6. * levels[k - 1].unknowns;
       }
     std::cout << name << std::endl;
     check("  several meshes", levels.size() >= 3);
     check("  J falls on each", falls);
     check("  so does the estimate", is_estimated);
-    check("  meshes are about twice as large", grows);
+    check("  meshes grow, and not too much at once", grows);
+    check("  the last one is made for the target",
+          levels.back().estimated_error > 0.4 * parameters.accuracy.target);
     check("  nothing is short", result.shortfall.empty());
   }
 
@@ -400,6 +402,10 @@ main(int argc, char **)
             "success");
   check_run(with(small,
                  {"Accuracy/Target=1e-3", "Accuracy/Maximum unknowns=1000"}),
+            ExitCode::not_converged,
+            "not accurate enough");
+  // For about 8000 unknowns.
+  check_run(with(small, {"Accuracy/Target=1e-6", "Solver/Memory limit=0.165"}),
             ExitCode::not_converged,
             "not accurate enough");
 }

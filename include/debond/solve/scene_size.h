@@ -14,6 +14,7 @@ namespace Debond
     double    unknowns;      ///< dim for each vertex (and edge)
     double    contact_nodes; ///< vertices (and edges) of the contact boundaries
     BodyShape shape;
+    unsigned int degree; ///< of the displacement
   };
 
   /// Edges, of degree 2, are those of a body without holes, in 3D about as
