@@ -29,3 +29,24 @@ for signal in INT TERM; do
     [ -s $signal/$file ] || { echo "no $file"; exit 1; }
   done
 done
+
+# On refined meshes the result is that of the last mesh that was finished.
+set -m
+"$debond" "$scene" --set "Output/Directory=refined" \
+  --set "Solver/Method=automatic" --set "Accuracy/Target=1e-7" >log 2>errors &
+process=$!
+set +m
+for _ in $(seq 600); do
+  grep -q " mesh 3 " log && break
+  sleep 0.05
+done
+kill -s INT $process
+code=0
+wait $process || code=$?
+[ $code -eq 4 ] || fail "exit code $code in place of 4: $(cat log errors)"
+grep -q "that of the last mesh that was finished" errors || fail "$(cat errors)"
+unknowns=$(grep -E " mesh [0-9]+ .* contact nodes" log | tail -1 |
+  sed -E 's/.* ([0-9]+) unknowns.*/\1/')
+grep -q "\"degrees_of_freedom\": $unknowns," refined/summary.json ||
+  fail "The files are not of the last mesh, with $unknowns unknowns."
+[ -s refined/body.vtu ] || fail "no body.vtu"
