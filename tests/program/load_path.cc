@@ -877,7 +877,8 @@ namespace
           assignments.insert(assignments.end(), others.begin(), others.end());
           const Parameters             parameters = parameters_of(assignments);
           const Scene<2>               here(parameters,
-                              matrix_storage(choose_method(parameters)));
+                              matrix_storage(
+                                choose_method(parameters, parameters.solver)));
           std::vector<LoadPathStep<2>> steps, arc;
           double                       result = 0.;
           follow_load_path<2>(
@@ -936,13 +937,19 @@ namespace
                  "Load path/Factors=0.5, 1, 10",
                  "Accuracy/Target=1e-4",
                  "Solver/Method=automatic"}));
-    const MethodChoice choice = choose_method(parameters);
-    auto mesh = make_first_scene<2>(parameters, matrix_storage(choice));
+    const MethodChoice choice =
+      choose_method(parameters, parameters.solver, parameters.accuracy);
+    auto                       mesh = make_first_scene<2>(parameters,
+                                    parameters.accuracy,
+                                    matrix_storage(choice));
     std::vector<AdaptiveLevel> levels;
     FollowedPath<2>            path;
     const AdaptiveResult       result = solve_adaptively<2>(
       choice,
-      parameters,
+      parameters.solver,
+      parameters.accuracy,
+      parameters.certificate.kind,
+      parameters.verification.tolerance,
       [&](const AdaptiveLevel &level) { levels.push_back(level); },
       mesh,
       &path);
