@@ -40,13 +40,19 @@ for _ in $(seq 600); do
   grep -q " mesh 3 " log && break
   sleep 0.05
 done
+# While the next one is solved, unless the machine is slow.
+sleep 0.6
 kill -s INT $process
 code=0
 wait $process || code=$?
 [ $code -eq 4 ] || fail "exit code $code in place of 4: $(cat log errors)"
-grep -q "that of the last mesh that was finished" errors || fail "$(cat errors)"
-unknowns=$(grep -E " mesh [0-9]+ .* contact nodes" log | tail -1 |
-  sed -E 's/.* ([0-9]+) unknowns.*/\1/')
-grep -q "\"degrees_of_freedom\": $unknowns," refined/summary.json ||
-  fail "The files are not of the last mesh, with $unknowns unknowns."
+# A mesh whose solve had only its search to end counts.
+if ! grep -q "the result is what it had found" errors; then
+  grep -q "that of the last mesh that was finished" errors ||
+    fail "$(cat errors)"
+  unknowns=$(grep -E " mesh [0-9]+ .* contact nodes" log | tail -1 |
+    sed -E 's/.* ([0-9]+) unknowns.*/\1/')
+  grep -q "\"degrees_of_freedom\": $unknowns," refined/summary.json ||
+    fail "The files are not of the last mesh, with $unknowns unknowns."
+fi
 [ -s refined/body.vtu ] || fail "no body.vtu"
