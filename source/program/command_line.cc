@@ -9,6 +9,7 @@
 #include <debond/program/ranks.h>
 #include <debond/program/report_errors.h>
 #include <debond/program/run.h>
+#include <debond/program/run_on_ranks.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve.h>

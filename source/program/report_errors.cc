@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/input/parameters.h>
+#include <debond/input/bad_input.h>
 #include <debond/program/report_errors.h>
 
 #include <exception>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/version.h>
-#include <debond/input/parameters.h>
+#include <debond/input/bad_input.h>
 #include <debond/solve/run_checkpoints.h>
 
 #include <filesystem>

@@ -9,6 +9,7 @@
 #include <debond/input/output_parameters.h>
 #include <debond/input/problem_parameters.h>
 #include <debond/input/solver_parameters.h>
+#include <debond/input/verification_parameters.h>
 #include <debond/mesh/make_body.h>
 
 #include <map>
@@ -17,17 +18,6 @@
 
 namespace Debond
 {
-  struct VerificationParameters
-  {
-    /// Largest Verification::error() of a result that counts.
-    double tolerance = 1e-3;
-
-    /// An expression with the constants of the loads; empty if unknown.
-    std::string exact_displacement;
-  };
-
-
-
   /// A scene: the problem, and what each module is given.
   struct Parameters : ProblemParameters
   {

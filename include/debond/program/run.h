@@ -2,8 +2,6 @@
 #ifndef debond_program_run_h
 #define debond_program_run_h
 
-#include <deal.II/base/mpi.h>
-
 #include <debond/input/parameters.h>
 #include <debond/program/exit_code.h>
 
@@ -25,18 +23,6 @@ namespace Debond
   template <int dim>
   ExitCode
   run(const Parameters &parameters, std::ostream &out, const bool terminal);
-
-  /// The same by all ranks, which share the scene (BoxPiece): the first one
-  /// writes log, messages and files but body.pvtu, and all return its exit
-  /// code. There are no error estimate, means, probes and contact.vtu. Throws
-  /// BadInput on all of them if they cannot share the scene, before anything is
-  /// written.
-  template <int dim>
-  ExitCode
-  run_on_ranks(const Parameters &parameters,
-               const MPI_Comm    ranks,
-               std::ostream     &out,
-               const bool        terminal);
 } // namespace Debond
 
 #endif

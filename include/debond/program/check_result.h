@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_program_check_result_h
+#define debond_program_check_result_h
+
+#include <debond/input/verification_parameters.h>
+#include <debond/output/run_result.h>
+#include <debond/solve/scene.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// The difference from the exact displacement, if that is known; then
+  /// throws BadInput if it is not finite somewhere.
+  template <int dim>
+  std::optional<DisplacementError>
+  error_of(const std::string            &exact_displacement,
+           const Scene<dim>             &scene,
+           const dealii::Vector<double> &u);
+
+  /// What the verification has against the result, or against the first
+  /// step of a load path that it has something against; empty if nothing.
+  template <int dim>
+  std::string
+  verification_message(const double tolerance, const RunResult<dim> &result);
+
+  /// Success needs the stop criterion and the verification. Where rounding
+  /// kept the method from its stop criterion, the verification decides; what
+  /// the method left is said in either case.
+  template <int dim>
+  void
+  judge(const std::string &failure,
+        const std::string &shortfall,
+        RunResult<dim>    &result);
+
+  /// Estimates the error of the mesh, with bonds as the load path has left
+  /// them.
+  template <int dim>
+  void
+  estimate(const Scene<dim>            &scene,
+           const AdhesionIntegral<dim> &bonds,
+           RunResult<dim>              &result);
+
+  /// Verifies what the solver found and adds what else is to be said of it.
+  /// @p notes: on the scene; @p bonds are as the load path has left them.
+  template <int dim>
+  void
+  check_result(const VerificationParameters   &verification,
+               const std::vector<std::string> &notes,
+               const Scene<dim>               &scene,
+               const AdhesionIntegral<dim>    &bonds,
+               const std::string              &shortfall,
+               RunResult<dim>                 &result);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_levels_method_h
+#define debond_solve_levels_method_h
+
+#include <debond/base/interrupt.h>
+#include <debond/input/solver_parameters.h>
+#include <debond/solve/method_choice.h>
+#include <debond/solve/scene.h>
+#include <debond/solve/solve_result.h>
+#include <debond/solve/watch.h>
+
+namespace Debond
+{
+  /// By the coarser levels of the body, one truncated cycle for each
+  /// majorant.
+  template <int dim>
+  void
+  solve_by_levels(const MethodChoice     &choice,
+                  const SolverParameters &parameters,
+                  const Scene<dim>       &scene,
+                  const InterruptGuard   &guard,
+                  Watch                  &watch,
+                  SolveResult            &result);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_refine_result_h
+#define debond_solve_refine_result_h
+
+#include <debond/elasticity/refinement.h>
+#include <debond/solve/scene.h>
+#include <debond/solve/solve_result.h>
+#include <debond/solve/watch.h>
+
+namespace Debond
+{
+  /// Refines a result if rounding has a say in it. Returns whether it has.
+  template <int dim>
+  bool
+  refine_result(const Scene<dim> &scene,
+                CorrectionSolver &solver,
+                const Watch      &watch,
+                SolveResult      &result);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_scene_conditions_h
+#define debond_solve_scene_conditions_h
+
+#include <debond/contact/bond_field.h>
+#include <debond/contact/law.h>
+#include <debond/elasticity/material.h>
+#include <debond/elasticity/unknowns.h>
+#include <debond/input/problem_parameters.h>
+#include <debond/mesh/by_region.h>
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// A piece of the body that cannot have what an entry says of it.
+  class PieceError : public std::invalid_argument
+  {
+  public:
+    PieceError(const std::string &entry, const std::string &message)
+      : std::invalid_argument(message)
+      , entry(entry)
+    {}
+
+    const std::string entry;
+  };
+
+  /// What is clamped and in contact, on a mesh whose boundaries have these
+  /// names. Throws PieceError.
+  BoundaryConditions
+  make_conditions(const ProblemParameters &given,
+                  const BoundaryNames     &boundaries);
+
+  /// Throws PieceError if regions with materials of their own overlap.
+  ByRegion<Material>
+  make_materials(const MaterialParameters &parameters,
+                 const RegionNames        &regions);
+
+  /// Prescribed displacements and gaps. Throws PieceError.
+  template <int dim>
+  Supports<dim>
+  make_supports(const ProblemParameters  &given,
+                const BoundaryConditions &conditions);
+
+  /// The bonds that vary. Throws PieceError.
+  template <int dim>
+  std::unique_ptr<BondField<dim>>
+  make_bond_field(const ProblemParameters  &given,
+                  const AdhesiveLaw        &law,
+                  const BoundaryConditions &conditions);
+
+  /// Of prescribed displacements, at all steps.
+  std::vector<double>
+  displacement_factors(const LoadPathParameters &load_path);
+
+  /// Throws SupportError if a support pushes a vertex into the foundation.
+  template <int dim>
+  void
+  check_held_vertices(const ElasticUnknowns<dim> &unknowns,
+                      const std::vector<double>  &load_factors);
+} // namespace Debond
+
+#endif

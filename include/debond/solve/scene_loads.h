@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_scene_loads_h
+#define debond_solve_scene_loads_h
+
+#include <debond/elasticity/load_vector.h>
+#include <debond/input/load_parameters.h>
+#include <debond/mesh/body.h>
+
+#include <set>
+#include <string>
+
+namespace Debond
+{
+  /// The entry of a traction on faces of this id.
+  std::string
+  traction_entry(const LoadParameters            &loads,
+                 const BoundaryNames             &boundaries,
+                 const dealii::types::boundary_id id);
+
+  /// The dead loads or the others of a scene, on the faces of a mesh whose
+  /// boundaries have these names.
+  template <int dim>
+  Loads<dim>
+  make_loads(const LoadParameters        &parameters,
+             const std::set<std::string> &dead_loads,
+             const bool                   wants_dead,
+             const BoundaryNames         &boundaries);
+} // namespace Debond
+
+#endif

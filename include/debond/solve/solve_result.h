@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_solve_result_h
+#define debond_solve_solve_result_h
+
+#include <deal.II/lac/vector.h>
+
+#include <debond/elasticity/load_factors.h>
+#include <debond/optimization/bundle/proximal_bundle.h>
+#include <debond/optimization/majorise/majorise_minimise.h>
+#include <debond/solve/scene.h>
+#include <debond/solve/which_minimum.h>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// What every method reports.
+  struct SolveResult
+  {
+    SolverStatus status = SolverStatus::success;
+    std::string  message;
+
+    dealii::Vector<double> u;                ///< of all degrees of freedom
+    LoadFactors            load_factor = 1.; ///< of the loads that u belongs to
+    double                 functional;       ///< J(u), from the strains of u
+
+    /// The first factor of a load path at which the body comes off; the rest is
+    /// of the one before.
+    std::optional<double> comes_off_at = {};
+
+    unsigned int iterations  = 0;
+    unsigned int long_steps  = 0;
+    unsigned int short_steps = 0;
+    unsigned int null_steps  = 0;
+
+    /// Of the stop criterion: v_k of a bundle method, the relative residual of
+    /// majorise-minimise.
+    double criterion = 0.;
+
+    double largest_qp_residual = 0.; ///< of bundle methods
+
+    unsigned int linear_iterations = 0; ///< of conjugate gradients
+
+    /// Of the elastic problem on the contact normals, if there is one.
+    std::optional<double> condition_estimate;
+
+    /// Of a success.
+    WhichMinimum minimum;
+
+    /// J of the state that the method led to, if search and proof could replace
+    /// it by a lower one, and whether they did.
+    std::optional<double> functional_from_start;
+    bool                  is_replaced = false;
+
+    /// What did not go as it should without keeping the method from its end.
+    std::vector<std::string> notes;
+
+    /// Wall seconds by part.
+    std::map<std::string, double> parts;
+
+    /// One of them is filled.
+    std::vector<BundleIteration>           bundle_history;
+    std::vector<MajoriseMinimiseIteration> majorise_history;
+  };
+
+  /// Adds what a bundle method has to say.
+  void
+  add_bundle_result(const ProximalBundleResult &bundle, SolveResult &result);
+
+  /// @p energy is what J is more than the functional that the method saw. The
+  /// iterations follow those that the result has.
+  void
+  add_majorise_result(const MajoriseMinimiseResult &minimum,
+                      const double                  energy,
+                      SolveResult                  &result);
+
+  /// J(u), from the strains, on the first of several ranks.
+  template <int dim>
+  double
+  functional_of(const Scene<dim> &scene, const dealii::Vector<double> &u);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+
+#include <debond/base/append.h>
+#include <debond/check/plausibility.h>
+#include <debond/input/expression.h>
+#include <debond/program/check_result.h>
+
+namespace Debond
+{
+  template <int dim>
+  std::optional<DisplacementError>
+  error_of(const std::string            &exact_displacement,
+           const Scene<dim>             &scene,
+           const dealii::Vector<double> &u)
+  {
+    if (exact_displacement.empty())
+      return {};
+    try
+      {
+        return displacement_error(
+          scene.problem(),
+          u,
+          *make_function<dim>(exact_displacement,
+                              scene.parameters().loads.constants));
+      }
+    catch (const std::invalid_argument &error)
+      {
+        throw BadInput({scene.parameters().scene +
+                        ": Verification/Exact displacement: " + error.what()});
+      }
+  }
+
+
+
+  template <int dim>
+  std::string
+  verification_message(const double tolerance, const RunResult<dim> &result)
+  {
+    for (const LoadPathStep<dim> &step : result.path)
+      if (!step.message.empty())
+        return step.message;
+    const double error = result.verification.error();
+    return error <= tolerance ? "" : verification_failure(error, tolerance);
+  }
+
+
+
+  template <int dim>
+  void
+  judge(const std::string &failure,
+        const std::string &shortfall,
+        RunResult<dim>    &result)
+  {
+    SolveResult &solve = result.solve;
+    if (solve.status == SolverStatus::stagnated && failure.empty())
+      {
+        solve.status = SolverStatus::success;
+        result.notes.push_back(solve.message);
+        solve.message.clear();
+      }
+    else if (solve.status == SolverStatus::stagnated)
+      solve.message += " " + failure;
+
+    result.status  = to_string(solve.status);
+    result.message = solve.message;
+    // The solver is content, but its result is not a solution.
+    if (solve.status == SolverStatus::success && !failure.empty())
+      {
+        result.status  = "not verified";
+        result.message = failure;
+      }
+    else if (solve.status == SolverStatus::success && !shortfall.empty())
+      {
+        result.status  = "not accurate enough";
+        result.message = shortfall;
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  estimate(const Scene<dim>            &scene,
+           const AdhesionIntegral<dim> &bonds,
+           RunResult<dim>              &result)
+  {
+    try
+      {
+        result.estimate = estimate_error(scene.problem(),
+                                         bonds,
+                                         scene.conditions(),
+                                         scene.supports(),
+                                         scene.loads(),
+                                         result.solve.u,
+                                         result.solve.functional,
+                                         result.solve.load_factor,
+                                         &scene.dead_loads(),
+                                         scene.piece());
+        if (const std::string &reason = result.estimate->outside_calibration;
+            !reason.empty())
+          result.notes.push_back(
+            "the error of the mesh may be from two thirds to three times the "
+            "estimate, which was not calibrated for " +
+            reason);
+      }
+    catch (const std::invalid_argument &error)
+      {
+        result.notes.push_back(
+          std::string("the error of the mesh is not known: a load or a bond "
+                      "is none between the points that the solution needs, ") +
+          error.what());
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  check_result(const VerificationParameters   &verification,
+               const std::vector<std::string> &notes,
+               const Scene<dim>               &scene,
+               const AdhesionIntegral<dim>    &bonds,
+               const std::string              &shortfall,
+               RunResult<dim>                 &result)
+  {
+    result.notes = result.solve.notes;
+    append(result.solve.minimum.notes, result.notes);
+    append(notes, result.notes);
+    append(scene.notes(), result.notes);
+    if (result.solve.status == SolverStatus::comes_off && result.path.empty())
+      {
+        judge("", "", result);
+        return;
+      }
+
+    dealii::Timer timer;
+    // What bonds have left for good only the path knows.
+    if (result.path.empty())
+      result.verification = verify(scene.problem(),
+                                   scene.adhesion(),
+                                   scene.law(),
+                                   result.solve.u,
+                                   result.solve.load_factor);
+    result.probes = scene.probes().values(scene.problem(),
+                                          result.solve.u,
+                                          result.solve.load_factor);
+    result.means  = scene.means().values(scene.problem(),
+                                        result.solve.u,
+                                        result.solve.load_factor);
+    result.times.emplace_back("verification", timer.wall_time());
+    judge(verification_message(verification.tolerance, result),
+          shortfall,
+          result);
+
+    // A loop that was interrupted has the solution of the mesh before.
+    const bool is_solution =
+      result.is_success() || !shortfall.empty() ||
+      (result.solve.status == SolverStatus::interrupted &&
+       !result.levels.empty());
+    if (is_solution)
+      {
+        timer.restart();
+        estimate(scene, bonds, result);
+        result.times.emplace_back("error estimate", timer.wall_time());
+      }
+
+    result.largest =
+      largest_values(scene.problem(), result.solve.u, result.solve.load_factor);
+    append(plausibility_notes(
+             scene.body().shape(),
+             dim,
+             scene.problem().unknowns().has_lifting() ||
+               scene.problem().fields().applied_nodal_forces().linfty_norm() >
+                 0.,
+             result.largest,
+             scene.parameters().degree),
+           result.notes);
+    result.displacement_error =
+      error_of(verification.exact_displacement, scene, result.solve.u);
+  }
+
+
+
+  template std::optional<DisplacementError>
+  error_of(const std::string &,
+           const Scene<2> &,
+           const dealii::Vector<double> &);
+  template std::optional<DisplacementError>
+  error_of(const std::string &,
+           const Scene<3> &,
+           const dealii::Vector<double> &);
+  template std::string
+  verification_message(const double, const RunResult<2> &);
+  template std::string
+  verification_message(const double, const RunResult<3> &);
+  template void
+  judge(const std::string &, const std::string &, RunResult<2> &);
+  template void
+  judge(const std::string &, const std::string &, RunResult<3> &);
+  template void
+  estimate(const Scene<2> &, const AdhesionIntegral<2> &, RunResult<2> &);
+  template void
+  estimate(const Scene<3> &, const AdhesionIntegral<3> &, RunResult<3> &);
+  template void
+  check_result(const VerificationParameters &,
+               const std::vector<std::string> &,
+               const Scene<2> &,
+               const AdhesionIntegral<2> &,
+               const std::string &,
+               RunResult<2> &);
+  template void
+  check_result(const VerificationParameters &,
+               const std::vector<std::string> &,
+               const Scene<3> &,
+               const AdhesionIntegral<3> &,
+               const std::string &,
+               RunResult<3> &);
+} // namespace Debond

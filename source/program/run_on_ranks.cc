@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/timer.h>
+
+#include <debond/base/append.h>
+#include <debond/base/directory_lock.h>
+#include <debond/check/plausibility.h>
+#include <debond/output/output_files.h>
+#include <debond/output/report.h>
+#include <debond/output/vtu.h>
+#include <debond/program/check_result.h>
+#include <debond/program/run_on_ranks.h>
+#include <debond/program/session.h>
+
+#include <iostream>
+#include <memory>
+
+namespace Debond
+{
+  namespace
+  {
+    bool
+    first_of(const MPI_Comm ranks)
+    {
+      return dealii::Utilities::MPI::this_mpi_process(ranks) == 0;
+    }
+
+
+
+    /// Throws BadInput if ranks cannot share the scene.
+    template <int dim>
+    std::shared_ptr<const BoxPiece<dim>>
+    make_piece(const Parameters &parameters, const MPI_Comm ranks)
+    {
+      const auto refuse = [&parameters](const bool         is_refused,
+                                        const std::string &entry,
+                                        const std::string &what) {
+        if (is_refused)
+          throw BadInput({parameters.scene + ": " + entry + ": " + what +
+                          "; run the scene on one rank"});
+      };
+      const SolverParameters &solver = parameters.solver;
+      const auto *const       box =
+        dynamic_cast<const Box<dim> *>(parameters.body.get());
+      refuse(box == nullptr && parameters.body->shape().is_box,
+             "Parts",
+             "several ranks share no bodies with parts");
+      refuse(box == nullptr, "Mesh/Source", "several ranks share boxes only");
+      refuse(parameters.degree != 1,
+             "Mesh/Degree",
+             "several ranks share linear displacements only");
+      refuse(solver.method != SolverMethod::automatic &&
+               solver.method != SolverMethod::majorise_minimise,
+             "Solver/Method",
+             "several ranks need majorise minimise or automatic, not " +
+               solver.method);
+      refuse(solver.linear_solver == LinearSolver::direct,
+             "Solver/Linear solver",
+             "several ranks have multigrid only");
+      refuse(solver.prove, "Solver/Prove", "several ranks have no proof");
+      refuse(!parameters.load_path.factors.empty(),
+             "Load path/Factors",
+             "several ranks follow no load path");
+      refuse(parameters.accuracy.is_adaptive(),
+             parameters.accuracy.target > 0. ? "Accuracy/Target" :
+                                               "Accuracy/Maximum unknowns",
+             "several ranks refine no mesh");
+      refuse(parameters.certificate.kind != CertificateKind::none,
+             "Certificate/Kind",
+             "several ranks have no certificate");
+      refuse(!parameters.probes.empty(),
+             parameters.probes.empty() ?
+               "" :
+               "Probes/" + parameters.probes.begin()->first,
+             "several ranks have no probes");
+      refuse(!parameters.supports.displacements.empty(),
+             parameters.supports.displacements.empty() ?
+               "" :
+               "Boundary conditions/Displacement " +
+                 parameters.supports.displacements.begin()->first,
+             "several ranks share no prescribed displacements");
+      refuse(!parameters.supports.gap.empty() ||
+               !parameters.supports.gaps.empty(),
+             "Contact law/Initial gap",
+             "several ranks share no gaps");
+      refuse(!parameters.verification.exact_displacement.empty(),
+             "Verification/Exact displacement",
+             "several ranks compare no displacements");
+      refuse(parameters.checkpoints.restart,
+             "--restart",
+             "several ranks have no checkpoints");
+      refuse(!box->has_coarse_levels(),
+             "Mesh/Cells",
+             "several ranks need coarser levels, and this box has none");
+      try
+        {
+          return std::make_shared<const BoxPiece<dim>>(
+            *box,
+            dealii::Utilities::MPI::this_mpi_process(ranks),
+            dealii::Utilities::MPI::n_mpi_processes(ranks));
+        }
+      catch (const std::invalid_argument &error)
+        {
+          const bool is_too_short = dealii::Utilities::MPI::n_mpi_processes(
+                                      ranks) > box->shape().cells[0];
+          throw BadInput({parameters.scene + ": " +
+                          (is_too_short ? "Mesh/Cells" : "Mesh/Rotation") +
+                          ": " + error.what()});
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  ExitCode
+  run_on_ranks(const Parameters &parameters,
+               const MPI_Comm    ranks,
+               std::ostream     &out,
+               const bool        terminal)
+  {
+    dealii::Timer    total;
+    const bool       is_first      = first_of(ranks);
+    const auto       piece         = make_piece<dim>(parameters, ranks);
+    SolverParameters solver        = parameters.solver;
+    solver.linear_solver           = LinearSolver::multigrid;
+    const OutputParameters &output = parameters.output;
+    const MethodChoice      choice = choose_method(parameters, solver);
+    const Scene<dim>        scene(parameters, piece, ranks);
+
+    RunResult<dim>                result;
+    std::string                   no_pictures, failure;
+    const std::vector<OutputFile> files =
+      output_files(output, scene, result, no_pictures);
+    std::optional<DirectoryLock> lock;
+    std::vector<std::string>     written;
+    if (is_first)
+      try
+        {
+          lock.emplace(output.directory);
+          remove_files(files, output.directory);
+          written.push_back(write_effective_scene(parameters.effective_scene,
+                                                  output.directory));
+        }
+      catch (const std::runtime_error &error)
+        {
+          failure = error.what();
+        }
+    failure = dealii::Utilities::MPI::broadcast(ranks, failure);
+    if (!failure.empty())
+      {
+        if (is_first)
+          std::cerr << "debond: " << failure << std::endl;
+        return ExitCode::output_not_saved;
+      }
+
+    Record record(output.machine_details);
+    report_problem(scene, choice, solver.bundle.u, record);
+    if (record.has_details())
+      record.line("ranks",
+                  std::to_string(
+                    dealii::Utilities::MPI::n_mpi_processes(ranks)));
+    record.print(out);
+
+    result.times = {{"mesh", scene.mesh_seconds()},
+                    {"assembly", scene.assembly_seconds()}};
+    dealii::Timer timer;
+    result.solve = solve(
+      choice, solver, scene, record.has_details() ? &out : nullptr, terminal);
+    result.times.emplace_back("solve", timer.wall_time());
+
+    timer.restart();
+    result.verification = verify(scene.problem(),
+                                 scene.adhesion(),
+                                 scene.law(),
+                                 result.solve.u,
+                                 result.solve.load_factor,
+                                 1e-6,
+                                 scene.piece());
+    result.largest      = largest_values(scene.problem(), result.solve.u, 1.);
+    for (double *const value : {&result.largest.displacement,
+                                &result.largest.gradient,
+                                &result.largest.von_mises})
+      *value = dealii::Utilities::MPI::max(*value, ranks);
+    const double largest_force = scene.piece()->nodes().largest(
+      scene.problem().fields().applied_nodal_forces().begin());
+    result.means = scene.means().values(scene.problem(),
+                                        result.solve.u,
+                                        result.solve.load_factor,
+                                        scene.piece());
+    result.times.emplace_back("verification", timer.wall_time());
+    result.notes = result.solve.notes;
+    append(result.solve.minimum.notes, result.notes);
+    append(parameters.notes, result.notes);
+    judge(verification_message(parameters.verification.tolerance, result),
+          "",
+          result);
+    if (dealii::Utilities::MPI::broadcast(ranks, result.is_success()))
+      {
+        timer.restart();
+        estimate(scene, scene.adhesion(), result);
+        result.times.emplace_back("error estimate", timer.wall_time());
+      }
+    append(plausibility_notes(scene.body().shape(),
+                              dim,
+                              largest_force > 0.,
+                              result.largest,
+                              parameters.degree),
+           result.notes);
+
+    timer.restart();
+    try
+      {
+        if (output.body_vtu)
+          append(write_body_pieces(scene.problem(),
+                                   *scene.piece(),
+                                   result.solve.u,
+                                   result.estimate ? &*result.estimate :
+                                                     nullptr,
+                                   output.directory),
+                 written);
+      }
+    catch (const std::runtime_error &error)
+      {
+        failure = error.what();
+      }
+    result.solve.u      = scene.piece()->gather(result.solve.u);
+    const double memory = dealii::Utilities::MPI::max(peak_memory(), ranks);
+    ExitCode     code   = ExitCode::success;
+    const auto   all_failures =
+      dealii::Utilities::MPI::all_gather(ranks, failure);
+    if (is_first)
+      {
+        for (const std::string &other : all_failures)
+          if (failure.empty())
+            failure = other;
+        report_result(scene, choice, result, record);
+        try
+          {
+            append(write_files(files, output.directory), written);
+            result.times.emplace_back("output", timer.wall_time());
+            result.times.emplace_back("total", total.wall_time());
+            report_cost(result, choice, memory, record);
+            const std::string summary =
+              output_path(output.directory, "summary.json");
+            record.write(summary);
+            written.push_back(summary);
+          }
+        catch (const std::runtime_error &error)
+          {
+            failure = error.what();
+          }
+        report_files(written, no_pictures, record);
+        record.print(out);
+        code = conclude(result, failure);
+      }
+    return static_cast<ExitCode>(
+      dealii::Utilities::MPI::broadcast(ranks, static_cast<int>(code)));
+  }
+
+
+
+  template ExitCode
+  run_on_ranks<2>(const Parameters &,
+                  const MPI_Comm,
+                  std::ostream &,
+                  const bool);
+  template ExitCode
+  run_on_ranks<3>(const Parameters &,
+                  const MPI_Comm,
+                  std::ostream &,
+                  const bool);
+} // namespace Debond

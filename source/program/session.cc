@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <debond/base/atomic_file.h>
+#include <debond/program/session.h>
+
+#include <filesystem>
+#include <iostream>
+
+namespace Debond
+{
+  std::string
+  output_path(const std::string &directory, const std::string &name)
+  {
+    return (std::filesystem::path(directory) / name).string();
+  }
+
+
+
+  std::string
+  write_effective_scene(const std::string &scene, const std::string &directory)
+  {
+    const std::string path = output_path(directory, "parameters.prm");
+    write_atomically(path, [&](std::ostream &file) { file << scene; });
+    return path;
+  }
+
+
+
+  double
+  peak_memory()
+  {
+    dealii::Utilities::System::MemoryStats memory;
+    dealii::Utilities::System::get_memory_stats(memory);
+    return 1024. * static_cast<double>(memory.VmHWM);
+  }
+
+
+
+  template <int dim>
+  std::string
+  finish_checkpoints(const RunCheckpoints     &checkpoints,
+                     RunResult<dim>           &result,
+                     std::vector<std::string> &written)
+  {
+    if (result.is_success())
+      {
+        checkpoints.remove();
+        return "";
+      }
+    if (checkpoints.written())
+      {
+        written.push_back(checkpoints.file_name());
+        result.message += " The run goes on with --restart.";
+      }
+    return checkpoints.error();
+  }
+
+
+
+  template <int dim>
+  ExitCode
+  conclude(const RunResult<dim> &result, const std::string &output_error)
+  {
+    const bool interrupted = result.solve.minimum.interrupted;
+    if (!result.is_answer())
+      std::cerr << "debond: NOT CONVERGED (" << result.status
+                << "): " << result.message << std::endl;
+    else if (interrupted)
+      std::cerr
+        << "debond: the search or the proof was interrupted; the result "
+           "is what it had found"
+        << std::endl;
+    if (!output_error.empty())
+      {
+        std::cerr << "debond: " << output_error << std::endl;
+        return ExitCode::output_not_saved;
+      }
+    if (result.solve.status == SolverStatus::interrupted ||
+        (result.is_success() && interrupted))
+      return ExitCode::interrupted;
+    return result.is_answer() ? ExitCode::success : ExitCode::not_converged;
+  }
+
+
+
+  template std::string
+  finish_checkpoints(const RunCheckpoints &,
+                     RunResult<2> &,
+                     std::vector<std::string> &);
+  template std::string
+  finish_checkpoints(const RunCheckpoints &,
+                     RunResult<3> &,
+                     std::vector<std::string> &);
+  template ExitCode
+  conclude(const RunResult<2> &, const std::string &);
+  template ExitCode
+  conclude(const RunResult<3> &, const std::string &);
+} // namespace Debond

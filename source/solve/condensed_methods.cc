@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+
+#include <debond/contact/boundary_coarsening.h>
+#include <debond/elasticity/contact_condensation.h>
+#include <debond/elasticity/refinement.h>
+#include <debond/linear_algebra/eigen_view.h>
+#include <debond/optimization/bundle/metric_direction.h>
+#include <debond/optimization/majorise/coarse_start.h>
+#include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/solve/condensed_methods.h>
+#include <debond/solve/refine_result.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace Debond
+{
+  namespace
+  {
+    using Vector = dealii::Vector<double>;
+
+
+
+    /// Contact boundaries with more nodes take their start from coarser ones.
+    constexpr unsigned int coarsest_contact_nodes = 50;
+
+
+
+    template <int dim>
+    void
+    solve_by_energy_bundle(ProximalBundleParameters bundle,
+                           const Scene<dim>        &scene,
+                           const Condensation      &condensed,
+                           Checkpoints             *checkpoints,
+                           Watch                   &watch,
+                           Vector                  &s,
+                           SolveResult             &result)
+    {
+      // The condensed functional has the same form on the normals alone.
+      const ContactSpace<dim> contact =
+        scene.problem().unknowns().contact().condensed();
+      const Functional<dim, dealii::FullMatrix<double>, Vector> functional(
+        condensed.schur_complement(),
+        condensed.load(),
+        contact,
+        scene.adhesion());
+
+      // Without loads any tolerance will do.
+      bundle.epsilon_s =
+        std::max(bundle.epsilon_s * condensed.energy_without_contact(),
+                 std::numeric_limits<double>::min());
+      MetricDirection<Vector> direction(symmetric_view(
+                                          condensed.schur_complement()),
+                                        scene.adhesion(),
+                                        bundle.bundle_size);
+      add_bundle_result(ProximalBundle<Vector>(bundle).minimize(functional,
+                                                                direction,
+                                                                s,
+                                                                std::ref(watch),
+                                                                checkpoints),
+                        result);
+      // The functional differs from J by the energy at s = 0.
+      for (BundleIteration &iteration : result.bundle_history)
+        iteration.functional += condensed.energy_at_zero();
+    }
+
+
+
+    template <int dim>
+    void
+    solve_by_majorise_minimise(const MajoriseMinimise &method,
+                               const Scene<dim>       &scene,
+                               const Condensation     &condensed,
+                               const bool              has_start,
+                               Watch                  &watch,
+                               Vector                 &s,
+                               SolveResult            &result)
+    {
+      // Coarser spaces do not know the gaps of bodies at rest, and what only
+      // bonds hold has to start with all of them.
+      const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
+      const bool                  is_loose =
+        unknowns.has_gap() || !unknowns.held_by_contact().motions.empty();
+      const MatrixView S     = symmetric_view(condensed.schur_complement());
+      const VectorView g     = eigen_view(condensed.load());
+      Eigen::VectorXd  point = eigen_view(s);
+      if (!has_start && is_loose)
+        point = eigen_view(unknowns.contact().at_rest());
+      else if (!has_start)
+        point = coarse_start(S,
+                             g,
+                             scene.adhesion(),
+                             coarsen(unknowns.contact().boundary(),
+                                     coarsest_contact_nodes),
+                             method,
+                             result.notes,
+                             [&watch](const MajoriseMinimiseIteration &) {
+                               return watch.may_go_on();
+                             });
+      CondensedProblem problem(S,
+                               g,
+                               scene.adhesion(),
+                               point,
+                               free_motions_of_contact(unknowns),
+                               stiffness_at_contact(scene.problem()));
+      add_majorise_result(method.minimize(problem, std::ref(watch)),
+                          condensed.energy_at_zero(),
+                          result);
+      s = from_eigen(point);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  solve_condensed(const std::string      &method,
+                  const SolverParameters &parameters,
+                  const Scene<dim>       &scene,
+                  Checkpoints            *checkpoints,
+                  const Vector           *start,
+                  Watch                  &watch,
+                  SolveResult            &result)
+  {
+    dealii::Timer              timer;
+    const ElasticProblem<dim> &problem = scene.problem();
+    watch.announce("factorisation", problem.unknowns().n_free_dofs());
+    const Condensation condensed =
+      condense_to_contact(problem, scene.adhesion());
+    const bool is_held = problem.unknowns().held_by_contact().motions.empty();
+    result.parts["condensation"] = timer.wall_time();
+
+    if (!std::isfinite(condensed.energy_at_zero()))
+      {
+        result.status  = SolverStatus::not_finite;
+        result.message = "condensation: the energy of the loads is not a "
+                         "finite number. Check the data of the scene.";
+        result.u.reinit(problem.unknowns().n_dofs());
+        return;
+      }
+    watch.add_energy(condensed.energy_at_zero());
+    timer.restart();
+    Vector s(problem.unknowns().contact().size());
+    if (start != nullptr)
+      {
+        s = problem.unknowns().contact().trace(*start);
+        for (double &opening : s)
+          opening = std::min(opening, 0.);
+      }
+    // If no contact node is free, there is no metric either.
+    if (method == SolverMethod::energy_bundle && s.size() > 0)
+      solve_by_energy_bundle(parameters.energy_bundle,
+                             scene,
+                             condensed,
+                             checkpoints,
+                             watch,
+                             s,
+                             result);
+    else
+      solve_by_majorise_minimise(MajoriseMinimise(parameters.majorise_minimise),
+                                 scene,
+                                 condensed,
+                                 start != nullptr,
+                                 watch,
+                                 s,
+                                 result);
+    result.parts["contact"] = timer.wall_time();
+
+    // Where nothing else holds the body J may fall without end.
+    if (can_be_verified(result.status) && !is_held)
+      result.minimum.kind =
+        kind_without_search(scene.law(), scene.adhesion(), s);
+    else if (can_be_verified(result.status))
+      {
+        timer.restart();
+        const Vector followed = s;
+        result.minimum        = find_better_minimum(
+          parameters,
+          problem.unknowns().contact().boundary(),
+          scene.law(),
+          scene.adhesion(),
+          condensed,
+          [&]() { return watch.may_go_on(); },
+          s);
+        result.parts["search and proof"] = timer.wall_time();
+        if (result.minimum.search_trials > 0 || result.minimum.proof_attempted)
+          {
+            result.functional_from_start =
+              functional_of(scene, condensed.expand(followed));
+            result.is_replaced = s != followed;
+          }
+      }
+
+    timer.restart();
+    result.u                  = condensed.expand(s);
+    result.parts["expansion"] = timer.wall_time();
+
+    // On small meshes the estimate takes 2 % of the solve.
+    CondensedCorrection solver(condensed);
+    if (refine_result(scene, solver, watch, result) && is_held)
+      result.condition_estimate = condensed.condition_estimate();
+  }
+
+
+
+  template void
+  solve_condensed(const std::string &,
+                  const SolverParameters &,
+                  const Scene<2> &,
+                  Checkpoints *,
+                  const Vector *,
+                  Watch &,
+                  SolveResult &);
+  template void
+  solve_condensed(const std::string &,
+                  const SolverParameters &,
+                  const Scene<3> &,
+                  Checkpoints *,
+                  const Vector *,
+                  Watch &,
+                  SolveResult &);
+} // namespace Debond

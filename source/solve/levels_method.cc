@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/timer.h>
+
+#include <debond/contact/functional.h>
+#include <debond/elasticity/elastic_levels.h>
+#include <debond/elasticity/level_problem.h>
+#include <debond/elasticity/mesh_transfer.h>
+#include <debond/elasticity/refinement.h>
+#include <debond/input/bad_input.h>
+#include <debond/optimization/majorise/restricted_function.h>
+#include <debond/solve/condensed_methods.h>
+#include <debond/solve/front_search.h>
+#include <debond/solve/levels_method.h>
+#include <debond/solve/multigrid_method.h>
+#include <debond/solve/refine_result.h>
+#include <debond/solve/scene_size.h>
+#include <debond/solve/solve.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace Debond
+{
+  namespace
+  {
+    using Vector = dealii::Vector<double>;
+
+
+
+    /// Each lowers J; fronts that are still moving then are left where they
+    /// are.
+    constexpr unsigned int most_front_rounds = 20;
+
+    /// A level needs to be solved to what the next finer one makes of it.
+    constexpr double coarse_level_tolerance = 1e-4;
+
+
+
+    void
+    keep_admissible(const std::vector<unsigned int> &normals, Vector &u)
+    {
+      for (const unsigned int normal : normals)
+        if (normal != dealii::numbers::invalid_unsigned_int)
+          u(normal) = std::min(u(normal), 0.);
+    }
+
+
+
+    /// Minima on the coarser levels, each the start of the next finer one, from
+    /// that of the first coarser mesh that is factorised, on which the search
+    /// of the scene is done; @p result gets its counts and notes. Returns that
+    /// of the level @p last_level > 0, or the start on the finest one.
+    template <int dim>
+    Vector
+    start_from_levels(const MethodChoice     &choice,
+                      const SolverParameters &parameters,
+                      const Scene<dim>       &scene,
+                      ElasticLevels<dim>     &levels,
+                      const unsigned int      last_level,
+                      const InterruptGuard   &guard,
+                      const Watch            &fine_watch,
+                      SolveResult            &result)
+    {
+      std::shared_ptr<const Body<dim>> body = scene.body().coarser();
+      unsigned int                     l    = 1;
+      for (;
+           body && scene_size(*body, dim, scene.parameters().contact_boundaries)
+                       .unknowns > largest_coarse_factorisation;
+           ++l)
+        body = body->coarser();
+
+      Vector     u;
+      const bool is_solved = body != nullptr;
+      if (is_solved)
+        {
+          SolverParameters coarse = parameters;
+          coarse.prove            = false;
+          const Scene<dim> coarse_scene(scene.parameters(),
+                                        body,
+                                        MatrixStorage::serial);
+          // A piece does not know what holds the whole.
+          check_supports_of_method(choice, parameters, coarse_scene);
+          Watch       watch(guard, fine_watch);
+          SolveResult start;
+          solve_condensed(SolverMethod::majorise_minimise,
+                          coarse,
+                          coarse_scene,
+                          nullptr,
+                          nullptr,
+                          watch,
+                          start);
+          result.notes                   = start.notes;
+          result.minimum                 = start.minimum;
+          result.minimum.proof_attempted = false;
+          if (!can_be_verified(start.status))
+            result.notes.push_back(
+              "start on the mesh of " + std::to_string(coarse_scene.n_cells()) +
+              (dim == 2 ? " triangles: " : " tetrahedra: ") + start.message);
+          // The subspaces are those of what is zero where it is prescribed.
+          if (scene.problem().unknowns().has_lifting() ||
+              l >= levels.n_levels())
+            return interpolate_displacement(coarse_scene.body(),
+                                            coarse_scene.problem(),
+                                            start.u,
+                                            scene.problem());
+          u = levels.from_vertex_displacements(
+            l,
+            body->interpolate(coarse_scene.problem()
+                                .unknowns()
+                                .dof_handler()
+                                .get_triangulation(),
+                              vertex_displacements(coarse_scene.problem(),
+                                                   start.u),
+                              levels.vertices(l)));
+          keep_admissible(levels.normals(l), u);
+        }
+      else
+        {
+          l = levels.n_levels() - 1;
+          u.reinit(levels.n_unknowns(l));
+        }
+
+      MajoriseMinimiseParameters coarse_parameters =
+        parameters.majorise_minimise;
+      coarse_parameters.tolerance =
+        std::max(coarse_parameters.tolerance, coarse_level_tolerance);
+      const unsigned int solved_level = is_solved ? l : levels.n_levels();
+      for (;; --l)
+        {
+          if (l > 0 && l != solved_level && fine_watch.may_go_on())
+            {
+              const RestrictedFunction     phi(scene.adhesion(),
+                                           levels.trace_prolongation(l));
+              LevelProblem<dim>            problem(levels, l, phi, u, [&]() {
+                return fine_watch.may_go_on();
+              });
+              const MajoriseMinimiseResult minimum =
+                MajoriseMinimise(coarse_parameters)
+                  .minimize(problem, [&](const MajoriseMinimiseIteration &) {
+                    return fine_watch.may_go_on();
+                  });
+              if (!can_be_verified(minimum.status))
+                result.notes.push_back("start on " +
+                                       std::to_string(levels.n_unknowns(l)) +
+                                       " unknowns: " + minimum.message);
+            }
+          if (l == last_level)
+            return u;
+          u = levels.prolongate(l, u);
+          keep_admissible(levels.normals(l - 1), u);
+        }
+    }
+
+
+
+    /// The same where ranks share the finest level: the root has the others.
+    template <int dim>
+    Vector
+    start_from_root(const MethodChoice     &choice,
+                    const SolverParameters &parameters,
+                    const Scene<dim>       &scene,
+                    ElasticLevels<dim>     &levels,
+                    const InterruptGuard   &guard,
+                    const Watch            &fine_watch,
+                    SolveResult            &result)
+    {
+      Vector                   u;
+      std::vector<std::string> errors;
+      if (levels.is_root())
+        try
+          {
+            u = start_from_levels(choice,
+                                  parameters,
+                                  scene,
+                                  levels,
+                                  1,
+                                  guard,
+                                  Watch(guard, fine_watch),
+                                  result);
+          }
+        catch (const BadInput &error)
+          {
+            errors = error.lines;
+          }
+      errors =
+        dealii::Utilities::MPI::broadcast(scene.piece()->nodes().communicator(),
+                                          errors);
+      if (!errors.empty())
+        throw BadInput(errors);
+      u = levels.prolongate(1, u);
+      keep_admissible(levels.normals(0), u);
+      return u;
+    }
+
+
+
+    /// The search on coarser meshes knows fronts to the size of their elements.
+    template <int dim>
+    void
+    improve_fronts(const SolverParameters &parameters,
+                   const Scene<dim>       &scene,
+                   const double            energy,
+                   MajorantProblem        &problem,
+                   Watch                  &watch,
+                   SolveResult            &result)
+    {
+      if (scene.law().curvature(0.) == 0.)
+        return;
+      const MajoriseMinimise method(parameters.majorise_minimise);
+      WhichMinimum          &minimum = result.minimum;
+      for (unsigned int round = 1; can_be_verified(result.status); ++round)
+        {
+          const dealii::Timer     timer;
+          const FrontSearchResult search = search_fronts(
+            scene, method, [&]() { return watch.may_go_on(); }, result.u);
+          result.parts["fronts"] += timer.wall_time();
+          minimum.front_windows += search.windows;
+          minimum.front_trials += search.trials;
+          minimum.search_improvements += search.improvements;
+          minimum.search_failures += search.failures;
+          minimum.interrupted = !watch.may_go_on();
+          const bool is_last  = !search.complete || round == most_front_rounds;
+          if (is_last && (!search.complete || search.improvements > 0))
+            result.notes.push_back("the search for better fronts of bonds was "
+                                   "ended before it had tried all of them");
+          if (search.improvements > 0)
+            minimise_on_all_unknowns(
+              parameters, energy, problem, watch, result);
+          if (is_last || search.improvements == 0)
+            return;
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  solve_by_levels(const MethodChoice     &choice,
+                  const SolverParameters &parameters,
+                  const Scene<dim>       &scene,
+                  const InterruptGuard   &guard,
+                  Watch                  &watch,
+                  SolveResult            &result)
+  {
+    dealii::Timer timer;
+    const double  energy = prescribed_energy(scene.problem(), scene.adhesion());
+    watch.add_energy(energy);
+    watch.announce("multigrid", scene.problem().unknowns().n_free_dofs());
+    const auto levels =
+      scene.piece() == nullptr ?
+        ElasticLevels<dim>::make(scene.body(), scene.problem()) :
+        ElasticLevels<dim>::make(*scene.piece(), scene.problem());
+    result.parts["multigrid setup"] = timer.wall_time();
+
+    timer.restart();
+    result.u =
+      scene.piece() == nullptr ?
+        start_from_levels(
+          choice, parameters, scene, *levels, 0, guard, watch, result) :
+        start_from_root(
+          choice, parameters, scene, *levels, guard, watch, result);
+    result.parts["coarser meshes"] = timer.wall_time();
+    if (!watch.may_go_on())
+      {
+        end_at_start(result);
+        return;
+      }
+
+    LevelProblem<dim>    problem(*levels,
+                              0,
+                              scene.adhesion(),
+                              result.u,
+                              [&watch]() { return watch.may_go_on(); });
+    LevelCorrection<dim> solver(*levels);
+    minimise_on_all_unknowns(parameters, energy, problem, watch, result);
+    // Windows are cut out of a whole mesh.
+    if (wants_search(parameters) && scene.piece() == nullptr)
+      improve_fronts(parameters, scene, energy, problem, watch, result);
+    refine_result(scene, solver, watch, result);
+  }
+
+
+
+  template void
+  solve_by_levels(const MethodChoice &,
+                  const SolverParameters &,
+                  const Scene<2> &,
+                  const InterruptGuard &,
+                  Watch &,
+                  SolveResult &);
+  template void
+  solve_by_levels(const MethodChoice &,
+                  const SolverParameters &,
+                  const Scene<3> &,
+                  const InterruptGuard &,
+                  Watch &,
+                  SolveResult &);
+} // namespace Debond

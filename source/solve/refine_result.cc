@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+
+#include <debond/linear_algebra/eigen_view.h>
+#include <debond/solve/refine_result.h>
+
+#include <limits>
+#include <sstream>
+
+namespace Debond
+{
+  namespace
+  {
+    using Vector = dealii::Vector<double>;
+
+
+
+    /// Refinement knows no ranks.
+    template <int dim>
+    std::string
+    note_on_rounding(const Scene<dim> &scene, const Vector &u)
+    {
+      constexpr double largest_energy_rounding = 1e-9;
+
+      const ProblemPiece<dim> &piece = *scene.piece();
+      Vector                   terms = u;
+      for (unsigned int i = 0; i < u.size(); ++i)
+        terms(i) *= scene.problem().unknowns().is_constrained(i) ?
+                      0. :
+                      scene.problem().diagonal_entry(i);
+      const Vector s = scene.contact_trace(u);
+      const double energy =
+        piece.nodes().product(scene.problem().load().begin(), u.begin()) -
+        scene.adhesion().subgradient(eigen_view(s)).dot(eigen_view(s));
+      const double rounding = std::numeric_limits<double>::epsilon() *
+                              piece.nodes().product(terms.begin(), u.begin());
+      if (rounding <= largest_energy_rounding * energy)
+        return "";
+      std::ostringstream note;
+      note.precision(1);
+      note << std::scientific << "in double precision rounding can change "
+           << rounding / energy
+           << " of the strain energy; only one rank would refine the result in "
+              "extended precision.";
+      return note.str();
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  bool
+  refine_result(const Scene<dim> &scene,
+                CorrectionSolver &solver,
+                const Watch      &watch,
+                SolveResult      &result)
+  {
+    if (!can_be_verified(result.status))
+      return false;
+    if (scene.piece() != nullptr)
+      {
+        const std::string note = note_on_rounding(scene, result.u);
+        if (!note.empty())
+          result.notes.push_back(note);
+        return !note.empty();
+      }
+    const dealii::Timer timer;
+    const Vector before = scene.problem().unknowns().contact().trace(result.u);
+    const std::string note = refine_where_needed(
+      scene.problem(),
+      scene.adhesion(),
+      1.,
+      solver,
+      [&watch]() { return watch.may_go_on(); },
+      result.u);
+    if (!note.empty())
+      result.notes.push_back(note);
+    // The search knows other bonds than the result has.
+    const Vector after = scene.problem().unknowns().contact().trace(result.u);
+    if (after.size() > 0 && (scene.adhesion().curvature(eigen_view(after)) -
+                             scene.adhesion().curvature(eigen_view(before)))
+                                .norm() > 0.)
+      result.minimum.kind =
+        kind_without_search(scene.law(), scene.adhesion(), after);
+    result.parts["refinement"] = timer.wall_time();
+    return !note.empty();
+  }
+
+
+
+  template bool
+  refine_result(const Scene<2> &,
+                CorrectionSolver &,
+                const Watch &,
+                SolveResult &);
+  template bool
+  refine_result(const Scene<3> &,
+                CorrectionSolver &,
+                const Watch &,
+                SolveResult &);
+} // namespace Debond

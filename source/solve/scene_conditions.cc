@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/function.h>
+
+#include <debond/base/number_text.h>
+#include <debond/base/text.h>
+#include <debond/input/expression.h>
+#include <debond/solve/scene_conditions.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace Debond
+{
+  namespace
+  {
+    template <typename Id>
+    void
+    insert(const std::set<Id> &ids, std::set<Id> &all)
+    {
+      all.insert(ids.begin(), ids.end());
+    }
+
+
+
+    /// Calls @p function(name, id) for the faces of contact boundaries for
+    /// which something is set by entries, @p entries by their names.
+    template <typename Function>
+    void
+    for_contact_boundaries(const ProblemParameters                  &given,
+                           const std::map<std::string, std::string> &entries,
+                           const BoundaryConditions                 &conditions,
+                           const Function                           &function)
+    {
+      const std::set<std::string> &in_contact = given.contact_boundaries;
+      std::map<dealii::types::boundary_id, std::string> taken;
+      for (const auto &[name, entry] : entries)
+        for (const dealii::types::boundary_id id : conditions.names.at(name))
+          {
+            if (conditions.contact.count(id) == 0)
+              throw PieceError(entry,
+                               name + " is not in contact, but " +
+                                 join({in_contact.begin(), in_contact.end()},
+                                      ", "));
+            const auto [other, is_first] = taken.emplace(id, name);
+            if (!is_first)
+              throw PieceError(entry,
+                               name + " overlaps " + other->second +
+                                 ", for which it is set as well");
+            function(name, id);
+          }
+    }
+
+
+
+    /// The entries of a family, by the names of boundaries.
+    std::map<std::string, std::string>
+    entries_of(const std::string                        &family,
+               const std::map<std::string, std::string> &texts)
+    {
+      std::map<std::string, std::string> entries;
+      for (const auto &[name, unused] : texts)
+        entries[name] = family + ' ' + name;
+      return entries;
+    }
+
+
+
+    /// Components that a scene prescribes, "free" for those that it does not.
+    template <int dim>
+    PrescribedDisplacement<dim>
+    prescribed_displacement(const std::string                   &name,
+                            const std::string                   &text,
+                            const std::map<std::string, double> &constants)
+    {
+      PrescribedDisplacement<dim> result;
+      const DisplacementText      components(text);
+      result.name   = name;
+      result.values = make_function<dim>(components.expressions, constants);
+      for (unsigned int d = 0; d < dim; ++d)
+        result.components[d] = components.is_prescribed[d];
+      return result;
+    }
+  } // namespace
+
+
+
+  BoundaryConditions
+  make_conditions(const ProblemParameters &given,
+                  const BoundaryNames     &boundaries)
+  {
+    BoundaryConditions conditions;
+    for (const std::string &name : given.clamped_boundaries)
+      insert(boundaries.at(name), conditions.clamped);
+    for (const std::string &name : given.contact_boundaries)
+      insert(boundaries.at(name), conditions.contact);
+    conditions.names = boundaries;
+    conditions.tangential_displacement_fixed =
+      given.tangential_displacement_fixed;
+    const auto &own = given.tangential_displacements;
+    for_contact_boundaries(
+      given,
+      entries_of("Contact law/Tangential displacement", own),
+      conditions,
+      [&](const std::string &name, const dealii::types::boundary_id id) {
+        if ((own.at(name) == "fixed") !=
+            conditions.tangential_displacement_fixed)
+          conditions.tangential_exceptions.insert(id);
+      });
+    return conditions;
+  }
+
+
+
+  ByRegion<Material>
+  make_materials(const MaterialParameters &parameters,
+                 const RegionNames        &regions)
+  {
+    ByRegion<Material> materials(parameters.everywhere);
+    std::map<dealii::types::material_id, std::string> taken;
+    for (const auto &[name, material] : parameters.of_regions())
+      for (const dealii::types::material_id id : regions.at(name))
+        {
+          const auto [other, is_first] = taken.emplace(id, name);
+          if (!is_first)
+            throw PieceError(parameters.entry_of(name),
+                             "the region overlaps " + other->second +
+                               ", which has a material of its own as well");
+          materials.set(id, material);
+        }
+    return materials;
+  }
+
+
+
+  template <int dim>
+  Supports<dim>
+  make_supports(const ProblemParameters  &given,
+                const BoundaryConditions &conditions)
+  {
+    const BoundaryNames                 &boundaries = conditions.names;
+    const std::map<std::string, double> &constants  = given.loads.constants;
+    Supports<dim>                        supports;
+    for (const auto &[name, text] : given.supports.displacements)
+      {
+        supports.displacements.push_back(
+          prescribed_displacement<dim>(name, text, constants));
+        supports.displacements.back().boundaries = boundaries.at(name);
+      }
+    for (const std::string &name : given.supports.all_rollers())
+      supports.displacements.push_back({name, boundaries.at(name), true});
+    if (!given.supports.gap.empty())
+      for (const dealii::types::boundary_id id : conditions.contact)
+        supports.gaps[id] = {
+          "", make_function<dim>(given.supports.gap, constants, 1)};
+    const auto &own = given.supports.gaps;
+    for_contact_boundaries(
+      given,
+      entries_of("Contact law/Initial gap", own),
+      conditions,
+      [&](const std::string &name, const dealii::types::boundary_id id) {
+        supports.gaps[id] = {name,
+                             make_function<dim>(own.at(name), constants, 1)};
+      });
+    return supports;
+  }
+
+
+
+  template <int dim>
+  std::unique_ptr<BondField<dim>>
+  make_bond_field(const ProblemParameters  &given,
+                  const AdhesiveLaw        &law,
+                  const BoundaryConditions &conditions)
+  {
+    using Field      = typename BondField<dim>::Field;
+    using Bonds      = typename BondField<dim>::Bonds;
+    const auto field = [&](const std::string &text) -> Field {
+      if (text.empty())
+        return nullptr;
+      if (double number; read_number(text, number))
+        return std::make_shared<const dealii::Functions::ConstantFunction<dim>>(
+          number);
+      return make_function<dim>(text, given.loads.constants, 1);
+    };
+    std::map<std::string, std::string> entries;
+    std::map<std::string, Bonds>       bonds;
+    for (const auto &[name, texts] : given.law.boundaries)
+      {
+        bonds[name] = {name, field(texts.stiffness), field(texts.threshold)};
+        for (const std::string entry : {"Bond stiffness", "Bond threshold"})
+          if (const std::string path = "Contact law/" + entry + ' ' + name;
+              given.locations.count(path) > 0)
+            entries.emplace(name, path);
+      }
+    std::map<dealii::types::boundary_id, Bonds> boundaries;
+    for_contact_boundaries(given,
+                           entries,
+                           conditions,
+                           [&](const std::string               &name,
+                               const dealii::types::boundary_id id) {
+                             boundaries[id] = bonds[name];
+                           });
+    return std::make_unique<BondField<dim>>(law.curvature(0.),
+                                            law.bond_threshold(),
+                                            Bonds{"",
+                                                  field(given.law.stiffness),
+                                                  field(given.law.threshold)},
+                                            boundaries);
+  }
+
+
+
+  std::vector<double>
+  displacement_factors(const LoadPathParameters &load_path)
+  {
+    std::vector<double> factors;
+    for (unsigned int k = 0; k < load_path.factors.size(); ++k)
+      factors.push_back(load_path.at(k).displacements);
+    return factors.empty() ? std::vector<double>{1.} : factors;
+  }
+
+
+
+  template <int dim>
+  void
+  check_held_vertices(const ElasticUnknowns<dim> &unknowns,
+                      const std::vector<double>  &load_factors)
+  {
+    constexpr double rounding = 1e-12;
+    for (const auto &vertex : unknowns.contact().boundary().held_vertices)
+      for (const double factor : load_factors)
+        {
+          const double normal = factor * vertex.normal_displacement;
+          if (normal - vertex.gap > rounding * (std::abs(normal) + vertex.gap))
+            throw SupportError(SupportError::Subject::displacement,
+                               unknowns.support_names().at(vertex.support),
+                               "it pushes the body into the foundation at " +
+                                 point_text(vertex.position));
+        }
+  }
+
+
+
+  template Supports<2>
+  make_supports<2>(const ProblemParameters &, const BoundaryConditions &);
+  template Supports<3>
+  make_supports<3>(const ProblemParameters &, const BoundaryConditions &);
+  template std::unique_ptr<BondField<2>>
+  make_bond_field<2>(const ProblemParameters &,
+                     const AdhesiveLaw &,
+                     const BoundaryConditions &);
+  template std::unique_ptr<BondField<3>>
+  make_bond_field<3>(const ProblemParameters &,
+                     const AdhesiveLaw &,
+                     const BoundaryConditions &);
+  template void
+  check_held_vertices(const ElasticUnknowns<2> &, const std::vector<double> &);
+  template void
+  check_held_vertices(const ElasticUnknowns<3> &, const std::vector<double> &);
+} // namespace Debond

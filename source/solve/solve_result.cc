@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/linear_algebra/eigen_view.h>
+#include <debond/solve/solve_result.h>
+
+namespace Debond
+{
+  void
+  add_bundle_result(const ProximalBundleResult &bundle, SolveResult &result)
+  {
+    result.status                     = bundle.status;
+    result.message                    = bundle.message;
+    result.iterations                 = bundle.iterations();
+    result.long_steps                 = bundle.long_steps;
+    result.short_steps                = bundle.short_steps;
+    result.null_steps                 = bundle.null_steps;
+    result.criterion                  = bundle.v;
+    result.largest_qp_residual        = bundle.largest_qp_residual;
+    result.bundle_history             = bundle.history;
+    result.parts["quadratic program"] = bundle.qp_seconds;
+    result.parts["functional"]        = bundle.objective_seconds;
+    result.parts["linear algebra"]    = bundle.linear_algebra_seconds;
+  }
+
+
+
+  void
+  add_majorise_result(const MajoriseMinimiseResult &minimum,
+                      const double                  energy,
+                      SolveResult                  &result)
+  {
+    result.status    = minimum.status;
+    result.message   = minimum.message;
+    result.criterion = minimum.residual;
+    for (MajoriseMinimiseIteration iteration : minimum.history)
+      {
+        iteration.iteration = ++result.iterations;
+        iteration.functional += energy;
+        result.linear_iterations += iteration.linear_iterations;
+        result.majorise_history.push_back(iteration);
+      }
+  }
+
+
+
+  template <int dim>
+  double
+  functional_of(const Scene<dim> &scene, const dealii::Vector<double> &u)
+  {
+    const ElasticProblem<dim> &problem = scene.problem();
+    return (scene.piece() == nullptr ?
+              problem.fields().elastic_functional(u) :
+              scene.piece()->elastic_functional(
+                problem.fields(), problem.unknowns().dof_handler(), u)) +
+           scene.adhesion().energy(eigen_view(scene.contact_trace(u)));
+  }
+
+
+
+  template double
+  functional_of(const Scene<2> &, const dealii::Vector<double> &);
+  template double
+  functional_of(const Scene<3> &, const dealii::Vector<double> &);
+} // namespace Debond
