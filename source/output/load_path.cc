@@ -1,92 +1,89 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/atomic_file.h>
-#include <debond/base/number_text.h>
+#include <debond/base/data_table.h>
 #include <debond/output/load_path.h>
+
+#include <utility>
 
 namespace Debond
 {
   namespace
   {
-    /// The titles of write_state() with @p prefix.
-    template <int dim>
-    void
-    write_titles(const LoadPathState<dim> &state,
-                 const std::string        &prefix,
-                 std::ostream             &out)
-    {
-      for (const char *title : {"minimum",
-                                "J",
-                                "elastic_energy",
-                                "adhesion_energy",
-                                "unit_load_work",
-                                "unit_displacement_work",
-                                "contact_part",
-                                "bonded_part",
-                                "broken_part",
-                                "mean_gap",
-                                "largest_gap",
-                                "normal_force"})
-        out << ',' << prefix << title;
-      for (const char *body : {"contact", "clamped"})
-        for (unsigned int d = 0; d < dim; ++d)
-          out << ',' << prefix << body << "_reaction_"
-              << "xyz"[d];
-      for (const char *title :
-           {"law_violation", "equilibrium_residual", "force_imbalance"})
-        out << ',' << prefix << title;
-      for (const auto &[name, part] : state.other_parts)
-        out << ',' << prefix << name << "_part";
-      for (const char *title : {"broken_zone", "dissipated_energy"})
-        out << ',' << prefix << title;
-      for (const auto &[name, vector] : state.vectors)
-        for (unsigned int d = 0; d < dim; ++d)
-          out << ',' << prefix << name << '_' << "xyz"[d];
-    }
+    using NamedCells = std::vector<std::pair<std::string, Cell>>;
 
 
 
     template <int dim>
-    void
-    write_state(const LoadPathState<dim> &state, std::ostream &out)
+    NamedCells
+    cells_of(const LoadPathState<dim> &state, const std::string &prefix)
     {
-      out << ',' << state.minimum;
-      for (const double number : {state.functional,
-                                  state.elastic_energy,
-                                  state.adhesion_energy,
-                                  state.unit_load_work,
-                                  state.unit_displacement_work,
-                                  state.contact_part,
-                                  state.bonded_part,
-                                  state.broken_part,
-                                  state.mean_gap,
-                                  state.largest_gap,
-                                  state.normal_force})
-        out << ',' << shortest_text(number);
-      for (const auto &reaction :
-           {state.contact_reaction, state.clamped_reaction})
+      NamedCells cells;
+      const auto add = [&](const std::string &title, const Cell &cell) {
+        cells.emplace_back(prefix + title, cell);
+      };
+      const auto add_vector = [&](const std::string            &title,
+                                  const dealii::Tensor<1, dim> &vector) {
         for (unsigned int d = 0; d < dim; ++d)
-          out << ',' << shortest_text(reaction[d]);
-      for (const double number : {state.law_violation,
-                                  state.equilibrium_residual,
-                                  state.force_imbalance})
-        out << ',' << shortest_text(number);
+          add(title + '_' + "xyz"[d], vector[d]);
+      };
+      add("minimum", state.minimum);
+      add("J", state.functional);
+      add("elastic_energy", state.elastic_energy);
+      add("adhesion_energy", state.adhesion_energy);
+      add("unit_load_work", state.unit_load_work);
+      add("unit_displacement_work", state.unit_displacement_work);
+      add("contact_part", state.contact_part);
+      add("bonded_part", state.bonded_part);
+      add("broken_part", state.broken_part);
+      add("mean_gap", state.mean_gap);
+      add("largest_gap", state.largest_gap);
+      add("normal_force", state.normal_force);
+      add_vector("contact_reaction", state.contact_reaction);
+      add_vector("clamped_reaction", state.clamped_reaction);
+      add("law_violation", state.law_violation);
+      add("equilibrium_residual", state.equilibrium_residual);
+      add("force_imbalance", state.force_imbalance);
       for (const auto &[name, part] : state.other_parts)
-        out << ',' << shortest_text(part);
-      for (const double number : {state.broken_zone, state.dissipated_energy})
-        out << ',' << shortest_text(number);
+        add(name + "_part", part);
+      add("broken_zone", state.broken_zone);
+      add("dissipated_energy", state.dissipated_energy);
       for (const auto &[name, vector] : state.vectors)
-        for (unsigned int d = 0; d < dim; ++d)
-          out << ',' << shortest_text(vector[d]);
+        add_vector(name, vector);
+      return cells;
     }
 
 
 
-    void
-    write_optional(const std::optional<double> &number, std::ostream &out)
+    Cell
+    cell_of(const std::optional<double> &number)
     {
-      out << ',';
-      if (number)
-        out << shortest_text(*number);
+      return number ? Cell(*number) : Cell();
+    }
+
+
+
+    /// What the global branch does not have is empty, under the titles of
+    /// @p first.
+    template <int dim>
+    NamedCells
+    row_of(const LoadPathStep<dim> &step, const LoadPathState<dim> &first)
+    {
+      NamedCells row    = {{"step", static_cast<long>(step.step)},
+                           {"factor", step.factor},
+                           {"displacement_factor", step.displacement_factor},
+                           {"status", step.status}};
+      const auto append = [&row](const NamedCells &cells) {
+        row.insert(row.end(), cells.begin(), cells.end());
+      };
+      append(cells_of(step.state, ""));
+      row.emplace_back("iterations", static_cast<long>(step.iterations));
+      row.emplace_back("change_factor", cell_of(step.change_factor));
+      NamedCells global = cells_of(step.global.value_or(first), "global_");
+      if (!step.global)
+        for (auto &[unused, cell] : global)
+          cell = Cell();
+      append(global);
+      row.emplace_back("global_relative_gap", cell_of(step.relative_gap));
+      return row;
     }
   } // namespace
 
@@ -97,32 +94,19 @@ namespace Debond
   write_load_path(const std::vector<LoadPathStep<dim>> &steps,
                   const std::string                    &file_name)
   {
-    const LoadPathState<dim> first =
-      steps.empty() ? LoadPathState<dim>() : steps[0].state;
-    const std::size_t n_columns_of_state =
-      17 + 2 * dim + first.other_parts.size() + dim * first.vectors.size();
-    write_atomically(file_name, [&](std::ostream &out) {
-      out << "step,factor,displacement_factor,status";
-      write_titles(first, "", out);
-      out << ",iterations,change_factor";
-      write_titles(first, "global_", out);
-      out << ",global_relative_gap\n";
-
-      for (const LoadPathStep<dim> &step : steps)
-        {
-          out << step.step << ',' << shortest_text(step.factor) << ','
-              << shortest_text(step.displacement_factor) << ',' << step.status;
-          write_state(step.state, out);
-          out << ',' << step.iterations;
-          write_optional(step.change_factor, out);
-          if (step.global)
-            write_state(*step.global, out);
-          else
-            out << std::string(n_columns_of_state, ',');
-          write_optional(step.relative_gap, out);
-          out << '\n';
-        }
-    });
+    const LoadPathStep<dim> first =
+      steps.empty() ? LoadPathStep<dim>() : steps[0];
+    DataTable table;
+    for (const auto &[title, unused] : row_of(first, first.state))
+      table.add_column(title);
+    for (const LoadPathStep<dim> &step : steps)
+      {
+        std::vector<Cell> cells;
+        for (const auto &[unused, cell] : row_of(step, first.state))
+          cells.push_back(cell);
+        table.add_row(cells);
+      }
+    table.write_csv(file_name);
   }
 
 
