@@ -18,7 +18,9 @@ namespace Debond
         return everywhere;
       try
         {
-          const double value = nonnegative_value(*field, point);
+          // That of a stiffness that ends at zero.
+          const double rounding = is_threshold ? 0. : 1e-12 * everywhere;
+          const double value    = nonnegative_value(*field, point, rounding);
           if (is_threshold && value == 0.)
             throw std::invalid_argument("it is 0 at " + point_text(point));
           return value;

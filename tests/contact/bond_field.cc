@@ -345,4 +345,30 @@ main(int argc, char **)
   }
   test_varying_bonds<2>();
   test_varying_bonds<3>();
+  {
+    // k (1 - x) as it is written, with rounding at its end: zero. More than
+    // that is negative.
+    const auto below_zero = [](const double value) {
+      return BondField<2>(
+        a_1,
+        M_1,
+        {"",
+         std::make_shared<dealii::ScalarFunctionFromFunctionObject<2>>(
+           [value](const dealii::Point<2> &) { return value; }),
+         nullptr},
+        {});
+    };
+    check("a stiffness that rounding makes negative is none",
+          below_zero(-2e-16 * a_1).at({1., 0.}, 0).energy == 0.);
+    bool is_refused = false;
+    try
+      {
+        below_zero(-1e-9 * a_1).at({1., 0.}, 0);
+      }
+    catch (const BondFieldError &)
+      {
+        is_refused = true;
+      }
+    check("a negative one is refused", is_refused);
+  }
 }

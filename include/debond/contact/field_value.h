@@ -5,6 +5,7 @@
 #include <deal.II/base/function.h>
 #include <deal.II/base/point.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -56,20 +57,22 @@ namespace Debond
 
 
 
-  /// A field that must not be negative. Throws as field_value() does.
+  /// A field that must not be negative, but for @p rounding, which stands for
+  /// zero. Throws as field_value() does.
   template <int dim>
   double
   nonnegative_value(const dealii::Function<dim> &field,
-                    const dealii::Point<dim>    &point)
+                    const dealii::Point<dim>    &point,
+                    const double                 rounding = 0.)
   {
     const double value = field_value(field, point);
-    if (value < 0.)
+    if (value < -rounding)
       {
         std::ostringstream text;
         text << "it is negative, " << value << ", at " << point_text(point);
         throw std::invalid_argument(text.str());
       }
-    return value;
+    return std::max(value, 0.);
   }
 } // namespace Debond
 
