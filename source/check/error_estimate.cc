@@ -681,13 +681,11 @@ namespace Debond
           throw std::invalid_argument(of_rank);
 
     const double constant = calibration<dim>(problem.unknowns().degree());
-    const auto   sum      = [&problem, piece](const std::vector<double> &v) {
+    const auto   sum      = [piece](const std::vector<double> &v) {
       const auto add = [](const std::vector<double> &numbers) {
         return std::accumulate(numbers.begin(), numbers.end(), 0.);
       };
-      return piece == nullptr ?
-                      add(v) :
-                      add(piece->gather_cells(problem.unknowns().dof_handler(), v));
+      return piece == nullptr ? add(v) : add(piece->gather_cells(v));
     };
     ErrorEstimate result;
     result.cells = std::move(residuals->parts);

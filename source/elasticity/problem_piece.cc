@@ -114,6 +114,7 @@ namespace Debond
     : piece(body_piece)
     , shared_nodes(share_nodes(piece, unknowns, communicator))
   {
+    prepare_gathering(unknowns.dof_handler());
     const ContactBoundary<dim> &local = unknowns.contact().boundary();
     const auto                 &dofs  = unknowns.contact().normals();
     if (unknowns.has_lifting() || !local.held_vertices.empty())
@@ -281,78 +282,129 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  ProblemPiece<dim>::gather(const dealii::Vector<double> &v) const
+  template <typename Key>
+  typename ProblemPiece<dim>::Gathering
+  ProblemPiece<dim>::make_gathering(const std::vector<Key> &own_keys) const
+  {
+    Gathering        result;
+    std::vector<Key> keys;
+    for (const std::vector<Key> &of_rank :
+         dealii::Utilities::MPI::gather(shared_nodes.communicator(), own_keys))
+      {
+        result.starts.push_back(static_cast<int>(keys.size()));
+        result.counts.push_back(static_cast<int>(of_rank.size()));
+        keys.insert(keys.end(), of_rank.begin(), of_rank.end());
+      }
+    std::vector<unsigned int> order(keys.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::stable_sort(order.begin(),
+                     order.end(),
+                     [&keys](const unsigned int a, const unsigned int b) {
+                       return keys[a] < keys[b];
+                     });
+    result.places.resize(keys.size());
+    for (unsigned int place = 0; place < order.size(); ++place)
+      result.places[order[place]] = place;
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  ProblemPiece<dim>::prepare_gathering(const dealii::DoFHandler<dim> &dofs)
   {
     std::vector<unsigned int> numbers;
-    std::vector<double>       values;
     for (const auto &[begin, end] : shared_nodes.own_ranges())
       for (unsigned int i = begin; i < end; ++i)
+        numbers.push_back(shared_nodes.number(i));
+    all_nodes = make_gathering(numbers);
+
+    std::vector<std::size_t> cells;
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (piece.owns_cell_at(cell->center()))
         {
-          numbers.push_back(shared_nodes.number(i));
-          for (unsigned int c = 0; c < dim; ++c)
-            values.push_back(v(i * dim + c));
+          own_cells.push_back(cell->active_cell_index());
+          cells.push_back(piece.cell_at(cell->center()));
         }
-    const MPI_Comm ranks       = shared_nodes.communicator();
-    const auto     all_numbers = dealii::Utilities::MPI::gather(ranks, numbers);
-    const auto     all_values  = dealii::Utilities::MPI::gather(ranks, values);
-    std::size_t    size        = 0;
-    for (const auto &of_rank : all_values)
-      size += of_rank.size();
-    dealii::Vector<double> result(static_cast<unsigned int>(size));
-    for (std::size_t rank = 0; rank < all_numbers.size(); ++rank)
-      for (std::size_t i = 0; i < all_numbers[rank].size(); ++i)
-        for (unsigned int c = 0; c < dim; ++c)
-          result(all_numbers[rank][i] * dim + c) =
-            all_values[rank][i * dim + c];
-    return result;
+    all_cells = make_gathering(cells);
   }
 
 
 
   template <int dim>
   std::vector<double>
-  ProblemPiece<dim>::gather_cells(const dealii::DoFHandler<dim> &dofs,
-                                  const std::vector<double>     &values) const
+  ProblemPiece<dim>::gather(const Gathering           &gathering,
+                            const unsigned int         n_components,
+                            const std::vector<double> &own) const
   {
-    std::vector<std::size_t> cells;
-    std::vector<double>      own;
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (piece.owns_cell_at(cell->center()))
-        {
-          cells.push_back(piece.cell_at(cell->center()));
-          own.push_back(values[cell->active_cell_index()]);
-        }
-    const MPI_Comm ranks      = shared_nodes.communicator();
-    const auto     all_cells  = dealii::Utilities::MPI::gather(ranks, cells);
-    const auto     all_values = dealii::Utilities::MPI::gather(ranks, own);
-    std::vector<std::pair<std::size_t, double>> ordered;
-    for (std::size_t rank = 0; rank < all_cells.size(); ++rank)
-      for (std::size_t k = 0; k < all_cells[rank].size(); ++k)
-        ordered.emplace_back(all_cells[rank][k], all_values[rank][k]);
-    std::stable_sort(ordered.begin(),
-                     ordered.end(),
-                     [](const auto &a, const auto &b) {
-                       return a.first < b.first;
-                     });
-    std::vector<double> result;
-    for (const auto &[unused, value] : ordered)
-      result.push_back(value);
+    // deal.II's gather() packs what it sends.
+    MPI_Datatype entry;
+    int          error =
+      MPI_Type_contiguous(static_cast<int>(n_components), MPI_DOUBLE, &entry);
+    AssertThrowMPI(error);
+    error = MPI_Type_commit(&entry);
+    AssertThrowMPI(error);
+    std::vector<double> received(n_components * gathering.places.size());
+    error = MPI_Gatherv(own.data(),
+                        static_cast<int>(own.size() / n_components),
+                        entry,
+                        received.data(),
+                        gathering.counts.data(),
+                        gathering.starts.data(),
+                        entry,
+                        0,
+                        shared_nodes.communicator());
+    AssertThrowMPI(error);
+    error = MPI_Type_free(&entry);
+    AssertThrowMPI(error);
+
+    std::vector<double> result(received.size());
+    for (std::size_t i = 0; i < gathering.places.size(); ++i)
+      for (std::size_t c = 0; c < n_components; ++c)
+        result[std::size_t(gathering.places[i]) * n_components + c] =
+          received[i * n_components + c];
     return result;
   }
 
 
 
   template <int dim>
+  dealii::Vector<double>
+  ProblemPiece<dim>::gather(const dealii::Vector<double> &v) const
+  {
+    std::vector<double> values;
+    for (const auto &[begin, end] : shared_nodes.own_ranges())
+      values.insert(values.end(),
+                    v.begin() + std::size_t(begin) * dim,
+                    v.begin() + std::size_t(end) * dim);
+    const std::vector<double> whole = gather(all_nodes, dim, values);
+    return dealii::Vector<double>(whole.begin(), whole.end());
+  }
+
+
+
+  template <int dim>
+  std::vector<double>
+  ProblemPiece<dim>::gather_cells(const std::vector<double> &values) const
+  {
+    std::vector<double> own;
+    for (const unsigned int cell : own_cells)
+      own.push_back(values[cell]);
+    return gather(all_cells, 1, own);
+  }
+
+
+
+  template <int dim>
   double
-  ProblemPiece<dim>::elastic_functional(const ElasticFields<dim>      &fields,
-                                        const dealii::DoFHandler<dim> &dofs,
-                                        const dealii::Vector<double>  &u) const
+  ProblemPiece<dim>::elastic_functional(const ElasticFields<dim>     &fields,
+                                        const dealii::Vector<double> &u) const
   {
     auto terms         = fields.elastic_terms(u);
     terms.load         = gather(terms.load);
     terms.displacement = gather(terms.displacement);
-    terms.energies     = gather_cells(dofs, terms.energies);
+    terms.energies     = gather_cells(terms.energies);
     return terms.energies.empty() ? 0. : terms.sum();
   }
 

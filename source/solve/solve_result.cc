@@ -49,8 +49,7 @@ namespace Debond
     const ElasticProblem<dim> &problem = scene.problem();
     return (scene.piece() == nullptr ?
               problem.fields().elastic_functional(u) :
-              scene.piece()->elastic_functional(
-                problem.fields(), problem.unknowns().dof_handler(), u)) +
+              scene.piece()->elastic_functional(problem.fields(), u)) +
            scene.adhesion().energy(eigen_view(scene.contact_trace(u)));
   }
 

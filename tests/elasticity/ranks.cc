@@ -223,10 +223,7 @@ namespace
     const auto shared_result =
       minimise(*shared_levels, shared_adhesion, part_u);
     const Vector all = shared.gather(part_u);
-    const double J =
-      shared.elastic_functional(part.problem->fields(),
-                                part.problem->unknowns().dof_handler(),
-                                part_u);
+    const double J = shared.elastic_functional(part.problem->fields(), part_u);
     if (is_root())
       {
         unsigned int n_contact = 0;

@@ -77,20 +77,40 @@ namespace Debond
     dealii::Vector<double>
     gather(const dealii::Vector<double> &v) const;
 
-    /// A number for each active cell of the piece, of @p dofs, gives those of
-    /// all cells in the order of the whole mesh, on the root; empty elsewhere.
+    /// A number for each active cell of the piece gives those of all cells in
+    /// the order of the whole mesh, on the root; empty elsewhere.
     std::vector<double>
-    gather_cells(const dealii::DoFHandler<dim> &dofs,
-                 const std::vector<double>     &values) const;
+    gather_cells(const std::vector<double> &values) const;
 
     /// ElasticFields::elastic_functional() of the whole, on the root; zero
     /// elsewhere.
     double
-    elastic_functional(const ElasticFields<dim>      &fields,
-                       const dealii::DoFHandler<dim> &dofs,
-                       const dealii::Vector<double>  &u) const;
+    elastic_functional(const ElasticFields<dim>     &fields,
+                       const dealii::Vector<double> &u) const;
 
   private:
+    /// What the root gathers: how much of each rank, one after the other, and
+    /// the place of each entry in the whole. Both are empty elsewhere.
+    struct Gathering
+    {
+      std::vector<int>          counts, starts;
+      std::vector<unsigned int> places;
+    };
+
+    /// From the keys of a rank's entries, by which the whole is ordered.
+    template <typename Key>
+    Gathering
+    make_gathering(const std::vector<Key> &own_keys) const;
+
+    /// @p own has @p n_components for each entry, and so has the result.
+    std::vector<double>
+    gather(const Gathering           &gathering,
+           const unsigned int         n_components,
+           const std::vector<double> &own) const;
+
+    void
+    prepare_gathering(const dealii::DoFHandler<dim> &dofs);
+
     const BoxPiece<dim>      &piece;
     SharedNodes               shared_nodes;
     ContactBoundary<dim>      contact_boundary;
@@ -98,6 +118,9 @@ namespace Debond
 
     /// The contact nodes of each rank follow those of the one before.
     std::vector<int> counts, starts;
+
+    std::vector<unsigned int> own_cells; ///< their active indices
+    Gathering                 all_nodes, all_cells;
   };
 } // namespace Debond
 
