@@ -13,9 +13,8 @@ namespace Debond
 {
   /// run() by all ranks, which share the scene (BoxPiece): the first one
   /// writes log, messages and files but body.pvtu, and all return its exit
-  /// code. There are no error estimate, means, probes and contact.vtu. Throws
-  /// BadInput on all of them if they cannot share the scene, before anything is
-  /// written.
+  /// code. There are no probes. Throws BadInput on all of them if they cannot
+  /// share the scene, before anything is written.
   template <int dim>
   ExitCode
   run_on_ranks(const Parameters &parameters,
