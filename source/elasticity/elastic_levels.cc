@@ -61,12 +61,24 @@ namespace Debond
     std::vector<CoarseLevel<dim>> coarse = body.coarse_levels(points);
     if (coarse.empty())
       return nullptr;
-    return std::unique_ptr<ElasticLevels>(
-      new ElasticLevels(problem,
-                        std::make_unique<SharedNodes>(dim, body.slabs(points)),
-                        nullptr,
-                        nullptr,
-                        std::move(coarse)));
+    std::vector<Level>         levels(1 + coarse.size());
+    std::vector<Interpolation> interpolations;
+    levels[0].own_nodes =
+      std::make_unique<SharedNodes>(dim, body.slabs(points));
+    for (std::size_t l = 1; l < levels.size(); ++l)
+      {
+        levels[l].vertices = std::move(coarse[l - 1].vertices);
+        levels[l].own_nodes =
+          std::make_unique<SharedNodes>(dim, std::move(coarse[l - 1].slabs));
+        interpolations.push_back(std::move(coarse[l - 1].to_finer));
+      }
+    for (Level &level : levels)
+      {
+        level.nodes            = level.own_nodes.get();
+        level.n_whole_unknowns = level.nodes->size() * dim;
+      }
+    return std::unique_ptr<ElasticLevels>(new ElasticLevels(
+      problem, nullptr, nullptr, std::move(levels), std::move(interpolations)));
   }
 
 
@@ -74,51 +86,84 @@ namespace Debond
   template <int dim>
   std::unique_ptr<ElasticLevels<dim>>
   ElasticLevels<dim>::make(const ProblemPiece<dim>   &piece,
-                           const ElasticProblem<dim> &problem)
+                           const ElasticProblem<dim> &problem,
+                           const unsigned int         end_shared)
   {
-    auto own = piece.body().coarse_piece(node_points(problem.unknowns()));
-    const MPI_Comm                ranks = piece.nodes().communicator();
-    std::vector<CoarseLevel<dim>> coarse;
-    std::vector<unsigned int>     ids;
-    coarse.push_back(std::move(own.level));
+    const BoxPiece<dim> &body   = piece.body();
+    const MPI_Comm       ranks  = piece.nodes().communicator();
+    const unsigned int n_shared = std::min(body.n_shared_levels(), end_shared);
+    auto pieces = body.coarse_pieces(node_points(problem.unknowns()), n_shared);
+
+    std::vector<Level>         levels(n_shared);
+    std::vector<Interpolation> interpolations;
+    levels[0].nodes = &piece.nodes();
+    levels[0].n_whole_unknowns =
+      static_cast<unsigned int>(body.n_vertices()) * dim;
+    for (auto &of_level : pieces)
+      interpolations.push_back(std::move(of_level.level.to_finer));
+    for (unsigned int l = 1; l < n_shared; ++l)
+      {
+        auto &own           = pieces[l - 1];
+        levels[l].vertices  = std::move(own.level.vertices);
+        levels[l].own_nodes = std::make_unique<SharedNodes>(
+          dim,
+          std::move(own.level.slabs),
+          body.n_slabs(),
+          SharedNodes::Piece{std::move(own.numbers),
+                             std::move(own.is_own),
+                             ranks});
+        levels[l].nodes            = levels[l].own_nodes.get();
+        levels[l].n_whole_unknowns = own.n_whole * dim;
+      }
     if (dealii::Utilities::MPI::this_mpi_process(ranks) == 0)
       {
-        auto whole         = piece.body().coarse_whole();
-        coarse[0].vertices = std::move(whole.vertices);
-        ids                = std::move(whole.ids);
-        for (CoarseLevel<dim> &level : whole.coarser)
-          coarse.push_back(std::move(level));
+        auto whole = body.coarse_whole(n_shared);
+        whole.coarser.insert(whole.coarser.begin(),
+                             CoarseLevel<dim>{std::move(whole.vertices),
+                                              {},
+                                              std::move(whole.slabs)});
+        for (CoarseLevel<dim> &coarse : whole.coarser)
+          {
+            Level &level   = levels.emplace_back();
+            level.vertices = std::move(coarse.vertices);
+            level.own_nodes =
+              std::make_unique<SharedNodes>(dim, std::move(coarse.slabs));
+            level.nodes            = level.own_nodes.get();
+            level.n_whole_unknowns = level.nodes->size() * dim;
+            if (levels.size() > n_shared + 1)
+              interpolations.push_back(std::move(coarse.to_finer));
+          }
       }
-    auto root = std::make_unique<RootLevel<dim>>(
-      typename RootLevel<dim>::Piece{std::move(own.ids), std::move(own.is_own)},
-      std::move(ids),
+    auto &of_root = pieces.back();
+    auto  root    = std::make_unique<RootLevel<dim>>(
+      typename RootLevel<dim>::Piece{std::move(of_root.numbers),
+                                     std::move(of_root.is_own),
+                                     of_root.n_whole},
       ranks);
-    return std::unique_ptr<ElasticLevels>(new ElasticLevels(
-      problem, nullptr, &piece, std::move(root), std::move(coarse)));
+    return std::unique_ptr<ElasticLevels>(
+      new ElasticLevels(problem,
+                        &piece,
+                        std::move(root),
+                        std::move(levels),
+                        std::move(interpolations)));
   }
 
 
 
   template <int dim>
   ElasticLevels<dim>::ElasticLevels(const ElasticProblem<dim> &elastic_problem,
-                                    std::unique_ptr<SharedNodes> all_nodes,
-                                    const ProblemPiece<dim>     *problem_piece,
+                                    const ProblemPiece<dim>   *problem_piece,
                                     std::unique_ptr<RootLevel<dim>> root_level,
-                                    std::vector<CoarseLevel<dim>> &&coarse)
+                                    std::vector<Level> &&levels_with_nodes,
+                                    std::vector<Interpolation> &&interpolations)
     : problem(elastic_problem)
-    , whole(std::move(all_nodes))
     , piece(problem_piece)
     , root(std::move(root_level))
-    , nodes(whole ? *whole : piece->nodes())
-    , levels(is_root() ? coarse.size() + 1 : 1)
+    , levels(std::move(levels_with_nodes))
   {
-    std::vector<Interpolation> interpolations;
-    for (std::size_t l = 0; l < coarse.size(); ++l)
-      {
-        if (is_root())
-          levels[l + 1].vertices = std::move(coarse[l].vertices);
-        interpolations.push_back(std::move(coarse[l].to_finer));
-      }
+    std::vector<const SharedNodes *> nodes;
+    for (const Level &level : levels)
+      nodes.push_back(level.nodes);
     truncated_cycle =
       std::make_unique<TruncatedCycle<dim>>(problem.matrix(),
                                             node_frames(problem.unknowns()),
@@ -137,125 +182,146 @@ namespace Debond
     if (root)
       {
         levels[0].load = problem.load();
-        nodes.update_ghosts(levels[0].load.begin());
-        add_shared_level();
+        update_ghosts(0, levels[0].load);
       }
-    for (unsigned int l = root ? 1 : 0; l + 1 < levels.size(); ++l)
+    for (unsigned int l = 0; l < levels.size(); ++l)
       {
-        const Transfer<dim> &transfer = truncated_cycle->transfer(l);
-        Level               &coarser  = levels[l + 1];
-        coarser.load.reinit(transfer.n_coarse_nodes() * dim);
-        transfer.restrict_to(coarser.load.begin(), load(l).begin());
-        const auto index_of = add_normals(l + 1, levels[l].normals);
-
-        std::vector<Eigen::Triplet<double>> entries;
-        for (unsigned int j = 0; j < coarser.normals.size(); ++j)
-          transfer.visit_column(
-            coarser.normals[j], [&](const unsigned int i, const double entry) {
-              const auto found = index_of.find(i);
-              if (found != index_of.end() && entry != 0.)
-                entries.emplace_back(found->second, j, entry);
-            });
-        add_trace(l + 1, entries);
+        if (l + 1 == levels.size() && !is_shared(l))
+          break;
+        const Transfer<dim>   &transfer = truncated_cycle->transfer(l);
+        dealii::Vector<double> coarse_load(transfer.n_coarse_nodes() * dim);
+        transfer.restrict_to(coarse_load.begin(), load(l).begin());
+        if (is_shared(l) && !is_shared(l + 1))
+          {
+            std::vector<double> whole(
+              is_root() ? std::size_t(levels[l + 1].n_whole_unknowns) : 0);
+            root->gather(std::vector<double>(coarse_load.begin(),
+                                             coarse_load.end()),
+                         whole);
+            coarse_load.reinit(static_cast<unsigned int>(whole.size()));
+            std::copy(whole.begin(), whole.end(), coarse_load.begin());
+          }
+        if (l + 1 == levels.size())
+          break;
+        levels[l + 1].load = coarse_load;
+        update_ghosts(l + 1, levels[l + 1].load);
       }
+
+    std::vector<unsigned int> numbers =
+      piece != nullptr ? piece->normal_numbers() : levels[0].normals;
+    const unsigned int n_with_trace =
+      root ? n_shared_levels() + 1 : static_cast<unsigned int>(levels.size());
+    for (unsigned int l = 1;
+         l < std::max<std::size_t>(levels.size(), n_with_trace);
+         ++l)
+      numbers = add_trace(l, numbers);
   }
 
 
 
   template <int dim>
-  void
-  ElasticLevels<dim>::add_shared_level()
+  std::vector<unsigned int>
+  ElasticLevels<dim>::add_trace(const unsigned int               l,
+                                const std::vector<unsigned int> &fine_numbers)
   {
-    const Transfer<dim> &transfer = truncated_cycle->transfer(0);
-    std::vector<double>  own_load(transfer.n_coarse_nodes() * dim), all_load;
-    transfer.restrict_to(own_load.data(), load(0).begin());
-    if (is_root())
-      {
-        levels[1].load.reinit(
-          static_cast<unsigned int>(levels[1].vertices.size()) * dim);
-        all_load.resize(levels[1].load.size());
-      }
-    root->gather(own_load, all_load);
-    if (is_root())
-      std::copy(all_load.begin(), all_load.end(), levels[1].load.begin());
+    constexpr unsigned int elsewhere = dealii::numbers::invalid_unsigned_int;
 
-    // Entries of P by contact node and the id of the coarse unknown.
-    std::map<unsigned int, unsigned int> index_of;
-    for (unsigned int i = 0; i < piece->normals().size(); ++i)
-      if (piece->normals()[i] != dealii::numbers::invalid_unsigned_int)
-        index_of[piece->normals()[i]] = i;
-    std::vector<unsigned int> places;
-    std::vector<double>       entries;
-    for (const NodeFrame<dim> &frame : transfer.coarse_frames())
-      for (unsigned int c = 0; c < dim && root->is_own(frame.node); ++c)
-        transfer.visit_column(frame.node * dim + c,
-                              [&](const unsigned int i, const double entry) {
-                                const auto found = index_of.find(i);
-                                if (found == index_of.end() || entry == 0.)
-                                  return;
-                                places.push_back(found->second);
-                                places.push_back(root->id(frame.node) * dim +
-                                                 c);
-                                entries.push_back(entry);
-                              });
-    const auto all_places =
-      dealii::Utilities::MPI::gather(root->communicator(), places);
-    const auto all_entries =
-      dealii::Utilities::MPI::gather(root->communicator(), entries);
-    if (!is_root())
-      return;
-
-    add_normals(1, piece->normal_numbers());
-    std::map<unsigned int, unsigned int> coarse_index_of;
-    for (unsigned int j = 0; j < levels[1].normals.size(); ++j)
-      coarse_index_of[levels[1].normals[j]] = j;
-    std::vector<Eigen::Triplet<double>> triplets;
-    for (std::size_t rank = 0; rank < all_entries.size(); ++rank)
-      for (std::size_t k = 0; k < all_entries[rank].size(); ++k)
-        {
-          const unsigned int column = all_places[rank][2 * k + 1];
-          const auto         found  = coarse_index_of.find(
-            root->node_of(column / dim) * dim + column % dim);
-          if (found != coarse_index_of.end())
-            triplets.emplace_back(all_places[rank][2 * k],
-                                  found->second,
-                                  all_entries[rank][k]);
-        }
-    add_trace(1, triplets);
-  }
-
-
-
-  template <int dim>
-  std::map<unsigned int, unsigned int>
-  ElasticLevels<dim>::add_normals(const unsigned int               l,
-                                  const std::vector<unsigned int> &fine_normals)
-  {
     // A coarse unknown is a normal displacement if it is one at the node that
     // it is like.
-    std::map<unsigned int, unsigned int> index_of;
-    for (unsigned int i = 0; i < fine_normals.size(); ++i)
-      index_of[fine_normals[i]] = i;
-    const NodeFrames<dim> &coarse_frames = truncated_cycle->frames(l);
-    for (std::size_t k = 0; k < coarse_frames.size(); ++k)
+    std::map<unsigned int, unsigned int> fine_index_of;
+    for (unsigned int i = 0; i < fine_numbers.size(); ++i)
+      fine_index_of[fine_numbers[i]] = i;
+    std::vector<unsigned int> numbers;
+    for (const auto &node : truncated_cycle->framed_nodes(l))
       for (unsigned int c = 0; c < dim; ++c)
-        if (index_of.count(truncated_cycle->origins(l)[k] * dim + c) > 0)
-          levels[l].normals.push_back(coarse_frames[k].node * dim + c);
-    return index_of;
+        if (fine_index_of.count(node.origin * dim + c) > 0)
+          numbers.push_back(node.number * dim + c);
+
+    // Entries of P between normal displacements, from those who own the coarse
+    // one.
+    const Transfer<dim>      &transfer   = truncated_cycle->transfer(l - 1);
+    const bool                is_of_root = is_shared(l - 1) && !is_shared(l);
+    std::vector<unsigned int> places;
+    std::vector<double>       values;
+    for (unsigned int j = 0; j < numbers.size(); ++j)
+      {
+        const unsigned int number = numbers[j] / dim;
+        const unsigned int node   = is_of_root ? root->local_node(number) :
+                                                 levels[l].nodes->node_of(number);
+        if (node == elsewhere ||
+            !(is_of_root ? root->is_own(node) : levels[l].nodes->is_own(node)))
+          continue;
+        transfer.visit_column(node * dim + numbers[j] % dim,
+                              [&](const unsigned int i, const double entry) {
+                                const auto found = fine_index_of.find(
+                                  levels[l - 1].nodes->number(i / dim) * dim +
+                                  i % dim);
+                                if (found == fine_index_of.end() || entry == 0.)
+                                  return;
+                                places.push_back(found->second);
+                                places.push_back(j);
+                                values.push_back(entry);
+                              });
+      }
+    const Eigen::SparseMatrix<double> step =
+      gathered_matrix(l - 1,
+                      places,
+                      values,
+                      static_cast<unsigned int>(fine_numbers.size()),
+                      static_cast<unsigned int>(numbers.size()));
+    if (l == levels.size())
+      return numbers;
+
+    Level &level             = levels[l];
+    level.trace_prolongation = levels[l - 1].trace_prolongation * step;
+    for (const unsigned int number : numbers)
+      {
+        const unsigned int node = level.nodes->node_of(number / dim);
+        level.normals.push_back(node == elsewhere ? elsewhere :
+                                                    node * dim + number % dim);
+      }
+    if (is_shared(l))
+      level.trace =
+        std::make_unique<SharedTrace>(*level.nodes, dim, level.normals);
+    return numbers;
   }
 
 
 
   template <int dim>
-  void
-  ElasticLevels<dim>::add_trace(
-    const unsigned int                         l,
-    const std::vector<Eigen::Triplet<double>> &entries)
+  Eigen::SparseMatrix<double>
+  ElasticLevels<dim>::gathered_matrix(const unsigned int               l,
+                                      const std::vector<unsigned int> &places,
+                                      const std::vector<double>       &values,
+                                      const unsigned int               n_rows,
+                                      const unsigned int n_columns) const
   {
-    Eigen::SparseMatrix<double> step(levels[l - 1].normals.size(),
-                                     levels[l].normals.size());
-    step.setFromTriplets(entries.begin(), entries.end());
-    levels[l].trace_prolongation = levels[l - 1].trace_prolongation * step;
+    std::vector<std::vector<unsigned int>> all_places = {places};
+    std::vector<std::vector<double>>       all_values = {values};
+    if (is_shared(l))
+      {
+        const MPI_Comm ranks = levels[l].nodes->communicator();
+        all_places = dealii::Utilities::MPI::all_gather(ranks, places);
+        all_values = dealii::Utilities::MPI::all_gather(ranks, values);
+      }
+    std::vector<Eigen::Triplet<double>> entries;
+    for (std::size_t rank = 0; rank < all_values.size(); ++rank)
+      for (std::size_t k = 0; k < all_values[rank].size(); ++k)
+        entries.emplace_back(all_places[rank][2 * k],
+                             all_places[rank][2 * k + 1],
+                             all_values[rank][k]);
+    Eigen::SparseMatrix<double> result(n_rows, n_columns);
+    result.setFromTriplets(entries.begin(), entries.end());
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  ElasticLevels<dim>::is_shared(const unsigned int l) const
+  {
+    return l < levels.size() && !levels[l].nodes->is_whole();
   }
 
 
@@ -274,6 +340,24 @@ namespace Debond
   ElasticLevels<dim>::n_levels() const
   {
     return static_cast<unsigned int>(levels.size());
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  ElasticLevels<dim>::n_shared_levels() const
+  {
+    return truncated_cycle->n_shared_levels();
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  ElasticLevels<dim>::n_whole_unknowns(const unsigned int l) const
+  {
+    return levels[l].n_whole_unknowns;
   }
 
 
@@ -330,17 +414,18 @@ namespace Debond
                             const dealii::Vector<double> &src) const
   {
     if (l == 0)
+      problem.matrix().vmult(dst, src);
+    else
       {
-        problem.matrix().vmult(dst, src);
-        nodes.update_ghosts(dst.begin());
-        return;
+        const BlockMatrix<dim, double> &A = truncated_cycle->matrix(l);
+        for (const auto &[begin, end] : levels[l].nodes->own_ranges())
+          for (unsigned int i = begin; i < end; ++i)
+            {
+              const auto product = A.times(i, src.begin());
+              std::copy(product.begin(), product.end(), dst.begin() + i * dim);
+            }
       }
-    const BlockMatrix<dim, double> &A = truncated_cycle->matrix(l);
-    for (unsigned int i = 0; i < A.n_rows(); ++i)
-      {
-        const auto product = A.times(i, src.begin());
-        std::copy(product.begin(), product.end(), dst.begin() + i * dim);
-      }
+    update_ghosts(l, dst);
   }
 
 
@@ -352,6 +437,8 @@ namespace Debond
   {
     if (l == 0 && piece != nullptr)
       return piece->trace(v);
+    if (is_shared(l))
+      return (*levels[l].trace)(v);
     dealii::Vector<double> s(
       static_cast<unsigned int>(levels[l].normals.size()));
     for (unsigned int i = 0; i < s.size(); ++i)
@@ -367,7 +454,7 @@ namespace Debond
                               const dealii::Vector<double> &a,
                               const dealii::Vector<double> &b) const
   {
-    return l == 0 ? nodes.product(a.begin(), b.begin()) : a * b;
+    return levels[l].nodes->product(a.begin(), b.begin());
   }
 
 
@@ -377,8 +464,7 @@ namespace Debond
   ElasticLevels<dim>::update_ghosts(const unsigned int      l,
                                     dealii::Vector<double> &v) const
   {
-    if (l == 0)
-      nodes.update_ghosts(v.begin());
+    levels[l].nodes->update_ghosts(v.begin());
   }
 
 
@@ -396,7 +482,7 @@ namespace Debond
     std::vector<unsigned int> places;
     std::vector<double>       values;
     for (const auto &[unknown, i] : index_of)
-      if (l > 0 || nodes.is_own(unknown / dim))
+      if (levels[l].nodes->is_own(unknown / dim))
         visit_row(l,
                   unknown,
                   [&](const unsigned int column, const double entry) {
@@ -408,24 +494,8 @@ namespace Debond
                     values.push_back(entry);
                   });
 
-    std::vector<std::vector<unsigned int>> all_places = {places};
-    std::vector<std::vector<double>>       all_values = {values};
-    if (l == 0 && piece != nullptr)
-      {
-        all_places =
-          dealii::Utilities::MPI::all_gather(nodes.communicator(), places);
-        all_values =
-          dealii::Utilities::MPI::all_gather(nodes.communicator(), values);
-      }
-    std::vector<Eigen::Triplet<double>> entries;
-    for (std::size_t rank = 0; rank < all_values.size(); ++rank)
-      for (std::size_t k = 0; k < all_values[rank].size(); ++k)
-        entries.emplace_back(all_places[rank][2 * k],
-                             all_places[rank][2 * k + 1],
-                             all_values[rank][k]);
-    Eigen::SparseMatrix<double> result(normals.size(), normals.size());
-    result.setFromTriplets(entries.begin(), entries.end());
-    return result;
+    const unsigned int n = static_cast<unsigned int>(normals.size());
+    return gathered_matrix(l, places, values, n, n);
   }
 
 
@@ -519,7 +589,7 @@ namespace Debond
                                  const dealii::Vector<double> &u) const
   {
     dealii::Vector<double> result(n_unknowns(l - 1)), coarse(u);
-    if (l == 1 && root)
+    if (is_shared(l - 1) && !is_shared(l))
       {
         std::vector<double> local(std::size_t(root->n_local_nodes()) * dim);
         root->scatter(std::vector<double>(u.begin(), u.end()), local);

@@ -134,11 +134,6 @@ namespace Debond
           append<dim>(node.normal, of_nodes);
           of_nodes.push_back(node.measure);
         }
-    counts =
-      dealii::Utilities::MPI::all_gather(communicator,
-                                         static_cast<int>(numbers.size()));
-    starts.resize(counts.size());
-    std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
     numbers_of_normals = gather_everywhere(numbers, communicator);
     of_nodes           = gather_everywhere(of_nodes, communicator);
 
@@ -158,6 +153,8 @@ namespace Debond
     for (const auto dof : dofs)
       local_normals[index_of.at(number_of(static_cast<unsigned int>(dof)))] =
         static_cast<unsigned int>(dof);
+    shared_trace =
+      std::make_unique<SharedTrace>(shared_nodes, dim, local_normals);
 
     // Faces are in the order of their cells.
     std::vector<std::size_t>  cells;
@@ -260,23 +257,7 @@ namespace Debond
   dealii::Vector<double>
   ProblemPiece<dim>::trace(const dealii::Vector<double> &v) const
   {
-    // deal.II's gather() packs what it sends.
-    const MPI_Comm     ranks = shared_nodes.communicator();
-    const unsigned int rank  = dealii::Utilities::MPI::this_mpi_process(ranks);
-    dealii::Vector<double> result(
-      static_cast<unsigned int>(local_normals.size()));
-    for (int i = starts[rank]; i < starts[rank] + counts[rank]; ++i)
-      result(i) = v(local_normals[i]);
-    const int error = MPI_Allgatherv(MPI_IN_PLACE,
-                                     0,
-                                     MPI_DATATYPE_NULL,
-                                     result.begin(),
-                                     counts.data(),
-                                     starts.data(),
-                                     MPI_DOUBLE,
-                                     ranks);
-    AssertThrowMPI(error);
-    return result;
+    return (*shared_trace)(v);
   }
 
 

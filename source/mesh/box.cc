@@ -36,7 +36,8 @@ namespace Debond
     template <int dim>
     CoarseLevel<dim>
     coarse_level(const CrossedLattice<dim>             &lattice,
-                 const std::vector<dealii::Point<dim>> &points)
+                 const std::vector<dealii::Point<dim>> &points,
+                 const unsigned int                     n_slabs)
     {
       CoarseLevel<dim>          level;
       std::vector<unsigned int> numbers(lattice.size());
@@ -45,6 +46,7 @@ namespace Debond
           {
             numbers[i] = static_cast<unsigned int>(level.vertices.size());
             level.vertices.push_back(lattice.point(i));
+            level.slabs.push_back(lattice.slab(i, n_slabs));
           }
 
       level.to_finer =
@@ -287,11 +289,22 @@ namespace Debond
   std::vector<CoarseLevel<dim>>
   Box<dim>::coarse_levels(const std::vector<dealii::Point<dim>> &vertices) const
   {
+    return levels_of(coarse_boxes(), vertices);
+  }
+
+
+
+  template <int dim>
+  std::vector<CoarseLevel<dim>>
+  Box<dim>::levels_of(const std::vector<BoxParameters>      &boxes,
+                      const std::vector<dealii::Point<dim>> &vertices) const
+  {
     std::vector<CoarseLevel<dim>> levels;
-    for (const BoxParameters &box : coarse_boxes())
+    for (const BoxParameters &box : boxes)
       levels.push_back(
         coarse_level(CrossedLattice<dim>(box),
-                     levels.empty() ? vertices : levels.back().vertices));
+                     levels.empty() ? vertices : levels.back().vertices,
+                     parameters.cells[0]));
     return levels;
   }
 

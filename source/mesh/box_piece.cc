@@ -16,6 +16,15 @@ namespace Debond
     /// than two cells away, whose rows in A need the cells around them.
     constexpr unsigned int n_ghost_slabs = 2;
 
+    /// The same on a coarser mesh. Where cells of a level lie across those of
+    /// the next coarser one, products P'AP couple vertices up to three cells
+    /// away, as cells grow by a factor of at least 1.5.
+    constexpr unsigned int n_coarse_ghosts = 2, n_ghosts_if_not_nested = 5;
+
+    /// Of a level that ranks share, for each of them: with less there are more
+    /// ghosts than own slabs.
+    constexpr unsigned int fewest_coarse_slabs = 4;
+
 
 
     /// Numbers of the vertices of a crossed mesh in the order in which its
@@ -116,6 +125,7 @@ namespace Debond
                           const unsigned int rank,
                           const unsigned int n_ranks)
     : Box<dim>(box)
+    , n_ranks(n_ranks)
     , first(static_cast<unsigned int>(std::size_t(n_slabs()) * rank / n_ranks))
     , end(static_cast<unsigned int>(std::size_t(n_slabs()) * (rank + 1) /
                                     n_ranks))
@@ -269,36 +279,67 @@ namespace Debond
 
 
   template <int dim>
-  typename BoxPiece<dim>::CoarsePiece
-  BoxPiece<dim>::coarse_piece(
-    const std::vector<dealii::Point<dim>> &vertices) const
+  unsigned int
+  BoxPiece<dim>::n_shared_levels() const
   {
-    const BoxParameters       box = this->coarse_boxes().at(0);
-    const CrossedLattice<dim> lattice(box);
-    CoarsePiece               result;
-    result.level.to_finer =
-      lattice.interpolation(vertices, 0, [](const std::size_t i) {
-        return static_cast<unsigned int>(i);
-      });
-    std::vector<unsigned int> &nodes = result.level.to_finer.nodes;
-    std::vector<unsigned int> &ids   = result.ids;
-    ids                              = nodes;
-    std::sort(ids.begin(), ids.end());
-    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-    ids.shrink_to_fit();
-    for (unsigned int &node : nodes)
-      node = static_cast<unsigned int>(
-        std::lower_bound(ids.begin(), ids.end(), node) - ids.begin());
-    result.level.to_finer.n_nodes = static_cast<unsigned int>(ids.size());
+    const std::vector<BoxParameters> boxes  = this->coarse_boxes();
+    unsigned int                     result = 1;
+    while (result < boxes.size() &&
+           boxes[result - 1].cells[0] >= fewest_coarse_slabs * n_ranks)
+      ++result;
+    return result;
+  }
 
-    for (const unsigned int id : ids)
+
+
+  template <int dim>
+  std::vector<typename BoxPiece<dim>::CoarsePiece>
+  BoxPiece<dim>::coarse_pieces(const std::vector<dealii::Point<dim>> &vertices,
+                               const unsigned int                     n) const
+  {
+    const std::vector<BoxParameters> boxes = this->coarse_boxes();
+    std::vector<CoarsePiece>         result(n);
+    std::size_t n_finer = n_slabs(), n_ghosts = n_coarse_ghosts;
+    for (unsigned int l = 0; l < n; ++l)
       {
-        result.level.vertices.push_back(lattice.point(id));
-        const std::size_t x = id % (2 * box.cells[0] + 1);
-        const std::size_t slab =
-          std::min<std::size_t>(x * n_slabs() / (2 * box.cells[0]),
-                                n_slabs() - 1);
-        result.is_own.push_back(first <= slab && slab < end);
+        // Of the lattice points along x, those in the cells of own slabs and
+        // ghosts.
+        const CrossedLattice<dim> lattice(boxes[l]);
+        const std::size_t         n_cells = boxes[l].cells[0];
+        if (n_finer != n_cells && n_finer != 2 * n_cells)
+          n_ghosts = n_ghosts_if_not_nested;
+        n_finer                      = n_cells;
+        const std::size_t begin_cell = n_cells * first / n_slabs();
+        const std::size_t end_cell =
+          (n_cells * end + n_slabs() - 1) / n_slabs();
+        const std::size_t begin =
+          2 * (std::max(begin_cell, n_ghosts) - n_ghosts);
+        const std::size_t width =
+          2 * std::min(end_cell + n_ghosts, n_cells) + 1 - begin;
+        const std::size_t whole_width = 2 * n_cells + 1;
+
+        CoarsePiece              &piece = result[l];
+        std::vector<unsigned int> places(lattice.size() / whole_width * width);
+        for (std::size_t k = 0; k < places.size(); ++k)
+          {
+            const std::size_t i = k / width * whole_width + begin + k % width;
+            if (!lattice.is_vertex(i))
+              continue;
+            places[k] = static_cast<unsigned int>(piece.numbers.size());
+            piece.numbers.push_back(
+              static_cast<unsigned int>(lattice.number(i)));
+            piece.level.vertices.push_back(lattice.point(i));
+            const unsigned int slab = lattice.slab(i, n_slabs());
+            piece.level.slabs.push_back(slab);
+            piece.is_own.push_back(first <= slab && slab < end);
+          }
+        piece.n_whole        = static_cast<unsigned int>(lattice.n_vertices());
+        piece.level.to_finer = lattice.interpolation(
+          l == 0 ? vertices : result[l - 1].level.vertices,
+          static_cast<unsigned int>(piece.numbers.size()),
+          [&](const std::size_t i) {
+            return places[i / whole_width * width + i % whole_width - begin];
+          });
       }
     return result;
   }
@@ -307,18 +348,20 @@ namespace Debond
 
   template <int dim>
   typename BoxPiece<dim>::CoarseWhole
-  BoxPiece<dim>::coarse_whole() const
+  BoxPiece<dim>::coarse_whole(const unsigned int n) const
   {
-    const BoxParameters       box = this->coarse_boxes().at(0);
+    std::vector<BoxParameters> boxes = this->coarse_boxes();
+    const BoxParameters        box   = boxes.at(n - 1);
+    boxes.erase(boxes.begin(), boxes.begin() + n);
     const CrossedLattice<dim> lattice(box);
     CoarseWhole               result;
     for (std::size_t i = 0; i < lattice.size(); ++i)
       if (lattice.is_vertex(i))
         {
           result.vertices.push_back(lattice.point(i));
-          result.ids.push_back(static_cast<unsigned int>(i));
+          result.slabs.push_back(lattice.slab(i, n_slabs()));
         }
-    result.coarser = Box<dim>(box).coarse_levels(result.vertices);
+    result.coarser = this->levels_of(boxes, result.vertices);
     return result;
   }
 

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 namespace Debond
 {
@@ -47,28 +48,69 @@ namespace Debond
 
 
 
-    /// Minima on the coarser levels, each the start of the next finer one, from
-    /// that of the first coarser mesh that is factorised, on which the search
-    /// of the scene is done; @p result gets its counts and notes. Returns that
-    /// of the level @p last_level > 0, or the start on the finest one.
+    /// The first coarser mesh that is factorised, null if there is none, and
+    /// its level.
+    template <int dim>
+    std::pair<std::shared_ptr<const Body<dim>>, unsigned int>
+    factorised_body(const Scene<dim> &scene)
+    {
+      std::shared_ptr<const Body<dim>> body  = scene.body().coarser();
+      unsigned int                     level = 1;
+      for (;
+           body && scene_size(*body, dim, scene.parameters().contact_boundaries)
+                       .unknowns > largest_coarse_factorisation;
+           ++level)
+        body = body->coarser();
+      return {body, level};
+    }
+
+
+
+    /// The minimum of J on a coarser level, from @p u.
+    template <int dim>
+    void
+    minimise_on_level(const SolverParameters &parameters,
+                      const Scene<dim>       &scene,
+                      ElasticLevels<dim>     &levels,
+                      const unsigned int      l,
+                      const Watch            &watch,
+                      Vector                 &u,
+                      SolveResult            &result)
+    {
+      MajoriseMinimiseParameters of_level = parameters.majorise_minimise;
+      of_level.tolerance = std::max(of_level.tolerance, coarse_level_tolerance);
+      const auto may_go_on = [&watch]() { return watch.may_go_on(); };
+      const RestrictedFunction     phi(scene.adhesion(),
+                                   levels.trace_prolongation(l));
+      LevelProblem<dim>            problem(levels, l, phi, u, may_go_on);
+      const MajoriseMinimiseResult minimum =
+        MajoriseMinimise(of_level).minimize(
+          problem,
+          [&](const MajoriseMinimiseIteration &) { return may_go_on(); });
+      if (!can_be_verified(minimum.status))
+        result.notes.push_back("start on " +
+                               std::to_string(levels.n_whole_unknowns(l)) +
+                               " unknowns: " + minimum.message);
+    }
+
+
+
+    /// Minima on the coarser levels that the process has alone, each the start
+    /// of the next finer one, from that of the first coarser mesh that is
+    /// factorised, on which the search of the scene is done; @p result gets its
+    /// counts and notes. Returns that of the last of these levels, or the start
+    /// on the finest one.
     template <int dim>
     Vector
     start_from_levels(const MethodChoice     &choice,
                       const SolverParameters &parameters,
                       const Scene<dim>       &scene,
                       ElasticLevels<dim>     &levels,
-                      const unsigned int      last_level,
                       const InterruptGuard   &guard,
                       const Watch            &fine_watch,
                       SolveResult            &result)
     {
-      std::shared_ptr<const Body<dim>> body = scene.body().coarser();
-      unsigned int                     l    = 1;
-      for (;
-           body && scene_size(*body, dim, scene.parameters().contact_boundaries)
-                       .unknowns > largest_coarse_factorisation;
-           ++l)
-        body = body->coarser();
+      auto [body, l] = factorised_body(scene);
 
       Vector     u;
       const bool is_solved = body != nullptr;
@@ -121,31 +163,13 @@ namespace Debond
           u.reinit(levels.n_unknowns(l));
         }
 
-      MajoriseMinimiseParameters coarse_parameters =
-        parameters.majorise_minimise;
-      coarse_parameters.tolerance =
-        std::max(coarse_parameters.tolerance, coarse_level_tolerance);
       const unsigned int solved_level = is_solved ? l : levels.n_levels();
       for (;; --l)
         {
           if (l > 0 && l != solved_level && fine_watch.may_go_on())
-            {
-              const RestrictedFunction     phi(scene.adhesion(),
-                                           levels.trace_prolongation(l));
-              LevelProblem<dim>            problem(levels, l, phi, u, [&]() {
-                return fine_watch.may_go_on();
-              });
-              const MajoriseMinimiseResult minimum =
-                MajoriseMinimise(coarse_parameters)
-                  .minimize(problem, [&](const MajoriseMinimiseIteration &) {
-                    return fine_watch.may_go_on();
-                  });
-              if (!can_be_verified(minimum.status))
-                result.notes.push_back("start on " +
-                                       std::to_string(levels.n_unknowns(l)) +
-                                       " unknowns: " + minimum.message);
-            }
-          if (l == last_level)
+            minimise_on_level(
+              parameters, scene, levels, l, fine_watch, u, result);
+          if (l == levels.n_shared_levels())
             return u;
           u = levels.prolongate(l, u);
           keep_admissible(levels.normals(l - 1), u);
@@ -154,7 +178,7 @@ namespace Debond
 
 
 
-    /// The same where ranks share the finest level: the root has the others.
+    /// The same where ranks share levels: the root has the others.
     template <int dim>
     Vector
     start_from_root(const MethodChoice     &choice,
@@ -174,7 +198,6 @@ namespace Debond
                                   parameters,
                                   scene,
                                   levels,
-                                  1,
                                   guard,
                                   Watch(guard, fine_watch),
                                   result);
@@ -188,8 +211,14 @@ namespace Debond
                                           errors);
       if (!errors.empty())
         throw BadInput(errors);
-      u = levels.prolongate(1, u);
-      keep_admissible(levels.normals(0), u);
+      for (unsigned int l = levels.n_shared_levels(); l > 0; --l)
+        {
+          u = levels.prolongate(l, u);
+          keep_admissible(levels.normals(l - 1), u);
+          if (l > 1 && fine_watch.may_go_on())
+            minimise_on_level(
+              parameters, scene, levels, l - 1, fine_watch, u, result);
+        }
       return u;
     }
 
@@ -251,16 +280,17 @@ namespace Debond
     const auto levels =
       scene.piece() == nullptr ?
         ElasticLevels<dim>::make(scene.body(), scene.problem()) :
-        ElasticLevels<dim>::make(*scene.piece(), scene.problem());
+        ElasticLevels<dim>::make(*scene.piece(),
+                                 scene.problem(),
+                                 factorised_body(scene).second);
     result.parts["multigrid setup"] = timer.wall_time();
 
     timer.restart();
-    result.u =
-      scene.piece() == nullptr ?
-        start_from_levels(
-          choice, parameters, scene, *levels, 0, guard, watch, result) :
-        start_from_root(
-          choice, parameters, scene, *levels, guard, watch, result);
+    result.u                       = scene.piece() == nullptr ?
+                                       start_from_levels(
+                   choice, parameters, scene, *levels, guard, watch, result) :
+                                       start_from_root(
+                   choice, parameters, scene, *levels, guard, watch, result);
     result.parts["coarser meshes"] = timer.wall_time();
     if (!watch.may_go_on())
       {

@@ -13,8 +13,10 @@
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/majorise/restricted_function.h>
 
+#include <array>
 #include <cstring>
 #include <iostream>
+#include <map>
 
 #include "../check.h"
 
@@ -91,35 +93,100 @@ namespace
 
 
 
-  /// From the solution on the level 1, which the root makes.
+  /// From the solution on the level @p l; what ranks share of that and of
+  /// finer levels they solve together.
   template <int dim>
   MajoriseMinimiseResult
   minimise(ElasticLevels<dim>          &levels,
            const AdhesionIntegral<dim> &adhesion,
+           unsigned int                 l,
            Vector                      &u)
   {
-    Vector     coarse;
-    const auto go_on = [](const MajoriseMinimiseIteration &) { return true; };
-    if (levels.is_root())
+    MajoriseMinimiseResult result;
+    const unsigned int     n_shared = levels.n_shared_levels();
+    if (l < n_shared || levels.is_root())
+      u.reinit(levels.n_unknowns(l));
+    while (true)
       {
-        coarse.reinit(levels.n_unknowns(1));
-        const RestrictedFunction phi(adhesion, levels.trace_prolongation(1));
-        LevelProblem<dim>        problem(levels, 1, phi, coarse);
-        MajoriseMinimise({}).minimize(problem, go_on);
+        if (l < n_shared || levels.is_root())
+          {
+            const RestrictedFunction phi(adhesion,
+                                         levels.trace_prolongation(l));
+            LevelProblem<dim>        problem(levels, l, phi, u);
+            result = MajoriseMinimise({}).minimize(
+              problem, [](const MajoriseMinimiseIteration &) { return true; });
+          }
+        if (l == 0)
+          return result;
+        --l;
+        if (l >= n_shared && !levels.is_root())
+          continue;
+        u = levels.prolongate(l + 1, u);
+        for (const unsigned int normal : levels.normals(l))
+          if (normal != dealii::numbers::invalid_unsigned_int)
+            u(normal) = std::min(u(normal), 0.);
       }
-    u = levels.prolongate(1, coarse);
-    for (const unsigned int normal : levels.normals(0))
-      if (normal != dealii::numbers::invalid_unsigned_int)
-        u(normal) = std::min(u(normal), 0.);
-    LevelProblem<dim> problem(levels, 0, adhesion, u);
-    return MajoriseMinimise({}).minimize(problem, go_on);
+  }
+
+
+
+  /// Whether a coarser level of a rank has the load, the rows and the normal
+  /// displacements that the whole has there.
+  template <int dim>
+  bool
+  is_part_of(const ElasticLevels<dim>       &whole,
+             ElasticLevels<dim>             &part,
+             const BlockMatrix<dim, double> &A,
+             const BlockMatrix<dim, double> &B,
+             const unsigned int              l)
+  {
+    std::map<std::array<double, dim>, unsigned int> node_at;
+    const auto key = [](const dealii::Point<dim> &point) {
+      std::array<double, dim> result;
+      std::copy_n(point.begin_raw(), dim, result.begin());
+      return result;
+    };
+    for (unsigned int i = 0; i < whole.vertices(l).size(); ++i)
+      node_at[key(whole.vertices(l)[i])] = i;
+    std::vector<unsigned int> node;
+    for (const dealii::Point<dim> &point : part.vertices(l))
+      node.push_back(node_at.at(key(point)));
+
+    bool same =
+      (part.trace_prolongation(l) - whole.trace_prolongation(l)).norm() == 0.;
+    unsigned int n_complete = 0;
+    for (unsigned int i = 0; i < node.size(); ++i)
+      {
+        for (unsigned int c = 0; c < dim; ++c)
+          same = same &&
+                 part.load(l)(i * dim + c) == whole.load(l)(node[i] * dim + c);
+        for (std::size_t k = B.starts[i]; k < B.starts[i + 1]; ++k)
+          {
+            const std::size_t m = A.find(node[i], node[B.columns[k]]);
+            same                = same && m < A.columns.size() &&
+                   std::equal(A.values.begin() + m * dim * dim,
+                              A.values.begin() + (m + 1) * dim * dim,
+                              B.values.begin() + k * dim * dim);
+          }
+        n_complete += B.starts[i + 1] - B.starts[i] ==
+                      A.starts[node[i] + 1] - A.starts[node[i]];
+      }
+    for (unsigned int j = 0; j < whole.normals(l).size(); ++j)
+      same = same &&
+             (part.normals(l)[j] == dealii::numbers::invalid_unsigned_int ||
+              node[part.normals(l)[j] / dim] * dim + part.normals(l)[j] % dim ==
+                whole.normals(l)[j]);
+    // Of the own rows nothing is missing.
+    return same && (l < part.n_shared_levels() ?
+                      dealii::Utilities::MPI::sum(n_complete, communicator) :
+                      n_complete) >= A.n_rows();
   }
 
 
 
   template <int dim>
   void
-  test(const std::array<unsigned int, 3> &cells)
+  test(const std::array<unsigned int, 3> &cells, const unsigned int end_shared)
   {
     BoxParameters parameters;
     parameters.cells = cells;
@@ -144,7 +211,8 @@ namespace
     const AdhesionIntegral<dim> shared_adhesion(shared.boundary(),
                                                 law,
                                                 quadrature);
-    const auto shared_levels = ElasticLevels<dim>::make(shared, *part.problem);
+    const auto                  shared_levels =
+      ElasticLevels<dim>::make(shared, *part.problem, end_shared);
 
     bool same = shared.boundary().nodes.size() == boundary.nodes.size() &&
                 shared.boundary().faces.size() == boundary.faces.size();
@@ -163,24 +231,24 @@ namespace
 
     const Vector f = shared.gather(shared_levels->load(0));
     if (is_root())
-      {
-        check("  load", are_same_bits(f, levels->load(0)));
-        check("  coarser load",
-              are_same_bits(shared_levels->load(1), levels->load(1)));
-        check("  coarser normal displacements",
-              shared_levels->normals(1) == levels->normals(1) &&
-                (shared_levels->trace_prolongation(1) -
-                 levels->trace_prolongation(1))
-                    .norm() == 0.);
-        const auto &A = levels->cycle().matrix(1);
-        const auto &B = shared_levels->cycle().matrix(1);
-        check("  coarser matrix",
-              A.starts == B.starts && A.columns == B.columns &&
-                A.values == B.values);
-      }
-    check("  rows of contact nodes",
-          (shared_levels->contact_rows(0) - levels->contact_rows(0)).norm() ==
-            0.);
+      check("  load", are_same_bits(f, levels->load(0)));
+    bool are_parts = true;
+    for (unsigned int l = 1; l < shared_levels->n_levels(); ++l)
+      are_parts = is_part_of(*levels,
+                             *shared_levels,
+                             levels->cycle().matrix(l),
+                             shared_levels->cycle().matrix(l),
+                             l) &&
+                  are_parts;
+    check("  coarser levels",
+          dealii::Utilities::MPI::min(static_cast<int>(are_parts),
+                                      communicator) == 1);
+    bool are_rows = true;
+    for (unsigned int l = 0; l < shared_levels->n_shared_levels(); ++l)
+      are_rows =
+        are_rows &&
+        (shared_levels->contact_rows(l) - levels->contact_rows(l)).norm() == 0.;
+    check("  rows of contact nodes", are_rows);
 
     // Cycles, with half of the nodes held and bonds at all.
     Vector x = levels->load(0), part_x = shared_levels->load(0), y(x),
@@ -218,10 +286,11 @@ namespace
           check("  products", product == levels->product(0, x, x));
       }
 
-    Vector     u, part_u;
-    const auto result = minimise(*levels, adhesion, u);
-    const auto shared_result =
-      minimise(*shared_levels, shared_adhesion, part_u);
+    Vector             u, part_u;
+    const unsigned int last   = std::min(levels->n_levels() - 1, 2u);
+    const auto         result = minimise(*levels, adhesion, last, u);
+    const auto         shared_result =
+      minimise(*shared_levels, shared_adhesion, last, part_u);
     const Vector all = shared.gather(part_u);
     const double J = shared.elastic_functional(part.problem->fields(), part_u);
     if (is_root())
@@ -254,12 +323,18 @@ main(int argc, char *argv[])
   const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   if (!is_root())
     std::cout.setstate(std::ios::failbit);
-  std::cout << "2D" << std::endl;
-  test<2>({{80, 8, 1}});
-  std::cout << "2D, odd numbers" << std::endl;
-  test<2>({{75, 7, 1}});
-  std::cout << "3D" << std::endl;
-  test<3>({{20, 2, 2}});
-  std::cout << "3D, odd numbers" << std::endl;
-  test<3>({{21, 5, 3}});
+  for (const unsigned int end_shared : {1, 100})
+    {
+      std::cout << (end_shared == 1 ? "The finest level is shared" :
+                                      "Coarser ones as well")
+                << std::endl;
+      std::cout << "2D" << std::endl;
+      test<2>({{80, 8, 1}}, end_shared);
+      std::cout << "2D, odd numbers" << std::endl;
+      test<2>({{75, 7, 1}}, end_shared);
+      std::cout << "3D" << std::endl;
+      test<3>({{20, 2, 2}}, end_shared);
+      std::cout << "3D, odd numbers" << std::endl;
+      test<3>({{37, 5, 3}}, end_shared);
+    }
 }

@@ -35,6 +35,8 @@ END
 }
 scene plane 2 "320, 8" "0.4, 0.01" "0; 0.001"
 scene solid 3 "42, 4, 3" "0.4, 0.04, 0.03" "0; 0.02; 0"
+# Ranks share its first coarser level, too.
+scene fine 2 "479, 63" "0.479, 0.063" "0; 0.02"
 
 # What all ranks have: neither times nor the error estimate and the means.
 numbers() {
@@ -73,7 +75,7 @@ assert sorted(row for piece in pieces for row in rows(piece, names)) == sorted(
     rows(whole, names))
 SCRIPT
 
-for name in plane solid; do
+for name in plane solid fine; do
   expect_code 0 "$debond" $name.prm --set Output/Directory=$name-1
   numbers $name-1/summary.json >$name-1.numbers
   for n in 2 3 4; do

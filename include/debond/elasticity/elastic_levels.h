@@ -8,12 +8,12 @@
 
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/problem_piece.h>
+#include <debond/linear_algebra/multigrid/shared_trace.h>
 #include <debond/linear_algebra/multigrid/truncated_cycle.h>
 #include <debond/mesh/body.h>
 
 #include <Eigen/SparseCore>
 
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -37,21 +37,34 @@ namespace Debond
     static std::unique_ptr<ElasticLevels>
     make(const Body<dim> &body, const ElasticProblem<dim> &problem);
 
-    /// For the problem on a piece of the body. To be called by all ranks, and
-    /// so are the functions below for the level 0 and prolongate() from the
-    /// level 1; of the coarser levels only the root knows. Keeps references.
+    /// For the problem on a piece of the body. Ranks share at most the levels
+    /// below @p end_shared > 0, and the first one, the root, has the others. To
+    /// be called by all ranks, and so are the functions below for the shared
+    /// levels, and prolongate() to them. Keeps references.
     static std::unique_ptr<ElasticLevels<dim>>
-    make(const ProblemPiece<dim> &piece, const ElasticProblem<dim> &problem);
+    make(const ProblemPiece<dim>   &piece,
+         const ElasticProblem<dim> &problem,
+         const unsigned int         end_shared);
 
-    /// Whether the process has the coarser levels.
+    /// Whether the process has the levels that are not shared.
     bool
     is_root() const;
 
+    /// Those that the process has.
     unsigned int
     n_levels() const;
 
+    /// Zero on one process that does not share the problem.
+    unsigned int
+    n_shared_levels() const;
+
+    /// Those that the process has.
     unsigned int
     n_unknowns(const unsigned int l) const;
+
+    /// Of the whole level.
+    unsigned int
+    n_whole_unknowns(const unsigned int l) const;
 
     TruncatedCycle<dim> &
     cycle();
@@ -117,26 +130,43 @@ namespace Debond
     prolongate(const unsigned int l, const dealii::Vector<double> &u) const;
 
   private:
-    /// @p piece and @p root are null unless ranks share the problem.
+    struct Level
+    {
+      std::unique_ptr<SharedNodes>    own_nodes; ///< but for those of a piece
+      const SharedNodes              *nodes = nullptr;
+      std::vector<dealii::Point<dim>> vertices;
+      std::vector<unsigned int>       normals;
+      Eigen::SparseMatrix<double>     trace_prolongation;
+      dealii::Vector<double>          load;
+      unsigned int                    n_whole_unknowns = 0;
+      std::unique_ptr<SharedTrace>    trace; ///< if ranks share the level
+    };
+
+    /// @p levels have their nodes and vertices, @p piece and @p root are null
+    /// unless ranks share the problem.
     ElasticLevels(const ElasticProblem<dim>      &problem,
-                  std::unique_ptr<SharedNodes>    whole,
                   const ProblemPiece<dim>        *piece,
                   std::unique_ptr<RootLevel<dim>> root,
-                  std::vector<CoarseLevel<dim>> &&coarse);
+                  std::vector<Level>            &&levels,
+                  std::vector<Interpolation>    &&interpolations);
 
-    /// The level 1 where ranks share the finest one.
-    void
-    add_shared_level();
+    /// The unknowns s_l and P_l of the level l > 0 from the numbers of those of
+    /// the next finer one in the whole; returns its own numbers.
+    std::vector<unsigned int>
+    add_trace(const unsigned int               l,
+              const std::vector<unsigned int> &fine_numbers);
 
-    /// The unknowns s_l; returns the index of each of the finer ones.
-    std::map<unsigned int, unsigned int>
-    add_normals(const unsigned int               l,
-                const std::vector<unsigned int> &fine_normals);
+    /// From places (row and column of each) and values; if ranks share the
+    /// level l, from those of all of them.
+    Eigen::SparseMatrix<double>
+    gathered_matrix(const unsigned int               l,
+                    const std::vector<unsigned int> &places,
+                    const std::vector<double>       &values,
+                    const unsigned int               n_rows,
+                    const unsigned int               n_columns) const;
 
-    /// P_l, from the entries of the step from the next finer level.
-    void
-    add_trace(const unsigned int                         l,
-              const std::vector<Eigen::Triplet<double>> &entries);
+    bool
+    is_shared(const unsigned int l) const;
 
     /// Calls @p visit with column and entry of a row of A_l.
     template <typename Visitor>
@@ -145,19 +175,9 @@ namespace Debond
               const unsigned int row,
               const Visitor     &visit) const;
 
-    struct Level
-    {
-      std::vector<dealii::Point<dim>> vertices;
-      std::vector<unsigned int>       normals;
-      Eigen::SparseMatrix<double>     trace_prolongation;
-      dealii::Vector<double>          load;
-    };
-
     const ElasticProblem<dim>            &problem;
-    const std::unique_ptr<SharedNodes>    whole; ///< if no ranks share it
     const ProblemPiece<dim> *const        piece;
     const std::unique_ptr<RootLevel<dim>> root;
-    const SharedNodes                    &nodes;
     std::vector<Level>                    levels;
     std::unique_ptr<TruncatedCycle<dim>>  truncated_cycle;
   };

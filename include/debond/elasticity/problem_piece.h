@@ -9,8 +9,10 @@
 #include <debond/elasticity/fields.h>
 #include <debond/elasticity/unknowns.h>
 #include <debond/linear_algebra/multigrid/shared_nodes.h>
+#include <debond/linear_algebra/multigrid/shared_trace.h>
 #include <debond/mesh/box_piece.h>
 
+#include <memory>
 #include <vector>
 
 namespace Debond
@@ -116,8 +118,7 @@ namespace Debond
     ContactBoundary<dim>      contact_boundary;
     std::vector<unsigned int> local_normals, numbers_of_normals;
 
-    /// The contact nodes of each rank follow those of the one before.
-    std::vector<int> counts, starts;
+    std::unique_ptr<SharedTrace> shared_trace;
 
     std::vector<unsigned int> own_cells; ///< their active indices
     Gathering                 all_nodes, all_cells;

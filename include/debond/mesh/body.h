@@ -111,6 +111,9 @@ namespace Debond
   {
     std::vector<dealii::Point<dim>> vertices;
     Interpolation                   to_finer;
+
+    /// For each vertex the slab of the body (of its own mesh) that it lies in.
+    std::vector<unsigned int> slabs;
   };
 
 

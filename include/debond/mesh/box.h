@@ -94,6 +94,12 @@ namespace Debond
     std::vector<BoxParameters>
     coarse_boxes() const;
 
+    /// The levels of some of these, one after the other, below the mesh that
+    /// has the vertices.
+    std::vector<CoarseLevel<dim>>
+    levels_of(const std::vector<BoxParameters>      &boxes,
+              const std::vector<dealii::Point<dim>> &vertices) const;
+
     const BoxParameters parameters;
   };
 } // namespace Debond

@@ -5,6 +5,7 @@
 #include <debond/mesh/box.h>
 
 #include <cstddef>
+#include <vector>
 
 namespace Debond
 {
@@ -60,37 +61,48 @@ namespace Debond
     bool
     owns_cell_at(const dealii::Point<dim> &point) const;
 
-    /// What a rank has of the first coarser mesh.
+    /// How many levels, the finest one counted, have enough slabs of their own
+    /// for each rank; at least one, and not the coarsest.
+    unsigned int
+    n_shared_levels() const;
+
+    /// What a rank has of a coarser mesh: vertices in its own slabs of the
+    /// finest mesh, and on each side those of two coarser cells, of five where
+    /// the meshes are not nested along x.
     struct CoarsePiece
     {
-      /// On the vertices that are needed, in the order of their ids.
       CoarseLevel<dim> level;
 
-      /// The same number on all ranks, in the order of the whole coarser mesh.
-      std::vector<unsigned int> ids;
+      /// In the whole coarser mesh, ascending.
+      std::vector<unsigned int> numbers;
 
       /// Those in an own slab.
       std::vector<bool> is_own;
+
+      /// Of the vertices of the whole coarser mesh.
+      unsigned int n_whole;
     };
 
-    /// @p vertices are those of the mesh.
-    CoarsePiece
-    coarse_piece(const std::vector<dealii::Point<dim>> &vertices) const;
+    /// The first @p n coarser meshes; @p vertices are those of the mesh.
+    std::vector<CoarsePiece>
+    coarse_pieces(const std::vector<dealii::Point<dim>> &vertices,
+                  const unsigned int                     n) const;
 
-    /// The whole first coarser mesh, for one rank: the ids of its vertices and
-    /// the coarser levels on it.
+    /// The vertices of the whole @p n th coarser mesh and the coarser levels on
+    /// it.
     struct CoarseWhole
     {
       std::vector<dealii::Point<dim>> vertices;
-      std::vector<unsigned int>       ids;
+      std::vector<unsigned int>       slabs;
       std::vector<CoarseLevel<dim>>   coarser;
     };
 
     CoarseWhole
-    coarse_whole() const;
+    coarse_whole(const unsigned int n) const;
 
   private:
-    unsigned int first, end; ///< own slabs
+    const unsigned int n_ranks;
+    unsigned int       first, end; ///< own slabs
   };
 } // namespace Debond
 

@@ -2,7 +2,8 @@
 #include <debond/linear_algebra/multigrid/root_level.h>
 
 #include <algorithm>
-#include <utility>
+#include <map>
+#include <numeric>
 
 namespace Debond
 {
@@ -11,44 +12,54 @@ namespace Debond
     /// The unknowns of the nodes, of those that are not own as nothing.
     template <int dim>
     std::vector<dealii::types::global_dof_index>
-    unknowns_of(const std::vector<unsigned int> &ids,
+    unknowns_of(const std::vector<unsigned int> &numbers,
                 const std::vector<bool>         &is_own = {})
     {
       std::vector<dealii::types::global_dof_index> result;
-      for (std::size_t i = 0; i < ids.size(); ++i)
+      for (std::size_t i = 0; i < numbers.size(); ++i)
         for (unsigned int c = 0; c < dim; ++c)
           result.push_back(is_own.empty() || is_own[i] ?
-                             ids[i] * dim + c :
+                             numbers[i] * dim + c :
                              dealii::numbers::invalid_dof_index);
       return result;
     }
 
 
 
-    unsigned int
-    place_of(const unsigned int id, const std::vector<unsigned int> &ids)
+    /// All unknowns on the root, none elsewhere.
+    template <int dim>
+    std::vector<dealii::types::global_dof_index>
+    unknowns_of_root(const unsigned int n_nodes, const MPI_Comm ranks)
     {
-      const auto place = std::lower_bound(ids.begin(), ids.end(), id);
-      return place != ids.end() && *place == id ?
-               static_cast<unsigned int>(place - ids.begin()) :
-               dealii::numbers::invalid_unsigned_int;
+      std::vector<dealii::types::global_dof_index> result;
+      if (dealii::Utilities::MPI::this_mpi_process(ranks) == 0)
+        result.resize(std::size_t(n_nodes) * dim);
+      std::iota(result.begin(), result.end(), 0);
+      return result;
     }
   } // namespace
 
 
 
   template <int dim>
-  RootLevel<dim>::RootLevel(const Piece              &own_piece,
-                            std::vector<unsigned int> all,
-                            const MPI_Comm            communicator)
+  RootLevel<dim>::RootLevel(const Piece &own_piece, const MPI_Comm communicator)
     : piece(own_piece)
-    , all_ids(std::move(all))
     , ranks(communicator)
-    , to_root(unknowns_of<dim>(piece.ids, piece.is_own),
-              unknowns_of<dim>(all_ids),
+    , to_root(unknowns_of<dim>(piece.numbers, piece.is_own),
+              unknowns_of_root<dim>(piece.n_whole, ranks),
               ranks)
-    , from_root(unknowns_of<dim>(all_ids), unknowns_of<dim>(piece.ids), ranks)
-  {}
+    , from_root(unknowns_of_root<dim>(piece.n_whole, ranks),
+                unknowns_of<dim>(piece.numbers),
+                ranks)
+  {
+    for (unsigned int i = 0; i < piece.numbers.size(); ++i)
+      if (piece.is_own[i])
+        {
+          if (ranges.empty() || ranges.back().second != i)
+            ranges.emplace_back(i, i);
+          ++ranges.back().second;
+        }
+  }
 
 
 
@@ -65,7 +76,7 @@ namespace Debond
   unsigned int
   RootLevel<dim>::n_local_nodes() const
   {
-    return static_cast<unsigned int>(piece.ids.size());
+    return static_cast<unsigned int>(piece.numbers.size());
   }
 
 
@@ -100,23 +111,28 @@ namespace Debond
   BlockMatrix<dim, double>
   RootLevel<dim>::gather_rows(const BlockMatrix<dim, double> &local) const
   {
-    // Of each row its id and the number of its blocks, then their columns.
-    std::vector<unsigned int> shape;
-    std::vector<double>       values;
-    for (unsigned int i = 0; i < local.n_rows(); ++i)
-      if (piece.is_own[i] && local.starts[i] != local.starts[i + 1])
-        {
-          shape.push_back(piece.ids[i]);
-          shape.push_back(
-            static_cast<unsigned int>(local.starts[i + 1] - local.starts[i]));
-          for (std::size_t k = local.starts[i]; k < local.starts[i + 1]; ++k)
-            shape.push_back(piece.ids[local.columns[k]]);
-          values.insert(values.end(),
-                        local.values.begin() + local.starts[i] * dim * dim,
-                        local.values.begin() + local.starts[i + 1] * dim * dim);
-        }
-    const auto shapes     = dealii::Utilities::MPI::gather(ranks, shape);
-    const auto all_values = dealii::Utilities::MPI::gather(ranks, values);
+    // Of each row its number and how many blocks it has, then their columns.
+    std::map<unsigned int, std::vector<unsigned int>> shapes;
+    std::map<unsigned int, std::vector<double>>       all_values;
+    std::vector<unsigned int>                        &shape  = shapes[0];
+    std::vector<double>                              &values = all_values[0];
+    for (const auto &[begin, end] : ranges)
+      for (unsigned int i = begin; i < end; ++i)
+        if (local.starts[i] != local.starts[i + 1])
+          {
+            shape.push_back(piece.numbers[i]);
+            shape.push_back(
+              static_cast<unsigned int>(local.starts[i + 1] - local.starts[i]));
+            for (std::size_t k = local.starts[i]; k < local.starts[i + 1]; ++k)
+              shape.push_back(piece.numbers[local.columns[k]]);
+            values.insert(values.end(),
+                          local.values.begin() + local.starts[i] * dim * dim,
+                          local.values.begin() +
+                            local.starts[i + 1] * dim * dim);
+          }
+    // deal.II's gather() compresses what it sends.
+    shapes     = dealii::Utilities::MPI::some_to_some(ranks, shapes);
+    all_values = dealii::Utilities::MPI::some_to_some(ranks, all_values);
 
     // Ranks in turn: rows of each are in ascending order, those of all not.
     struct Row
@@ -124,14 +140,14 @@ namespace Debond
       const unsigned int *shape;
       const double       *values;
     };
-    std::vector<Row> rows(all_ids.size(), {nullptr, nullptr});
-    for (std::size_t rank = 0; rank < shapes.size(); ++rank)
+    std::vector<Row> rows(is_root() ? piece.n_whole : 0, {nullptr, nullptr});
+    for (const auto &[rank, of_rank] : shapes)
       {
-        const double *value = all_values[rank].data();
-        for (std::size_t k = 0; k < shapes[rank].size();)
+        const double *value = all_values.at(rank).data();
+        for (std::size_t k = 0; k < of_rank.size();)
           {
-            const unsigned int *const row = shapes[rank].data() + k;
-            rows[node_of(row[0])]         = {row, value};
+            const unsigned int *const row = of_rank.data() + k;
+            rows[row[0]]                  = {row, value};
             value += std::size_t(row[1]) * dim * dim;
             k += 2 + row[1];
           }
@@ -141,8 +157,9 @@ namespace Debond
       {
         if (row.shape != nullptr)
           {
-            for (unsigned int k = 0; k < row.shape[1]; ++k)
-              result.columns.push_back(node_of(row.shape[2 + k]));
+            result.columns.insert(result.columns.end(),
+                                  row.shape + 2,
+                                  row.shape + 2 + row.shape[1]);
             result.values.insert(result.values.end(),
                                  row.values,
                                  row.values +
@@ -158,67 +175,23 @@ namespace Debond
 
 
   template <int dim>
-  void
-  RootLevel<dim>::share(const std::vector<OriginatingFrame> &own,
-                        std::vector<OriginatingFrame>       &local,
-                        std::vector<OriginatingFrame>       &all) const
+  unsigned int
+  RootLevel<dim>::local_node(const unsigned int number) const
   {
-    std::vector<unsigned int> nodes;
-    std::vector<double>       entries;
-    for (const auto &[frame, origin] : own)
-      {
-        nodes.push_back(piece.ids[frame.node]);
-        nodes.push_back(origin);
-        for (const auto *block : {&frame.to_unknowns, &frame.to_cartesian})
-          entries.insert(entries.end(), block->begin(), block->end());
-      }
-    const auto all_nodes   = dealii::Utilities::MPI::all_gather(ranks, nodes);
-    const auto all_entries = dealii::Utilities::MPI::all_gather(ranks, entries);
-    local.clear();
-    all.clear();
-    for (std::size_t rank = 0; rank < all_nodes.size(); ++rank)
-      for (std::size_t k = 0; k < all_nodes[rank].size() / 2; ++k)
-        {
-          OriginatingFrame frame;
-          frame.origin = all_nodes[rank][2 * k + 1];
-          const double *const entry =
-            all_entries[rank].data() + 2 * dim * dim * k;
-          std::copy_n(entry, dim * dim, frame.frame.to_unknowns.begin());
-          std::copy_n(entry + dim * dim,
-                      dim * dim,
-                      frame.frame.to_cartesian.begin());
-          const unsigned int id = all_nodes[rank][2 * k];
-          frame.frame.node      = place_of(id, piece.ids);
-          if (frame.frame.node != dealii::numbers::invalid_unsigned_int)
-            local.push_back(frame);
-          frame.frame.node = place_of(id, all_ids);
-          if (frame.frame.node != dealii::numbers::invalid_unsigned_int)
-            all.push_back(frame);
-        }
-    for (auto *frames : {&local, &all})
-      std::sort(frames->begin(),
-                frames->end(),
-                [](const auto &a, const auto &b) {
-                  return a.frame.node < b.frame.node;
-                });
+    const auto place =
+      std::lower_bound(piece.numbers.begin(), piece.numbers.end(), number);
+    return place != piece.numbers.end() && *place == number ?
+             static_cast<unsigned int>(place - piece.numbers.begin()) :
+             dealii::numbers::invalid_unsigned_int;
   }
 
 
 
   template <int dim>
   unsigned int
-  RootLevel<dim>::id(const unsigned int local_node) const
+  RootLevel<dim>::number(const unsigned int local_node) const
   {
-    return piece.ids[local_node];
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  RootLevel<dim>::node_of(const unsigned int id) const
-  {
-    return place_of(id, all_ids);
+    return piece.numbers[local_node];
   }
 
 
@@ -233,10 +206,10 @@ namespace Debond
 
 
   template <int dim>
-  MPI_Comm
-  RootLevel<dim>::communicator() const
+  const std::vector<std::pair<unsigned int, unsigned int>> &
+  RootLevel<dim>::own_ranges() const
   {
-    return ranks;
+    return ranges;
   }
 
 

@@ -76,6 +76,19 @@ namespace Debond
 
 
 
+  unsigned int
+  SharedNodes::node_of(const unsigned int number) const
+  {
+    if (is_whole())
+      return number;
+    const auto place = std::lower_bound(numbers.begin(), numbers.end(), number);
+    return place != numbers.end() && *place == number ?
+             static_cast<unsigned int>(place - numbers.begin()) :
+             dealii::numbers::invalid_unsigned_int;
+  }
+
+
+
   bool
   SharedNodes::is_own(const unsigned int node) const
   {

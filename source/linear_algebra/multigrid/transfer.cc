@@ -141,11 +141,10 @@ namespace Debond
 
   template <int dim>
   void
-  Transfer<dim>::set_coarse_frames(const NodeFrames<dim>           &frames,
-                                   const std::vector<unsigned int> &origins)
+  Transfer<dim>::set_coarse_frames(const NodeFrames<dim> &frames)
   {
-    coarse       = frames;
-    origin_nodes = origins;
+    coarse = frames;
+    origin_nodes.clear();
   }
 
 
@@ -221,7 +220,9 @@ namespace Debond
   template <int dim>
   template <typename Matrix>
   BlockMatrix<dim, double>
-  Transfer<dim>::galerkin_product(const Matrix &A) const
+  Transfer<dim>::galerkin_product(
+    const Matrix                                             &A,
+    const std::vector<std::pair<unsigned int, unsigned int>> &ranges) const
   {
     const auto fine_frame   = by_node(fine, rows.n_points());
     const auto coarse_frame = by_node(coarse, rows.n_nodes);
@@ -249,57 +250,67 @@ namespace Debond
     std::vector<unsigned int> position(rows.n_nodes, rows.n_nodes), row_columns;
     std::vector<Block<dim>>   blocks;
     std::vector<std::pair<unsigned int, unsigned int>> order;
-    for (unsigned int j = 0; j < rows.n_nodes; ++j)
-      {
-        row_columns.clear();
-        blocks.clear();
-        for (std::size_t m = columns.starts[j]; m < columns.starts[j + 1]; ++m)
-          {
-            const unsigned int i      = columns.nodes[m];
-            const double       weight = columns.weights[m];
-            A.visit_row(i, [&](const unsigned int k, Block<dim> B) {
-              if (fine_frame[i] != nullptr)
-                B = transposed_product(fine_frame[i]->to_unknowns, B);
-              if (fine_frame[k] != nullptr)
-                B = product(B, fine_frame[k]->to_unknowns);
-              for (double &entry : B)
-                entry *= weight;
-              for (std::size_t n = rows.starts[k]; n < rows.starts[k + 1]; ++n)
-                {
-                  const unsigned int l = rows.nodes[n];
-                  if (position[l] == rows.n_nodes)
-                    {
-                      position[l] =
-                        static_cast<unsigned int>(row_columns.size());
-                      row_columns.push_back(l);
-                      blocks.push_back({});
-                    }
-                  Block<dim>  &sum = blocks[position[l]];
-                  const double w   = rows.weights[n];
-                  for (int e = 0; e < dim * dim; ++e)
-                    sum[e] += w * B[e];
-                }
-            });
-          }
+    const auto add_row = [&](const unsigned int j) {
+      row_columns.clear();
+      blocks.clear();
+      for (std::size_t m = columns.starts[j]; m < columns.starts[j + 1]; ++m)
+        {
+          const unsigned int i      = columns.nodes[m];
+          const double       weight = columns.weights[m];
+          A.visit_row(i, [&](const unsigned int k, Block<dim> B) {
+            if (fine_frame[i] != nullptr)
+              B = transposed_product(fine_frame[i]->to_unknowns, B);
+            if (fine_frame[k] != nullptr)
+              B = product(B, fine_frame[k]->to_unknowns);
+            for (double &entry : B)
+              entry *= weight;
+            for (std::size_t n = rows.starts[k]; n < rows.starts[k + 1]; ++n)
+              {
+                const unsigned int l = rows.nodes[n];
+                if (position[l] == rows.n_nodes)
+                  {
+                    position[l] = static_cast<unsigned int>(row_columns.size());
+                    row_columns.push_back(l);
+                    blocks.push_back({});
+                  }
+                Block<dim>  &sum = blocks[position[l]];
+                const double w   = rows.weights[n];
+                for (int e = 0; e < dim * dim; ++e)
+                  sum[e] += w * B[e];
+              }
+          });
+        }
 
-        order.clear();
-        for (const unsigned int l : row_columns)
+      order.clear();
+      for (const unsigned int l : row_columns)
+        {
+          order.emplace_back(l, position[l]);
+          position[l] = rows.n_nodes;
+        }
+      std::sort(order.begin(), order.end());
+      for (const auto &[l, n] : order)
+        {
+          Block<dim> B = blocks[n];
+          if (coarse_frame[j] != nullptr)
+            B = transposed_product(coarse_frame[j]->to_cartesian, B);
+          if (coarse_frame[l] != nullptr)
+            B = product(B, coarse_frame[l]->to_cartesian);
+          result.append(l, B);
+        }
+    };
+    unsigned int j = 0;
+    for (const auto &[begin, end] : ranges)
+      {
+        for (; j < begin; ++j)
+          result.end_row();
+        for (; j < end; ++j)
           {
-            order.emplace_back(l, position[l]);
-            position[l] = rows.n_nodes;
+            add_row(j);
+            result.end_row();
           }
-        std::sort(order.begin(), order.end());
-        for (const auto &[l, n] : order)
-          {
-            Block<dim> B = blocks[n];
-            if (coarse_frame[j] != nullptr)
-              B = transposed_product(coarse_frame[j]->to_cartesian, B);
-            if (coarse_frame[l] != nullptr)
-              B = product(B, coarse_frame[l]->to_cartesian);
-            result.append(l, B);
-          }
-        result.end_row();
       }
+    for (; j < rows.n_nodes; ++j)
+      result.end_row();
     result.columns.shrink_to_fit();
     result.values.shrink_to_fit();
     return result;
@@ -310,13 +321,21 @@ namespace Debond
   template class Transfer<2>;
   template class Transfer<3>;
   template BlockMatrix<2, double>
-  Transfer<2>::galerkin_product(const BlockView<2> &) const;
+  Transfer<2>::galerkin_product(
+    const BlockView<2> &,
+    const std::vector<std::pair<unsigned int, unsigned int>> &) const;
   template BlockMatrix<3, double>
-  Transfer<3>::galerkin_product(const BlockView<3> &) const;
+  Transfer<3>::galerkin_product(
+    const BlockView<3> &,
+    const std::vector<std::pair<unsigned int, unsigned int>> &) const;
   template BlockMatrix<2, double>
-  Transfer<2>::galerkin_product(const BlockMatrix<2, double> &) const;
+  Transfer<2>::galerkin_product(
+    const BlockMatrix<2, double> &,
+    const std::vector<std::pair<unsigned int, unsigned int>> &) const;
   template BlockMatrix<3, double>
-  Transfer<3>::galerkin_product(const BlockMatrix<3, double> &) const;
+  Transfer<3>::galerkin_product(
+    const BlockMatrix<3, double> &,
+    const std::vector<std::pair<unsigned int, unsigned int>> &) const;
   template void
   Transfer<2>::prolongate_add(float *const, float *const) const;
   template void

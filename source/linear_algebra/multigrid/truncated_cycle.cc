@@ -92,12 +92,14 @@ namespace Debond
   template <int dim>
   struct TruncatedCycle<dim>::Level
   {
-    BlockMatrix<dim, float>  A; ///< of the cycle
-    std::vector<float>       inverse_diagonal;
-    float                    largest_eigenvalue = 1.f;
-    std::vector<float>       zero;     ///< where a diagonal entry counts as it
-    Transfer<dim>            transfer; ///< from the next coarser level
-    BlockMatrix<dim, double> original; ///< nothing truncated
+    const SharedNodes          *nodes = nullptr;
+    std::unique_ptr<SharedRows> shared_rows; ///< if ranks share the level
+    BlockMatrix<dim, float>     A;           ///< of the cycle
+    std::vector<float>          inverse_diagonal;
+    float                       largest_eigenvalue = 1.f;
+    std::vector<float>          zero; ///< where a diagonal entry counts as it
+    Transfer<dim>               transfer; ///< from the next coarser level
+    BlockMatrix<dim, double>    original; ///< nothing truncated
 
     /// What truncation changed: rows, and blocks as they were.
     std::vector<unsigned int> changed_rows;
@@ -174,17 +176,23 @@ namespace Debond
 
   template <int dim>
   TruncatedCycle<dim>::TruncatedCycle(
-    const dealii::SparseMatrix<double> &fine_matrix,
-    const NodeFrames<dim>              &fine_frames,
-    std::vector<Interpolation>          interpolations,
-    const SharedNodes                  &fine_nodes,
-    const RootLevel<dim>               *root_level)
+    const dealii::SparseMatrix<double>     &fine_matrix,
+    const NodeFrames<dim>                  &fine_frames,
+    std::vector<Interpolation>              interpolations,
+    const std::vector<const SharedNodes *> &nodes,
+    const RootLevel<dim>                   *root_level)
     : A(fine_matrix)
-    , nodes(fine_nodes)
     , root(root_level)
-    , levels(root == nullptr || root->is_root() ? interpolations.size() + 1 : 1)
+    , levels(nodes.size())
     , coarse_solver(std::make_unique<CoarseSolver>())
+    , framed(interpolations.size() + 1)
   {
+    for (unsigned int l = 0; l < levels.size(); ++l)
+      {
+        levels[l].nodes = nodes[l];
+        if (is_shared(l))
+          levels[l].shared_rows = std::make_unique<SharedRows>(*nodes[l]);
+      }
     const BlockView<dim> blocks(A);
     const auto           copy = [](const auto              &matrix,
                          const std::size_t        n_blocks,
@@ -217,19 +225,28 @@ namespace Debond
         Transfer<dim> &transfer = levels[l].transfer;
         transfer                = Transfer<dim>(std::move(interpolations[l]),
                                  l == 0 ? fine_frames : frames(l));
-        if (l == 0 && root != nullptr)
-          share_coarse_frames();
+        if (is_shared(l))
+          share_frames(l + 1,
+                       is_shared(l + 1) ? nodes[l + 1]->own_ranges() :
+                                          root->own_ranges());
+        else
+          for (std::size_t k = 0; k < transfer.coarse_frames().size(); ++k)
+            framed[l + 1].push_back(
+              {transfer.coarse_frames()[k].node, transfer.origins()[k]});
         BlockMatrix<dim, double> product =
-          l == 0 ? transfer.galerkin_product(blocks) :
-                   transfer.galerkin_product(levels[l].original);
-        if (l == 0 && root != nullptr)
-          product = root->gather_rows(product);
+          l == 0 ? coarser_matrix(l, blocks) :
+                   coarser_matrix(l, levels[l].original);
         if (l + 1 == levels.size())
           break;
         levels[l + 1].original = std::move(product);
         copy(levels[l + 1].original,
              levels[l + 1].original.columns.size(),
              levels[l + 1].A);
+      }
+    if (root != nullptr)
+      {
+        local_b.resize(std::size_t(root->n_local_nodes()) * dim);
+        local_x.resize(local_b.size());
       }
     for (unsigned int l = 0; l < levels.size(); ++l)
       {
@@ -245,32 +262,95 @@ namespace Debond
 
 
   template <int dim>
-  void
-  TruncatedCycle<dim>::share_coarse_frames()
+  bool
+  TruncatedCycle<dim>::is_shared(const unsigned int l) const
   {
-    using OriginatingFrame = typename RootLevel<dim>::OriginatingFrame;
-    Transfer<dim>                &transfer = levels[0].transfer;
-    std::vector<OriginatingFrame> own, local, all;
+    return l < levels.size() && !levels[l].nodes->is_whole();
+  }
+
+
+
+  template <int dim>
+  void
+  TruncatedCycle<dim>::share_frames(
+    const unsigned int                                        l,
+    const std::vector<std::pair<unsigned int, unsigned int>> &own_ranges)
+  {
+    const SharedNodes &finer    = *levels[l - 1].nodes;
+    Transfer<dim>     &transfer = levels[l - 1].transfer;
+    const auto         number   = [&](const unsigned int node) {
+      return is_shared(l) ? levels[l].nodes->number(node) : root->number(node);
+    };
+    std::vector<unsigned int> numbers;
+    std::vector<double>       entries;
+    auto                      range = own_ranges.begin();
     for (std::size_t k = 0; k < transfer.coarse_frames().size(); ++k)
-      if (root->is_own(transfer.coarse_frames()[k].node))
-        own.push_back(
-          {transfer.coarse_frames()[k], nodes.number(transfer.origins()[k])});
-    root->share(own, local, all);
-    NodeFrames<dim>           local_frames;
-    std::vector<unsigned int> local_origins;
-    for (const OriginatingFrame &frame : local)
       {
-        local_frames.push_back(frame.frame);
-        local_origins.push_back(frame.origin);
+        const NodeFrame<dim> &frame = transfer.coarse_frames()[k];
+        while (range != own_ranges.end() && range->second <= frame.node)
+          ++range;
+        if (range == own_ranges.end() || frame.node < range->first)
+          continue;
+        numbers.push_back(number(frame.node));
+        numbers.push_back(finer.number(transfer.origins()[k]));
+        for (const auto *block : {&frame.to_unknowns, &frame.to_cartesian})
+          entries.insert(entries.end(), block->begin(), block->end());
       }
-    transfer.set_coarse_frames(local_frames, local_origins);
-    for (const OriginatingFrame &frame : all)
+    const auto all_numbers =
+      dealii::Utilities::MPI::all_gather(finer.communicator(), numbers);
+    const auto all_entries =
+      dealii::Utilities::MPI::all_gather(finer.communicator(), entries);
+
+    struct Frame
+    {
+      FramedNode    node;
+      const double *entries;
+    };
+    std::vector<Frame> all;
+    for (std::size_t rank = 0; rank < all_numbers.size(); ++rank)
+      for (std::size_t k = 0; k < all_numbers[rank].size() / 2; ++k)
+        all.push_back({{all_numbers[rank][2 * k], all_numbers[rank][2 * k + 1]},
+                       all_entries[rank].data() + 2 * dim * dim * k});
+    std::sort(all.begin(), all.end(), [](const Frame &a, const Frame &b) {
+      return a.node.number < b.node.number;
+    });
+    NodeFrames<dim> local;
+    for (const Frame &frame : all)
       {
-        coarse_frames.push_back(frame.frame);
-        coarse_origins.push_back(frame.origin);
+        framed[l].push_back(frame.node);
+        NodeFrame<dim> result;
+        std::copy_n(frame.entries, dim * dim, result.to_unknowns.begin());
+        std::copy_n(frame.entries + dim * dim,
+                    dim * dim,
+                    result.to_cartesian.begin());
+        result.node = frame.node.number;
+        if (!is_shared(l) && root->is_root())
+          root_frames.push_back(result);
+        result.node = is_shared(l) ?
+                        levels[l].nodes->node_of(frame.node.number) :
+                        root->local_node(frame.node.number);
+        if (result.node != dealii::numbers::invalid_unsigned_int)
+          local.push_back(result);
       }
-    coarse_b.resize(std::size_t(root->n_local_nodes()) * dim);
-    coarse_x.resize(coarse_b.size());
+    transfer.set_coarse_frames(local);
+  }
+
+
+
+  template <int dim>
+  template <typename Matrix>
+  BlockMatrix<dim, double>
+  TruncatedCycle<dim>::coarser_matrix(const unsigned int l,
+                                      const Matrix      &B) const
+  {
+    const Transfer<dim> &transfer = levels[l].transfer;
+    if (is_shared(l + 1))
+      return levels[l + 1].shared_rows->complete(
+        transfer.galerkin_product(B, levels[l + 1].nodes->own_ranges()));
+    if (is_shared(l))
+      return root->gather_rows(
+        transfer.galerkin_product(B, root->own_ranges()));
+    return transfer.galerkin_product(B, {{0u, transfer.n_coarse_nodes()}});
   }
 
 
@@ -299,21 +379,33 @@ namespace Debond
 
 
   template <int dim>
-  const NodeFrames<dim> &
-  TruncatedCycle<dim>::frames(const unsigned int l) const
+  unsigned int
+  TruncatedCycle<dim>::n_shared_levels() const
   {
-    return l == 1 && root != nullptr ? coarse_frames :
-                                       levels[l - 1].transfer.coarse_frames();
+    unsigned int result = 0;
+    while (is_shared(result))
+      ++result;
+    return result;
   }
 
 
 
   template <int dim>
-  const std::vector<unsigned int> &
-  TruncatedCycle<dim>::origins(const unsigned int l) const
+  const NodeFrames<dim> &
+  TruncatedCycle<dim>::frames(const unsigned int l) const
   {
-    return l == 1 && root != nullptr ? coarse_origins :
-                                       levels[l - 1].transfer.origins();
+    return is_shared(l - 1) && !is_shared(l) ?
+             root_frames :
+             levels[l - 1].transfer.coarse_frames();
+  }
+
+
+
+  template <int dim>
+  const std::vector<typename TruncatedCycle<dim>::FramedNode> &
+  TruncatedCycle<dim>::framed_nodes(const unsigned int l) const
+  {
+    return framed[l];
   }
 
 
@@ -349,44 +441,6 @@ namespace Debond
 
 
   template <int dim>
-  std::vector<std::pair<unsigned int, unsigned int>>
-  TruncatedCycle<dim>::own_ranges(const unsigned int l) const
-  {
-    if (l == 0)
-      return nodes.own_ranges();
-    return {{0u, levels[l].A.n_rows()}};
-  }
-
-
-
-  template <int dim>
-  double
-  TruncatedCycle<dim>::product(const unsigned int        l,
-                               const std::vector<float> &a,
-                               const std::vector<float> &b) const
-  {
-    if (l == 0)
-      return nodes.product(a.data(), b.data());
-    double result = 0.;
-    for (std::size_t i = 0; i < a.size(); ++i)
-      result += double(a[i]) * double(b[i]);
-    return result;
-  }
-
-
-
-  template <int dim>
-  void
-  TruncatedCycle<dim>::update_ghosts(const unsigned int  l,
-                                     std::vector<float> &values) const
-  {
-    if (l == 0)
-      nodes.update_ghosts(values.data());
-  }
-
-
-
-  template <int dim>
   void
   TruncatedCycle<dim>::prepare_smoother(const unsigned int l)
   {
@@ -411,7 +465,7 @@ namespace Debond
     unsigned int     next_number = 0;
     for (unsigned int i = 0; i < n; ++i)
       {
-        const unsigned int number = l == 0 ? nodes.number(i) : i;
+        const unsigned int number = level.nodes->number(i);
         random.discard((number - next_number) * std::size_t(dim));
         next_number = number + 1;
         for (int c = 0; c < dim; ++c)
@@ -434,7 +488,8 @@ namespace Debond
             std::copy_n(z.begin(), dim, level.x.begin() + std::size_t(i) * dim);
           }
         const double previous = force_times_shift;
-        force_times_shift     = product(l, level.x, level.r);
+        force_times_shift =
+          level.nodes->product(level.x.data(), level.r.data());
         if (!(force_times_shift > 0.))
           break;
         if (!steps.empty())
@@ -443,7 +498,7 @@ namespace Debond
           ratios.empty() ? 0.f : static_cast<float>(ratios.back());
         for (std::size_t i = 0; i < level.p.size(); ++i)
           level.p[i] = level.x[i] + ratio * level.p[i];
-        for (const auto &[begin, end] : own_ranges(l))
+        for (const auto &[begin, end] : level.nodes->own_ranges())
           for (unsigned int i = begin; i < end; ++i)
             {
               const auto force = level.A.times(i, level.p.data());
@@ -451,8 +506,9 @@ namespace Debond
                           dim,
                           level.b.begin() + std::size_t(i) * dim);
             }
-        update_ghosts(l, level.b);
-        const double curvature = product(l, level.b, level.p);
+        level.nodes->update_ghosts(level.b.data());
+        const double curvature =
+          level.nodes->product(level.b.data(), level.p.data());
         if (!(curvature > 0.))
           break;
         steps.push_back(force_times_shift / curvature);
@@ -611,10 +667,8 @@ namespace Debond
       {
         for (const unsigned int row : levels[l].changed_rows)
           invert_diagonal(levels[l], row);
-        if (l + 1 < levels.size() || (l == 0 && root != nullptr))
-          changes = levels[l].transfer.galerkin_product(changes);
-        if (l == 0 && root != nullptr)
-          changes = root->gather_rows(changes);
+        if (l + 1 < levels.size() || is_shared(l))
+          changes = coarser_matrix(l, changes);
         if (l + 1 < levels.size())
           change(levels[l + 1], changes);
       }
@@ -628,9 +682,8 @@ namespace Debond
   void
   TruncatedCycle<dim>::cycle(const unsigned int l) const
   {
-    const Level &level     = levels[l];
-    const bool   is_shared = l == 0 && root != nullptr;
-    if (l + 1 == levels.size() && !is_shared)
+    const Level &level = levels[l];
+    if (l + 1 == levels.size() && !is_shared(l))
       {
         coarse_solver->solve(level.b, level.x);
         return;
@@ -646,8 +699,8 @@ namespace Debond
     const float        next_rho = 1.f / (2.f * sigma - rho);
 
     // p = momentum p + step D^{-1} (b - A x), x += p
-    const auto ranges = own_ranges(l);
-    const auto move   = [&](const float momentum, const float step) {
+    const auto &ranges = level.nodes->own_ranges();
+    const auto  move   = [&](const float momentum, const float step) {
       for (const auto &[begin, end] : ranges)
         for (unsigned int i = begin; i < end; ++i)
           {
@@ -666,7 +719,7 @@ namespace Debond
               }
           }
       std::swap(level.x, level.r);
-      update_ghosts(l, level.x);
+      level.nodes->update_ghosts(level.x.data());
     };
     const float momentum = next_rho * rho, step = 2.f * next_rho / delta;
 
@@ -692,21 +745,22 @@ namespace Debond
               level.b[std::size_t(i) * dim + c] - force[c];
         }
     // The matrix does not couple held unknowns to others.
-    if (is_shared)
+    level.nodes->update_ghosts(level.r.data());
+    if (is_shared(l) && !is_shared(l + 1))
       {
-        update_ghosts(l, level.r);
-        level.transfer.restrict_to(coarse_b.data(), level.r.data());
+        level.transfer.restrict_to(local_b.data(), level.r.data());
         std::vector<float> none;
-        root->gather(coarse_b, root->is_root() ? levels[1].b : none);
+        root->gather(local_b, root->is_root() ? levels[l + 1].b : none);
         if (root->is_root())
-          cycle(1);
-        root->scatter(root->is_root() ? levels[1].x : none, coarse_x);
-        level.transfer.prolongate_add(level.x.data(), coarse_x.data());
+          cycle(l + 1);
+        root->scatter(root->is_root() ? levels[l + 1].x : none, local_x);
+        level.transfer.prolongate_add(level.x.data(), local_x.data());
       }
     else
       {
         const Level &coarser = levels[l + 1];
         level.transfer.restrict_to(coarser.b.data(), level.r.data());
+        coarser.nodes->update_ghosts(coarser.b.data());
         cycle(l + 1);
         level.transfer.prolongate_add(level.x.data(), coarser.x.data());
       }
@@ -724,8 +778,7 @@ namespace Debond
   {
     const Level &level = levels[first];
     // Single precision has a smaller range, too.
-    const double size =
-      first == 0 ? nodes.largest(src.begin()) : src.linfty_norm();
+    const double size = level.nodes->largest(src.begin());
     if (size == 0. || !std::isfinite(size))
       {
         dst = size;

@@ -5,33 +5,32 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/mpi_noncontiguous_partitioner.h>
 
-#include <debond/linear_algebra/multigrid/transfer.h>
+#include <debond/linear_algebra/multigrid/block_matrix.h>
 
+#include <utility>
 #include <vector>
 
 namespace Debond
 {
   /**
-   * The first coarser level where the finest one is shared by ranks: each rank
-   * has the nodes that its fine ones depend on, and one of them, the root
-   * (number 0), has all, and solves on them and on all coarser levels.
+   * The first level that ranks do not share: each rank has the nodes that those
+   * of the next finer level depend on, and one of them, the root (number 0),
+   * has all, and solves on them and on all coarser levels.
    */
   template <int dim>
   class RootLevel
   {
   public:
-    /// A rank's nodes by ids, which are the same on all ranks and in the order
-    /// of the numbers that nodes have on the root.
+    /// A rank's nodes, by their numbers on the root, ascending.
     struct Piece
     {
-      std::vector<unsigned int> ids;
+      std::vector<unsigned int> numbers;
       std::vector<bool>         is_own;
+      unsigned int              n_whole; ///< of all nodes
     };
 
-    /// @p all: the ids of all nodes, empty on ranks that are not the root.
-    RootLevel(const Piece              &piece,
-              std::vector<unsigned int> all,
-              const MPI_Comm            communicator);
+    /// To be called by all ranks, and so are the functions below.
+    RootLevel(const Piece &piece, const MPI_Comm communicator);
 
     bool
     is_root() const;
@@ -53,39 +52,27 @@ namespace Debond
     BlockMatrix<dim, double>
     gather_rows(const BlockMatrix<dim, double> &local) const;
 
-    /// A frame with the fine node that it is like, by its number in the whole.
-    struct OriginatingFrame
-    {
-      NodeFrame<dim> frame;
-      unsigned int   origin;
-    };
-
-    /// The frames of own nodes, for the root (@p all, by numbers there) and for
-    /// each rank (@p local, of all its nodes).
-    void
-    share(const std::vector<OriginatingFrame> &own,
-          std::vector<OriginatingFrame>       &local,
-          std::vector<OriginatingFrame>       &all) const;
-
-    /// The number of a rank's node on the root.
+    /// That of the number on the root, dealii::numbers::invalid_unsigned_int
+    /// if the rank does not have it.
     unsigned int
-    id(const unsigned int local_node) const;
+    local_node(const unsigned int number) const;
 
-    /// On the root.
+    /// The number on the root of a rank's node.
     unsigned int
-    node_of(const unsigned int id) const;
+    number(const unsigned int local_node) const;
 
     bool
     is_own(const unsigned int local_node) const;
 
-    MPI_Comm
-    communicator() const;
+    /// Those that are the rank's own, as intervals [begin, end).
+    const std::vector<std::pair<unsigned int, unsigned int>> &
+    own_ranges() const;
 
   private:
-    const Piece                                      piece;
-    const std::vector<unsigned int>                  all_ids;
-    const MPI_Comm                                   ranks;
-    dealii::Utilities::MPI::NoncontiguousPartitioner to_root, from_root;
+    const Piece                                        piece;
+    std::vector<std::pair<unsigned int, unsigned int>> ranges;
+    const MPI_Comm                                     ranks;
+    dealii::Utilities::MPI::NoncontiguousPartitioner   to_root, from_root;
   };
 } // namespace Debond
 

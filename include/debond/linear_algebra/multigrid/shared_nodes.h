@@ -51,6 +51,11 @@ namespace Debond
     unsigned int
     number(const unsigned int node) const;
 
+    /// That of the whole's @p number, dealii::numbers::invalid_unsigned_int if
+    /// the rank does not have it.
+    unsigned int
+    node_of(const unsigned int number) const;
+
     bool
     is_own(const unsigned int node) const;
 

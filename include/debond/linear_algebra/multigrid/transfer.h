@@ -5,6 +5,7 @@
 #include <debond/linear_algebra/multigrid/block_matrix.h>
 #include <debond/linear_algebra/multigrid/interpolation.h>
 
+#include <utility>
 #include <vector>
 
 namespace Debond
@@ -54,10 +55,10 @@ namespace Debond
     const std::vector<unsigned int> &
     origins() const;
 
-    /// Other frames of coarse nodes, where the fine nodes are not all.
+    /// Other frames of coarse nodes, where the fine nodes are not all. They
+    /// have no origins() then.
     void
-    set_coarse_frames(const NodeFrames<dim>           &frames,
-                      const std::vector<unsigned int> &origins);
+    set_coarse_frames(const NodeFrames<dim> &frames);
 
     /// fine += P coarse. @p coarse is left in Cartesian components.
     template <typename Number>
@@ -74,10 +75,13 @@ namespace Debond
     void
     visit_column(const unsigned int column, const Visitor &visit) const;
 
-    /// P'A P for the symmetric A, of which rows may be empty.
+    /// P'A P for the symmetric A, of which rows may be empty; rows of nodes
+    /// outside of the intervals [begin, end) are left empty.
     template <typename Matrix>
     BlockMatrix<dim, double>
-    galerkin_product(const Matrix &A) const;
+    galerkin_product(
+      const Matrix                                             &A,
+      const std::vector<std::pair<unsigned int, unsigned int>> &ranges) const;
 
   private:
     Interpolation             rows;

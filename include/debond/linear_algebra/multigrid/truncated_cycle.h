@@ -7,6 +7,7 @@
 
 #include <debond/linear_algebra/multigrid/root_level.h>
 #include <debond/linear_algebra/multigrid/shared_nodes.h>
+#include <debond/linear_algebra/multigrid/shared_rows.h>
 #include <debond/linear_algebra/multigrid/transfer.h>
 
 #include <Eigen/SparseCore>
@@ -29,43 +30,54 @@ namespace Debond
    * of the diagonal D; the coarsest matrix is factorised. Numbers are in single
    * precision, but for the products that make the matrices.
    *
-   * Where ranks share the finest level, all of them call what concerns it; the
-   * coarser ones are the root's, and so is n_levels() > 1.
+   * Where ranks share levels, all of them call what concerns these; the others
+   * are the root's.
    */
   template <int dim>
   class TruncatedCycle
   {
   public:
     /// @p frames are those of the unknowns of A, @p interpolations those from
-    /// each coarser level to the next finer one, finest first. Keeps references
-    /// to A and to the nodes of its unknowns. If these are not the whole, @p
-    /// root has the coarser level; the first interpolation is between the
-    /// rank's nodes, and the root has the others.
-    TruncatedCycle(const dealii::SparseMatrix<double> &A,
-                   const NodeFrames<dim>              &frames,
-                   std::vector<Interpolation>          interpolations,
-                   const SharedNodes                  &nodes,
-                   const RootLevel<dim>               *root = nullptr);
+    /// each coarser level to the next finer one, finest first; @p nodes are
+    /// those of the levels. Keeps references to A, nodes and @p root. Where
+    /// ranks share nodes, interpolations are between those that the rank has,
+    /// and the first level that is not shared is that of the root.
+    TruncatedCycle(const dealii::SparseMatrix<double>     &A,
+                   const NodeFrames<dim>                  &frames,
+                   std::vector<Interpolation>              interpolations,
+                   const std::vector<const SharedNodes *> &nodes,
+                   const RootLevel<dim>                   *root = nullptr);
 
     TruncatedCycle(const TruncatedCycle &) = delete;
 
     ~TruncatedCycle();
 
+    /// Those that the process has.
     unsigned int
     n_levels() const;
+
+    /// How many of them ranks share.
+    unsigned int
+    n_shared_levels() const;
 
     /// From the level l + 1 to the level l.
     const Transfer<dim> &
     transfer(const unsigned int l) const;
 
-    /// Of the level l > 0.
+    /// Of the nodes of the level l > 0 that the process has.
     const NodeFrames<dim> &
     frames(const unsigned int l) const;
 
-    /// For each of frames() the node of the level l - 1 that it is like, by its
-    /// number in the whole.
-    const std::vector<unsigned int> &
-    origins(const unsigned int l) const;
+    /// A node with a frame and the node of the next finer level that it is
+    /// like, by their numbers in the whole.
+    struct FramedNode
+    {
+      unsigned int number, origin;
+    };
+
+    /// All of the whole level l > 0, the first one that is not shared included.
+    const std::vector<FramedNode> &
+    framed_nodes(const unsigned int l) const;
 
     /// The Galerkin product of A on the level l > 0, nothing truncated.
     const BlockMatrix<dim, double> &
@@ -93,26 +105,25 @@ namespace Debond
     struct Level;
     class CoarseSolver;
 
-    /// Those that ranks find for the coarser level, for all of them.
+    /// Gives all ranks the frames that they found for the level l, of which
+    /// they own the given nodes.
     void
-    share_coarse_frames();
+    share_frames(
+      const unsigned int                                        l,
+      const std::vector<std::pair<unsigned int, unsigned int>> &own_ranges);
+
+    bool
+    is_shared(const unsigned int l) const;
 
     /// D^{-1} and the largest eigenvalue of D^{-1}A.
     void
     prepare_smoother(const unsigned int l);
 
-    /// The nodes whose rows are to be computed.
-    std::vector<std::pair<unsigned int, unsigned int>>
-    own_ranges(const unsigned int l) const;
-
-    /// <a, b> on a level.
-    double
-    product(const unsigned int        l,
-            const std::vector<float> &a,
-            const std::vector<float> &b) const;
-
-    void
-    update_ghosts(const unsigned int l, std::vector<float> &values) const;
+    /// P'BP of a matrix of the level l, on the next coarser one; nothing where
+    /// the process does not have that.
+    template <typename Matrix>
+    BlockMatrix<dim, double>
+    coarser_matrix(const unsigned int l, const Matrix &B) const;
 
     static void
     invert_diagonal(Level &level, const unsigned int node);
@@ -125,17 +136,18 @@ namespace Debond
     cycle(const unsigned int l) const;
 
     const dealii::SparseMatrix<double> &A;
-    const SharedNodes                  &nodes;
     const RootLevel<dim> *const         root; ///< or null
     std::vector<Level>                  levels;
     std::unique_ptr<CoarseSolver>       coarse_solver;
     unsigned int                        first = 0; ///< level of the cycle
     std::vector<unsigned int>           held_unknowns;
 
-    /// Of the coarser level of a rank.
-    NodeFrames<dim>            coarse_frames;
-    std::vector<unsigned int>  coarse_origins;
-    mutable std::vector<float> coarse_b, coarse_x;
+    std::vector<std::vector<FramedNode>> framed; ///< of the levels
+
+    /// On the first level that is not shared: frames on the root, and vectors
+    /// of what the rank has of it.
+    NodeFrames<dim>            root_frames;
+    mutable std::vector<float> local_b, local_x;
   };
 } // namespace Debond
 
