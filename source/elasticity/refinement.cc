@@ -465,7 +465,7 @@ namespace Debond
 
 
   template <int dim>
-  std::string
+  Refined
   refine_where_needed(const ElasticProblem<dim>   &problem,
                       const PiecewiseQuadratic    &phi,
                       const LoadFactors            factors,
@@ -475,7 +475,7 @@ namespace Debond
   {
     const double rounding = energy_rounding(problem, phi, factors, u);
     if (rounding <= largest_energy_rounding)
-      return "";
+      return {};
 
     const RefinementResult refined =
       refine(problem, phi, factors, solver, may_go_on, u);
@@ -493,7 +493,7 @@ namespace Debond
       note << "displacements are written in double precision, which alone "
               "changes stresses by up to "
            << refined.stress_rounding << " of the largest one.";
-    return note.str();
+    return {refined.converged, note.str()};
   }
 
 
@@ -508,14 +508,14 @@ namespace Debond
                   const PiecewiseQuadratic &,
                   const LoadFactors,
                   const dealii::Vector<double> &);
-  template std::string
+  template Refined
   refine_where_needed(const ElasticProblem<2> &,
                       const PiecewiseQuadratic &,
                       const LoadFactors,
                       CorrectionSolver &,
                       const std::function<bool()> &,
                       dealii::Vector<double> &);
-  template std::string
+  template Refined
   refine_where_needed(const ElasticProblem<3> &,
                       const PiecewiseQuadratic &,
                       const LoadFactors,

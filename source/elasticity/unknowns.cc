@@ -634,9 +634,10 @@ namespace Debond
               unknown.push_back(k);
           }
         if (vertex.is_tangential_fixed &&
-            (unknown.size() > 1 || unknown.empty()))
+            (normals.size() > 1 || unknown.empty()))
           {
-            // Where normals differ, all displacements are tangential to one.
+            // Where normals differ, all displacements are tangential to one,
+            // also if supports prescribe one of the normal ones.
             unknown.clear();
             fix_rest(at_supports);
             constrain(at_supports, index, held);

@@ -355,12 +355,13 @@ namespace Debond
         dealii::Vector<double> u = condensed.expand(point);
         CondensedCorrection    solver(condensed);
         const std::string      note = refine_where_needed(
-          scene.problem(),
-          adhesion,
-          factors,
-          solver,
-          [this]() { return !guard.requested(); },
-          u);
+                                   scene.problem(),
+                                   adhesion,
+                                   factors,
+                                   solver,
+                                   [this]() { return !guard.requested(); },
+                                   u)
+                                   .note;
         if (!note.empty() && result.notes.empty())
           result.notes.push_back(note);
         return u;

@@ -185,6 +185,19 @@ namespace OwnCheck
       return A * u - f;
     }
 
+    /// What displacements that were rounded to double leave of A u - f.
+    VectorX
+    rounding(const VectorX &u) const
+    {
+      VectorX sums = VectorX::Zero(n_dofs());
+      for (int column = 0; column < A.outerSize(); ++column)
+        for (typename Eigen::SparseMatrix<Real>::InnerIterator entry(A, column);
+             entry;
+             ++entry)
+          sums(entry.row()) += std::abs(entry.value() * u(column));
+      return std::numeric_limits<double>::epsilon() * sums;
+    }
+
     VectorX
     normal_displacements(const VectorX &u) const
     {
@@ -328,15 +341,19 @@ namespace OwnCheck
     }
 
     /// Majorise-minimise from the state of the bonds at s. Of a body that
-    /// comes off, a displacement far away.
+    /// comes off, a displacement far away. What nothing resists stays where it
+    /// is at s: J is the same all along it, until a bond closes.
     VectorX
     descend(VectorX s) const
     {
       MatrixX B = bonds(s);
       VectorX b = forces_of_prescribed(s);
+
+      const MatrixX W          = held_weakly();
+      const VectorX from_start = W * s;
       for (unsigned int k = 0; k < 200; ++k)
         {
-          s = minimise_convex(S + B + held_weakly(), g - b);
+          s = minimise_convex(S + B + W, g - b + from_start);
           if (is_off(s))
             break;
           const MatrixX next = bonds(s);

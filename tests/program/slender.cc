@@ -402,6 +402,10 @@ main(int argc, char *argv[])
   test<2>({1e4, "150, 1", "left", "winkler", "free", "energy bundle"}, tally);
   test<2>({1e4, "60, 3", "left, right", "winkler", "free", "automatic"}, tally);
   test<2>({1e3, "100, 2", "left", "winkler", "free", "multigrid"}, tally);
+  // Where linear solvers in double precision do not get through.
+  test<2>({1e4, "100, 4", "left", "none", "free", "multigrid"}, tally);
+  test<2>({1e4, "60, 4", "left", "winkler", "free", "multigrid", 1e-3, 1e6},
+          tally);
   test<3>({1e4, "40, 1, 1", "left", "winkler", "free", "automatic"}, tally);
   test<3>({1e4, "20, 2, 2", "left", "none", "fixed", "automatic"}, tally);
 }

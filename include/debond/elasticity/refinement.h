@@ -163,11 +163,20 @@ namespace Debond
 
 
 
-  /// Refines the minimiser @p u if rounding in double precision can change more
-  /// than 1e-9 of its energy. Returns what the user should know of it, empty
-  /// if all is as in any other scene.
+  struct Refined
+  {
+    bool is_refined = false; ///< u is a minimiser in extended precision
+
+    /// What the user should know of it, empty if all is as in any other scene.
+    std::string note;
+  };
+
+
+
+  /// Refines the minimiser @p u, or what rounding left of the way to one, if
+  /// rounding in double precision can change more than 1e-9 of its energy.
   template <int dim>
-  std::string
+  Refined
   refine_where_needed(const ElasticProblem<dim>   &problem,
                       const PiecewiseQuadratic    &phi,
                       const LoadFactors            factors,

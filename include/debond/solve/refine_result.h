@@ -10,6 +10,8 @@
 namespace Debond
 {
   /// Refines a result if rounding has a say in it. Returns whether it has.
+  /// Where rounding kept majorise-minimise from a result the refinement goes on
+  /// from where that ended, and what it finds is a success, with a note.
   template <int dim>
   bool
   refine_result(const Scene<dim> &scene,
