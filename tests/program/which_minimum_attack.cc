@@ -2,7 +2,8 @@
 // What the default search misses on random scenes: small ones against the
 // enumeration of all bond states, by a solver of its own in long double, and
 // scenes with many patches against branch and bound. Takes the numbers of small
-// scenes and of scenes with many patches, and prints each miss with its gap.
+// scenes and of scenes with many patches, and prints each miss with its gap; a
+// third argument is the seed of other scenes.
 
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/input/parameters.h>
@@ -39,6 +40,10 @@ namespace
   class Random
   {
   public:
+    explicit Random(const unsigned int seed)
+      : engine(seed)
+    {}
+
     double
     operator()(const double lower, const double upper)
     {
@@ -58,7 +63,7 @@ namespace
     }
 
   private:
-    std::mt19937_64 engine{20261122};
+    std::mt19937_64 engine;
   };
 
 
@@ -335,9 +340,11 @@ namespace
 
 
   Counts
-  attack(const unsigned int n_scenes, const bool many_patches)
+  attack(const unsigned int n_scenes,
+         const bool         many_patches,
+         const unsigned int seed)
   {
-    Random random;
+    Random random(seed);
     Counts counts;
     while (counts.scenes < n_scenes)
       {
@@ -420,14 +427,15 @@ namespace
 int
 main(int argc, char *argv[])
 {
-  const bool figures = argc > 2;
+  const bool         figures = argc > 2;
+  const unsigned int seed    = argc > 3 ? std::stoul(argv[3]) : 20261122;
   if (figures)
     most_nodes = 16;
   test_other_law();
   report("small scenes against enumeration",
-         attack(figures ? std::stoul(argv[1]) : 20, false),
+         attack(figures ? std::stoul(argv[1]) : 20, false, seed),
          figures);
   report("many patches against branch and bound",
-         attack(figures ? std::stoul(argv[2]) : 5, true),
+         attack(figures ? std::stoul(argv[2]) : 5, true, seed),
          figures);
 }
