@@ -2,7 +2,6 @@
 #ifndef debond_elasticity_unknowns_h
 #define debond_elasticity_unknowns_h
 
-#include <deal.II/base/function.h>
 #include <deal.II/base/tensor.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_system.h>
@@ -12,110 +11,16 @@
 #include <deal.II/lac/vector.h>
 
 #include <debond/contact/contact_space.h>
+#include <debond/elasticity/boundary_conditions.h>
 #include <debond/elasticity/load_factors.h>
+#include <debond/elasticity/node_supports.h>
 #include <debond/elasticity/rigid_motions.h>
-#include <debond/mesh/body.h>
 
-#include <array>
-#include <map>
-#include <memory>
-#include <set>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace Debond
 {
-  /// What is prescribed where.
-  struct BoundaryConditions
-  {
-    std::set<dealii::types::boundary_id> clamped; ///< Gamma_D, u = 0
-    std::set<dealii::types::boundary_id> contact; ///< Gamma_C
-
-    /// The paper's simplification (7), u_tau = 0 on Gamma_C; otherwise
-    /// sigma_tau = 0 there.
-    bool tangential_displacement_fixed = true;
-
-    /// For messages and reactions.
-    BoundaryNames names = {};
-
-    /// The contact boundaries for which the other one of the two holds.
-    std::set<dealii::types::boundary_id> tangential_exceptions = {};
-
-    /// Whether it is fixed on this contact boundary.
-    bool
-    fixes_tangential(const dealii::types::boundary_id id) const
-    {
-      return tangential_displacement_fixed !=
-             (tangential_exceptions.count(id) > 0);
-    }
-  };
-
-
-
-  /// What is prescribed on a piece of the boundary beside clamps.
-  template <int dim>
-  struct PrescribedDisplacement
-  {
-    std::string                          name; ///< of the piece
-    std::set<dealii::types::boundary_id> boundaries;
-
-    /// The normal displacement alone is zero, on a flat piece (a roller, or a
-    /// plane of symmetry); otherwise these Cartesian components have values.
-    bool                                         is_roller  = false;
-    std::array<bool, dim>                        components = {};
-    std::shared_ptr<const dealii::Function<dim>> values     = {};
-  };
-
-
-
-  /// The distance g >= 0 between the body at rest and the foundation.
-  template <int dim>
-  struct InitialGap
-  {
-    std::string name; ///< of the boundary; empty if it is that of all others
-    std::shared_ptr<const dealii::Function<dim>> value;
-  };
-
-
-
-  template <int dim>
-  struct Supports
-  {
-    std::vector<PrescribedDisplacement<dim>> displacements = {};
-
-    /// Of the contact boundaries that have one. Where they meet the least
-    /// holds.
-    std::map<dealii::types::boundary_id, InitialGap<dim>> gaps = {};
-  };
-
-
-
-  /// A prescribed displacement or a gap that cannot be.
-  class SupportError : public std::invalid_argument
-  {
-  public:
-    enum class Subject
-    {
-      displacement,
-      roller,
-      gap
-    };
-
-    SupportError(const Subject      subject,
-                 const std::string &name,
-                 const std::string &message)
-      : std::invalid_argument(message)
-      , subject(subject)
-      , name(name)
-    {}
-
-    const Subject     subject;
-    const std::string name; ///< of the piece of the boundary
-  };
-
-
-
   /**
    * The unknowns of elasticity on simplices of degree 1 or 2: the Cartesian
    * components of the displacement at each vertex, and of degree 2 those of the
@@ -139,15 +44,6 @@ namespace Debond
   class ElasticUnknowns
   {
   public:
-    /// The unknowns of a vertex: x = to_frame u, where u are the Cartesian
-    /// components, and u = to_cartesian x.
-    struct Frame
-    {
-      std::array<dealii::types::global_dof_index, dim> dofs;
-      dealii::Tensor<2, dim>                           to_frame;
-      dealii::Tensor<2, dim>                           to_cartesian;
-    };
-
     /// Keeps a reference to the triangulation, a connected mesh of simplices.
     /// Throws std::invalid_argument if a boundary is both clamped and contact
     /// or is not in the mesh, if contact_frame() does, or if a rigid motion is
@@ -183,7 +79,7 @@ namespace Debond
 
     /// Of all vertices whose unknowns are not Cartesian: those on the contact
     /// boundary that are not clamped, and those on inclined rollers.
-    const std::vector<Frame> &
+    const std::vector<DisplacementFrame<dim>> &
     frames() const;
 
     /// The columns are the Cartesian directions of the unknowns of a node
@@ -215,15 +111,7 @@ namespace Debond
     const FreeRigidMotions<dim> &
     held_by_contact() const;
 
-    /// A degree of freedom that a support prescribes. Of several supports of a
-    /// vertex the first one bears a direction.
-    struct Supported
-    {
-      dealii::types::global_dof_index dof;
-      unsigned int                    support; ///< of support_names()
-    };
-
-    const std::vector<Supported> &
+    const std::vector<SupportedDof> &
     supported() const;
 
     /// Whether G is not zero.
@@ -272,97 +160,19 @@ namespace Debond
     rigid_body_modes() const;
 
   private:
-    /// What is prescribed at a vertex, by orthonormal directions.
-    struct Row
-    {
-      dealii::Tensor<1, dim> direction;
-      double                 value;
-      unsigned int           support;
-    };
-
-    struct PrescribedVertex
-    {
-      std::array<dealii::types::global_dof_index, dim> dofs;
-      dealii::Point<dim>                               position;
-      std::vector<Row>                                 rows;
-    };
-
-    /// The least displacement that satisfies the rows.
-    static dealii::Tensor<1, dim>
-    displacement_of(const PrescribedVertex &vertex);
-
-    /// Prescribes zero in all other directions.
-    static void
-    fix_rest(PrescribedVertex &vertex);
-
-    /// By node index.
-    using PrescribedVertices = std::map<unsigned int, PrescribedVertex>;
-
-    void
-    clamp(const BoundaryConditions  &conditions,
-          std::vector<Support<dim>> &motions);
-
-    void
-    clamp_vertex(
-      const std::array<dealii::types::global_dof_index, dim> &vertex_dofs,
-      const dealii::Point<dim>                               &position,
-      std::vector<Support<dim>>                              &motions,
-      const unsigned int support = dealii::numbers::invalid_unsigned_int);
-
-    /// Adds what @p condition prescribes to the vertices.
-    void
-    prescribe(const PrescribedDisplacement<dim> &condition,
-              const BoundaryConditions          &conditions,
-              PrescribedVertices                &vertices);
-
-    /// Constrains the vertex; those of the contact boundary are done with it.
-    void
-    constrain(const PrescribedVertex    &vertex,
-              const unsigned int         index,
-              std::vector<Support<dim>> &motions);
-
-    /// Constrains a degree of freedom to a displacement.
-    void
-    constrain(const dealii::types::global_dof_index dof,
-              const double                          value,
-              const unsigned int                    support);
-
-    void
-    add_frame(
-      const unsigned int                                      index,
-      const std::array<dealii::types::global_dof_index, dim> &vertex_dofs,
-      const std::vector<dealii::Tensor<1, dim>>              &rows);
-
-    void
-    make_contact_boundary(const BoundaryConditions  &conditions,
-                          const Supports<dim>       &supports,
-                          const PrescribedVertices  &prescribed,
-                          const double               diameter,
-                          std::vector<Support<dim>> &motions);
-
     /// The unknowns of Cartesian components.
     dealii::Vector<double>
     to_frames(const dealii::Vector<double> &cartesian) const;
-
-    const bool is_piece; ///< the mesh
 
     const dealii::MappingFE<dim> mapping_p1;
     const dealii::FESystem<dim>  fe;
     dealii::DoFHandler<dim>      dofs;
 
-    /// By node index, invalid_unsigned_int where the unknowns are Cartesian.
-    std::vector<unsigned int> frame_of_node;
-    std::vector<Frame>        node_frames;
+    NodeSupports<dim>     node_supports;
+    ContactSpace<dim>     contact_space;
+    FreeRigidMotions<dim> free_motions;
 
-    dealii::AffineConstraints<double> fixed;
-    ContactSpace<dim>                 contact_space;
-
-    std::vector<std::string> names_of_supports;
-    std::vector<Supported>   supported_dofs;
-    FreeRigidMotions<dim>    free_motions;
-
-    // G for the whole load; empty where there is none.
-    dealii::Vector<double> prescribed;
+    // G is what supports prescribe and this, which is empty if it is zero.
     dealii::Vector<double> gap;
   };
 } // namespace Debond

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_boundary_conditions_h
+#define debond_elasticity_boundary_conditions_h
+
+#include <deal.II/base/function.h>
+#include <deal.II/base/types.h>
+
+#include <debond/mesh/body.h>
+
+#include <array>
+#include <map>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// What is prescribed where.
+  struct BoundaryConditions
+  {
+    std::set<dealii::types::boundary_id> clamped; ///< Gamma_D, u = 0
+    std::set<dealii::types::boundary_id> contact; ///< Gamma_C
+
+    /// The paper's simplification (7), u_tau = 0 on Gamma_C; otherwise
+    /// sigma_tau = 0 there.
+    bool tangential_displacement_fixed = true;
+
+    /// For messages and reactions.
+    BoundaryNames names = {};
+
+    /// The contact boundaries for which the other one of the two holds.
+    std::set<dealii::types::boundary_id> tangential_exceptions = {};
+
+    /// Whether it is fixed on this contact boundary.
+    bool
+    fixes_tangential(const dealii::types::boundary_id id) const
+    {
+      return tangential_displacement_fixed !=
+             (tangential_exceptions.count(id) > 0);
+    }
+  };
+
+
+
+  /// What is prescribed on a piece of the boundary beside clamps.
+  template <int dim>
+  struct PrescribedDisplacement
+  {
+    std::string                          name; ///< of the piece
+    std::set<dealii::types::boundary_id> boundaries;
+
+    /// The normal displacement alone is zero, on a flat piece (a roller, or a
+    /// plane of symmetry); otherwise these Cartesian components have values.
+    bool                                         is_roller  = false;
+    std::array<bool, dim>                        components = {};
+    std::shared_ptr<const dealii::Function<dim>> values     = {};
+  };
+
+
+
+  /// The distance g >= 0 between the body at rest and the foundation.
+  template <int dim>
+  struct InitialGap
+  {
+    std::string name; ///< of the boundary; empty if it is that of all others
+    std::shared_ptr<const dealii::Function<dim>> value;
+  };
+
+
+
+  template <int dim>
+  struct Supports
+  {
+    std::vector<PrescribedDisplacement<dim>> displacements = {};
+
+    /// Of the contact boundaries that have one. Where they meet the least
+    /// holds.
+    std::map<dealii::types::boundary_id, InitialGap<dim>> gaps = {};
+  };
+
+
+
+  /// A prescribed displacement or a gap that cannot be.
+  class SupportError : public std::invalid_argument
+  {
+  public:
+    enum class Subject
+    {
+      displacement,
+      roller,
+      gap
+    };
+
+    SupportError(const Subject      subject,
+                 const std::string &name,
+                 const std::string &message)
+      : std::invalid_argument(message)
+      , subject(subject)
+      , name(name)
+    {}
+
+    const Subject     subject;
+    const std::string name; ///< of the piece of the boundary
+  };
+} // namespace Debond
+
+#endif

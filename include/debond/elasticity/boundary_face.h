@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_boundary_face_h
+#define debond_elasticity_boundary_face_h
+
+#include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
+#include <deal.II/dofs/dof_handler.h>
+
+#include <debond/elasticity/boundary_conditions.h>
+#include <debond/mesh/bernstein.h>
+
+#include <array>
+#include <set>
+#include <vector>
+
+namespace Debond
+{
+  /// A boundary face, with what the degrees of freedom know of it.
+  template <int dim>
+  struct BoundaryFace
+  {
+    BoundaryFace(
+      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+      const unsigned int                                            face_no);
+
+    static constexpr unsigned int maximum = n_coefficients(dim, 2);
+
+    /// The coefficient of a node of a function with these values at the
+    /// nodes' positions.
+    template <typename Values>
+    double
+    coefficient(const unsigned int n, const Values &value) const
+    {
+      if (n < dim)
+        return value(positions[n]);
+      const auto &[a, b] = simplex_edges[n - dim];
+      return 2. * value(positions[n]) -
+             0.5 * (value(positions[a]) + value(positions[b]));
+    }
+
+    dealii::types::boundary_id              id;
+    unsigned int                            n_nodes; ///< vertices come first
+    std::array<unsigned int, maximum>       indices;
+    std::array<dealii::Point<dim>, maximum> positions;
+    std::array<std::array<dealii::types::global_dof_index, dim>, maximum> dofs;
+    double                 measure;
+    dealii::Tensor<1, dim> normal;
+  };
+
+
+
+  /// The faces of these boundaries, in the order of the cells. Unless the mesh
+  /// is a piece, throws std::invalid_argument if one of them is not in it.
+  template <int dim>
+  std::vector<BoundaryFace<dim>>
+  boundary_faces(const dealii::DoFHandler<dim>              &dofs,
+                 const std::set<dealii::types::boundary_id> &boundaries,
+                 const BoundaryNames                        &names,
+                 const bool                                  is_piece);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_node_supports_h
+#define debond_elasticity_node_supports_h
+
+#include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/vector.h>
+
+#include <debond/elasticity/boundary_conditions.h>
+#include <debond/elasticity/boundary_face.h>
+#include <debond/elasticity/rigid_motions.h>
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// The degrees of freedom of a node's components.
+  template <int dim>
+  using NodeDofs = std::array<dealii::types::global_dof_index, dim>;
+
+
+
+  /// The unknowns of a node: x = to_frame u, where u are the Cartesian
+  /// components, and u = to_cartesian x.
+  template <int dim>
+  struct DisplacementFrame
+  {
+    NodeDofs<dim>          dofs;
+    dealii::Tensor<2, dim> to_frame;
+    dealii::Tensor<2, dim> to_cartesian;
+  };
+
+
+
+  /// A degree of freedom that a support prescribes. Of several supports of a
+  /// vertex the first one bears a direction.
+  struct SupportedDof
+  {
+    dealii::types::global_dof_index dof;
+    unsigned int                    support; ///< of NodeSupports::names()
+  };
+
+
+
+  /// A node where displacements are prescribed along orthonormal directions.
+  template <int dim>
+  struct PrescribedNode
+  {
+    struct Row
+    {
+      dealii::Tensor<1, dim> direction;
+      double                 value;
+      unsigned int           support;
+    };
+
+    /// The least displacement that satisfies the rows.
+    dealii::Tensor<1, dim>
+    displacement() const;
+
+    /// Prescribes zero in all other directions.
+    void
+    fix_rest();
+
+    NodeDofs<dim>      dofs     = {};
+    dealii::Point<dim> position = {};
+    std::vector<Row>   rows     = {};
+  };
+
+
+
+  /**
+   * What supports prescribe at the nodes of a mesh, and the frames of the nodes
+   * whose unknowns are not Cartesian. It is made step by step: clamps first,
+   * then other displacements, then the contact boundary constrains its nodes
+   * (see make_contact_space()), and finish() all that are left.
+   */
+  template <int dim>
+  class NodeSupports
+  {
+  public:
+    /// Of no nodes.
+    NodeSupports() = default;
+
+    /// @p n_prescribed: the number of degrees of freedom if displacements that
+    /// are not zero may be prescribed, and else 0.
+    NodeSupports(const unsigned int n_nodes, const unsigned int n_prescribed);
+
+    /// Clamps the nodes of these faces.
+    void
+    clamp(const std::vector<BoundaryFace<dim>> &faces,
+          const BoundaryConditions             &conditions);
+
+    /// Notes what @p condition prescribes at the nodes of these faces, those of
+    /// its boundaries. Throws SupportError if that contradicts another support
+    /// or the foundation, is not finite, or if a roller is not flat.
+    void
+    prescribe(const std::vector<BoundaryFace<dim>> &faces,
+              const PrescribedDisplacement<dim>    &condition,
+              const BoundaryConditions             &conditions);
+
+    /// What prescribe() has noted of a node; nothing of most.
+    PrescribedNode<dim>
+    prescribed_at(const unsigned int        index,
+                  const NodeDofs<dim>      &node_dofs,
+                  const dealii::Point<dim> &position) const;
+
+    /// Constrains the node, unless that or a frame of its own is done.
+    void
+    constrain(const unsigned int index, const PrescribedNode<dim> &node);
+
+    /// Gives the node a frame: @p free_directions, what is prescribed along
+    /// the rows of @p node, and directions across, where zero is prescribed if
+    /// @p fixes_rest. Throws as contact_frame() does.
+    void
+    add_frame(const unsigned int                         index,
+              const PrescribedNode<dim>                 &node,
+              const std::vector<dealii::Tensor<1, dim>> &free_directions,
+              const bool                                 fixes_rest);
+
+    /// Constrains the nodes that prescribe() has noted and nobody constrained.
+    /// Returns the directions of all that is constrained.
+    std::vector<Support<dim>>
+    finish();
+
+    const dealii::AffineConstraints<double> &
+    constraints() const;
+
+    /// The prescribed displacements for the whole load; empty if they are zero.
+    const dealii::Vector<double> &
+    displacements() const;
+
+    const std::vector<DisplacementFrame<dim>> &
+    frames() const;
+
+    /// Null where the unknowns are Cartesian.
+    const DisplacementFrame<dim> *
+    frame(const unsigned int index) const;
+
+    /// The pieces of the boundary that support the body.
+    const std::vector<std::string> &
+    names() const;
+
+    const std::vector<SupportedDof> &
+    supported() const;
+
+  private:
+    using Row = typename PrescribedNode<dim>::Row;
+
+    /// Constrains a degree of freedom to a displacement.
+    void
+    constrain(const dealii::types::global_dof_index dof,
+              const double                          value,
+              const unsigned int                    support);
+
+    /// By node index, invalid_unsigned_int where the unknowns are Cartesian.
+    std::vector<unsigned int>           frame_of_node;
+    std::vector<DisplacementFrame<dim>> node_frames;
+    dealii::AffineConstraints<double>   fixed;
+    dealii::Vector<double>              prescribed;
+    std::vector<std::string>            support_names;
+    std::vector<SupportedDof>           supported_dofs;
+
+    // Until it is finished.
+    std::map<unsigned int, PrescribedNode<dim>> prescribed_nodes; ///< by index
+    std::vector<Support<dim>>                   held;
+  };
+} // namespace Debond
+
+#endif

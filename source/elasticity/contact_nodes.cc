@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/contact/field_value.h>
+#include <debond/elasticity/contact_frame.h>
+#include <debond/elasticity/contact_nodes.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+
+namespace Debond
+{
+  namespace
+  {
+    /// A vertex of the contact boundary that is not clamped.
+    template <int dim>
+    struct ContactVertex
+    {
+      NodeDofs<dim>      dofs;
+      dealii::Point<dim> position;
+      VertexNormals<dim> normals;
+
+      /// On one of its faces.
+      bool is_tangential_fixed = false;
+
+      /// For each group of normals the least gap, and the node or the held
+      /// vertex.
+      std::vector<double>       gaps;
+      std::vector<unsigned int> nodes;
+      std::vector<unsigned int> held;
+    };
+
+
+
+    /// Of the foundation below a point of the boundary.
+    template <int dim>
+    double
+    gap_value(const Supports<dim>             &supports,
+              const dealii::types::boundary_id id,
+              const dealii::Point<dim>        &point)
+    {
+      const auto gap = supports.gaps.find(id);
+      if (gap == supports.gaps.end())
+        return 0.;
+      try
+        {
+          return nonnegative_value(*gap->second.value, point);
+        }
+      catch (const std::invalid_argument &error)
+        {
+          throw SupportError(SupportError::Subject::gap,
+                             gap->second.name,
+                             error.what());
+        }
+    }
+
+
+
+    /// Ranks of numbers, where those that differ by rounding share one.
+    std::vector<unsigned int>
+    ranks(const std::vector<double> &values, const double tolerance)
+    {
+      std::vector<unsigned int> order(values.size());
+      std::iota(order.begin(), order.end(), 0u);
+      std::sort(order.begin(),
+                order.end(),
+                [&](const unsigned int a, const unsigned int b) {
+                  return values[a] < values[b];
+                });
+
+      std::vector<unsigned int> result(values.size(), 0);
+      for (unsigned int k = 1; k < order.size(); ++k)
+        result[order[k]] =
+          result[order[k - 1]] +
+          (values[order[k]] - values[order[k - 1]] > tolerance ? 1 : 0);
+      return result;
+    }
+
+
+
+    /// The places of the nodes in lexicographic order of their positions.
+    /// Rounding of the coordinates, as in a turned body, must not change it.
+    template <int dim>
+    std::vector<unsigned int>
+    lexicographic_order(
+      const std::vector<typename ContactBoundary<dim>::Node> &nodes,
+      const double                                            tolerance)
+    {
+      std::array<std::vector<unsigned int>, dim> coordinate_ranks;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          std::vector<double> coordinates;
+          for (const auto &node : nodes)
+            coordinates.push_back(node.position[d]);
+          coordinate_ranks[d] = ranks(coordinates, tolerance);
+        }
+      std::vector<unsigned int> order(nodes.size());
+      std::iota(order.begin(), order.end(), 0u);
+      std::stable_sort(order.begin(),
+                       order.end(),
+                       [&](const unsigned int a, const unsigned int b) {
+                         for (unsigned int d = 0; d < dim; ++d)
+                           if (coordinate_ranks[d][a] != coordinate_ranks[d][b])
+                             return coordinate_ranks[d][a] <
+                                    coordinate_ranks[d][b];
+                         return false;
+                       });
+      return order;
+    }
+
+
+
+    constexpr unsigned int no_node = dealii::numbers::invalid_unsigned_int;
+
+
+
+    /// Goes from the faces to their vertices, from these to contact nodes, and
+    /// with the nodes back to the faces.
+    template <int dim>
+    class ContactSpaceMaker
+    {
+    public:
+      ContactSpaceMaker(const std::vector<BoundaryFace<dim>> &faces,
+                        const unsigned int                    degree,
+                        const BoundaryConditions             &conditions,
+                        const Supports<dim>                  &supports,
+                        NodeSupports<dim>                    &node_supports,
+                        dealii::Vector<double>               &gap)
+        : faces(faces)
+        , supports(supports)
+        , node_supports(node_supports)
+        , gap(gap)
+        , groups(faces.size())
+      {
+        boundary.degree = degree;
+        find_vertices(conditions);
+        for (auto &[index, vertex] : vertices)
+          make_nodes(index, vertex);
+      }
+
+      ContactSpace<dim>
+      space(const double diameter)
+      {
+        std::vector<dealii::types::global_dof_index> boundary_normals;
+        std::vector<unsigned int>                    place(nodes.size());
+        for (const unsigned int node :
+             lexicographic_order<dim>(nodes, 1e-10 * diameter))
+          {
+            place[node] = static_cast<unsigned int>(boundary.nodes.size());
+            boundary.nodes.push_back(nodes[node]);
+            boundary_normals.push_back(normal_dofs[node]);
+          }
+        add_faces(place);
+        if (std::all_of(boundary.held_vertices.begin(),
+                        boundary.held_vertices.end(),
+                        [](const auto &vertex) {
+                          return vertex.normal_displacement == 0. &&
+                                 vertex.gap == 0.;
+                        }))
+          boundary.held_vertices.clear();
+        return ContactSpace<dim>(boundary, boundary_normals);
+      }
+
+    private:
+      void
+      find_vertices(const BoundaryConditions &conditions)
+      {
+        for (unsigned int f = 0; f < faces.size(); ++f)
+          for (unsigned int v = 0; v < faces[f].n_nodes; ++v)
+            if (!node_supports.constraints().is_constrained(
+                  faces[f].dofs[v][0]))
+              {
+                ContactVertex<dim> &vertex = vertices[faces[f].indices[v]];
+                vertex.dofs                = faces[f].dofs[v];
+                vertex.position            = faces[f].positions[v];
+                groups[f][v] =
+                  vertex.normals.add_face(faces[f].normal, faces[f].measure);
+                vertex.is_tangential_fixed =
+                  vertex.is_tangential_fixed ||
+                  conditions.fixes_tangential(faces[f].id);
+                const double gap_here =
+                  gap_value(supports, faces[f].id, vertex.position);
+                if (groups[f][v] < vertex.gaps.size())
+                  vertex.gaps[groups[f][v]] =
+                    std::min(vertex.gaps[groups[f][v]], gap_here);
+                else
+                  vertex.gaps.push_back(gap_here);
+              }
+      }
+
+      /// A node for each group of normals along which the displacement is
+      /// unknown.
+      void
+      make_nodes(const unsigned int index, ContactVertex<dim> &vertex)
+      {
+        const std::vector<dealii::Tensor<1, dim>> normals =
+          vertex.normals.normals();
+        PrescribedNode<dim> prescribed =
+          node_supports.prescribed_at(index, vertex.dofs, vertex.position);
+        const auto &rows = prescribed.rows;
+
+        // A normal displacement is unknown unless supports prescribe it.
+        std::vector<unsigned int> unknown;
+        for (unsigned int k = 0; k < normals.size(); ++k)
+          {
+            dealii::Tensor<1, dim> rest = normals[k];
+            for (const auto &row : rows)
+              rest -= (normals[k] * row.direction) * row.direction;
+            if (rest.norm() > 1e-6)
+              unknown.push_back(k);
+          }
+        if (vertex.is_tangential_fixed &&
+            (normals.size() > 1 || unknown.empty()))
+          {
+            // Where normals differ, all displacements are tangential to one,
+            // also if supports prescribe one of the normal ones.
+            unknown.clear();
+            prescribed.fix_rest();
+            node_supports.constrain(index, prescribed);
+          }
+
+        vertex.nodes.assign(normals.size(), no_node);
+        vertex.held.assign(normals.size(), 0);
+        std::vector<dealii::Tensor<1, dim>> directions;
+        // All basis functions of a face have the same integral.
+        const double part_of_face =
+          static_cast<double>(dim) / boundary.n_face_nodes();
+        for (const unsigned int k : unknown)
+          {
+            vertex.nodes[k] = static_cast<unsigned int>(nodes.size());
+            normal_dofs.push_back(vertex.dofs[directions.size()]);
+            const double gap_here = vertex.gaps[k];
+            if (gap_here > 0.)
+              gap(normal_dofs.back()) = gap_here;
+            directions.push_back(normals[k]);
+            nodes.push_back({vertex.position,
+                             normals[k],
+                             part_of_face * vertex.normals.measure(k),
+                             gap_here});
+          }
+        for (unsigned int k = 0; k < normals.size(); ++k)
+          if (vertex.nodes[k] == no_node)
+            vertex.held[k] = hold({prescribed.displacement() * normals[k],
+                                   vertex.gaps[k],
+                                   rows.empty() ? no_node : rows[0].support,
+                                   normals[k],
+                                   vertex.position});
+        if (unknown.empty())
+          return;
+
+        if (directions.size() + rows.size() > dim)
+          throw SupportError(SupportError::Subject::displacement,
+                             node_supports.names()[rows[0].support],
+                             "too much is prescribed at " +
+                               point_text(vertex.position) +
+                               ", where contact sides meet");
+        node_supports.add_frame(index,
+                                prescribed,
+                                directions,
+                                vertex.is_tangential_fixed);
+      }
+
+      /// Returns the number of the vertex among those that are held.
+      unsigned int
+      hold(const typename ContactBoundary<dim>::HeldVertex &vertex)
+      {
+        boundary.held_vertices.push_back(vertex);
+        return static_cast<unsigned int>(boundary.held_vertices.size() - 1);
+      }
+
+      /// @p place: of each node in the order of the boundary's.
+      void
+      add_faces(const std::vector<unsigned int> &place)
+      {
+        std::map<dealii::types::global_dof_index, unsigned int>
+          supports_of_dofs;
+        if (!supports.gaps.empty())
+          for (const SupportedDof &supported : node_supports.supported())
+            supports_of_dofs.emplace(supported.dof, supported.support);
+        const auto support_of = [&](const dealii::types::global_dof_index dof) {
+          const auto entry = supports_of_dofs.find(dof);
+          return entry == supports_of_dofs.end() ? no_node : entry->second;
+        };
+        for (unsigned int f = 0; f < faces.size(); ++f)
+          {
+            typename ContactBoundary<dim>::Face face;
+            std::copy_n(faces[f].positions.begin(), dim, face.vertices.begin());
+            face.normal  = faces[f].normal;
+            face.measure = faces[f].measure;
+            face.id      = faces[f].id;
+            for (unsigned int v = 0; v < faces[f].n_nodes; ++v)
+              {
+                unsigned int &face_node =
+                  v < dim ? face.nodes[v] : face.edge_nodes[v - dim];
+                unsigned int &face_held =
+                  v < dim ? face.held[v] : face.edge_held[v - dim];
+                const auto entry = vertices.find(faces[f].indices[v]);
+                if (entry == vertices.end())
+                  {
+                    // Clamped, as far from the foundation as at rest.
+                    face_node = no_node;
+                    face_held = hold(
+                      {0.,
+                       gap_value(supports, faces[f].id, faces[f].positions[v]),
+                       support_of(faces[f].dofs[v][0]),
+                       faces[f].normal,
+                       faces[f].positions[v]});
+                    continue;
+                  }
+                const ContactVertex<dim> &vertex = entry->second;
+                const unsigned int        node   = vertex.nodes[groups[f][v]];
+                face_node = node == no_node ? no_node : place[node];
+                face_held = vertex.held[groups[f][v]];
+              }
+            boundary.faces.push_back(face);
+          }
+      }
+
+      const std::vector<BoundaryFace<dim>> &faces;
+      const Supports<dim>                  &supports;
+      NodeSupports<dim>                    &node_supports;
+      dealii::Vector<double>               &gap;
+
+      /// By node index; clamped vertices are left out.
+      std::map<unsigned int, ContactVertex<dim>> vertices;
+
+      /// For each face the group of normals that it belongs to at each of its
+      /// vertices.
+      std::vector<std::array<unsigned int, BoundaryFace<dim>::maximum>> groups;
+
+      std::vector<typename ContactBoundary<dim>::Node> nodes;
+      std::vector<dealii::types::global_dof_index>     normal_dofs;
+      ContactBoundary<dim>                             boundary;
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  ContactSpace<dim>
+  make_contact_space(const std::vector<BoundaryFace<dim>> &faces,
+                     const unsigned int                    degree,
+                     const BoundaryConditions             &conditions,
+                     const Supports<dim>                  &supports,
+                     const double                          diameter,
+                     NodeSupports<dim>                    &node_supports,
+                     dealii::Vector<double>               &gap)
+  {
+    return ContactSpaceMaker<dim>(
+             faces, degree, conditions, supports, node_supports, gap)
+      .space(diameter);
+  }
+
+
+
+  template ContactSpace<2>
+  make_contact_space(const std::vector<BoundaryFace<2>> &,
+                     const unsigned int,
+                     const BoundaryConditions &,
+                     const Supports<2> &,
+                     const double,
+                     NodeSupports<2> &,
+                     dealii::Vector<double> &);
+  template ContactSpace<3>
+  make_contact_space(const std::vector<BoundaryFace<3>> &,
+                     const unsigned int,
+                     const BoundaryConditions &,
+                     const Supports<3> &,
+                     const double,
+                     NodeSupports<3> &,
+                     dealii::Vector<double> &);
+} // namespace Debond
