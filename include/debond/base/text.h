@@ -2,6 +2,7 @@
 #ifndef debond_base_text_h
 #define debond_base_text_h
 
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,25 @@ namespace Debond
   /// The words one after the other with the separator between them.
   std::string
   join(const std::vector<std::string> &words, const std::string &separator);
+
+  /// What is printed of all parts one after the other; manipulators of streams,
+  /// such as std::setprecision(), hold for the parts behind them.
+  template <typename... Parts>
+  std::string
+  words(const Parts &...parts)
+  {
+    std::ostringstream text;
+    (text << ... << parts);
+    return text.str();
+  }
+
+  /// The number with this many digits behind the point, such as "1.23e-04".
+  std::string
+  scientific(const double value, const int digits);
+
+  /// The same without an exponent.
+  std::string
+  fixed_point(const double value, const int digits);
 } // namespace Debond
 
 #endif

@@ -12,7 +12,7 @@ namespace Debond
 {
   /**
    * What a run says: numbers and words for summary.json, and the lines of the
-   * log, so that both are written down in one place (report.cc).
+   * log, so that both are written down in one place (report.h).
    */
   class Record
   {

@@ -2,6 +2,7 @@
 #ifndef debond_output_report_h
 #define debond_output_report_h
 
+#include <debond/input/load_path_parameters.h>
 #include <debond/output/record.h>
 #include <debond/output/run_result.h>
 #include <debond/solve/method_choice.h>
@@ -32,7 +33,15 @@ namespace Debond
   void
   report_checkpoints(const RunCheckpoints &checkpoints, Record &record);
 
-  /// Status, result and verification.
+  /// What became of the factors of a load path, and its curve of stationary
+  /// states.
+  template <int dim>
+  void
+  report_load_path(const LoadPathParameters &load_path,
+                   const RunResult<dim>     &result,
+                   Record                   &record);
+
+  /// Status, result, that of a load path as well, and verification.
   template <int dim>
   void
   report_result(const Scene<dim>     &scene,

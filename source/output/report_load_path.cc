@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/text.h>
+#include <debond/output/report.h>
+
+#include <iomanip>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  namespace
+  {
+    void
+    report_change(const std::string               &name,
+                  const std::string               &label,
+                  const std::optional<BondChange> &change,
+                  Record                          &record)
+    {
+      const std::string pointer = "/load_path/" + name;
+      if (!change)
+        {
+          record.add(pointer, nullptr);
+          return;
+        }
+      record.add(pointer,
+                 {{"step", change->step},
+                  {"factor", change->factor},
+                  {"displacement_factor", change->displacement_factor},
+                  {"change_factor",
+                   change->change_factor ?
+                     Record::Json(*change->change_factor) :
+                     Record::Json(nullptr)},
+                  {"broken_before", change->broken_before},
+                  {"broken_after", change->broken_after}});
+      record.line(
+        label,
+        words("at factor ",
+              change->factor,
+              change->displacement_factor == change->factor ?
+                "" :
+                words(" (of displacements ", change->displacement_factor, ")"),
+              ", step ",
+              change->step,
+              ", broken part ",
+              change->broken_before,
+              " to ",
+              change->broken_after) +
+          (change->change_factor ? words(", from ",
+                                         std::setprecision(10),
+                                         *change->change_factor,
+                                         " on") :
+                                   ""));
+    }
+
+
+
+    /// The curve of stationary states and the longest way on which its factor
+    /// goes back.
+    template <int dim>
+    void
+    report_arc(const std::vector<LoadPathStep<dim>> &arc,
+               const bool                            wanted,
+               Record                               &record)
+    {
+      if (!wanted || arc.size() < 2)
+        {
+          record.add("/load_path/arc", nullptr);
+          return;
+        }
+      const bool of_loads = arc.front().factor != arc.back().factor ||
+                            arc[0].factor != arc[1].factor;
+      const auto factor = [&](const std::size_t k) {
+        return of_loads ? arc[k].factor : arc[k].displacement_factor;
+      };
+      const double sign     = factor(1) >= factor(0) ? 1. : -1.;
+      std::size_t  unstable = 0, start = 0, from = 0, to = 0;
+      for (std::size_t k = 1; k < arc.size(); ++k)
+        {
+          unstable += arc[k].status == "unstable" ? 1 : 0;
+          if (sign * (factor(k) - factor(k - 1)) > 0.)
+            start = k;
+          else if (sign * (factor(start) - factor(k)) >
+                   sign * (factor(from) - factor(to)))
+            {
+              from = start;
+              to   = k;
+            }
+        }
+      record.add(
+        "/load_path/arc",
+        {{"states", arc.size()},
+         {"unstable", unstable},
+         {"back_from",
+          from == to ? Record::Json(nullptr) : Record::Json(factor(from))},
+         {"back_to",
+          from == to ? Record::Json(nullptr) : Record::Json(factor(to))}});
+      record.line("arc",
+                  words(arc.size(), " states, ", unstable, " unstable") +
+                    (from == to ? "" :
+                                  words(", the longest way back from ",
+                                        std::setprecision(10),
+                                        factor(from),
+                                        " to ",
+                                        factor(to))));
+    }
+
+
+
+    /// The steps at which most bonds break and close, and how far the path is
+    /// from the global branch.
+    void
+    report_totals(const LoadPathTotals        &path,
+                  const std::optional<double> &comes_off_at,
+                  Record                      &record)
+    {
+      record.heading("Load path");
+      record.add("/load_path/factors", path.factors);
+      record.add("/load_path/steps", path.steps);
+      record.add("/load_path/last_factor", path.last_factor);
+      record.line("factors",
+                  words(path.steps,
+                        " of ",
+                        path.factors,
+                        ", the last one ",
+                        path.last_factor));
+      record.add("/load_path/comes_off_at",
+                 comes_off_at ? Record::Json(*comes_off_at) :
+                                Record::Json(nullptr));
+      if (comes_off_at)
+        record.line("comes off", words("at factor ", *comes_off_at));
+      report_change("largest_break",
+                    "most bonds break",
+                    path.largest_break,
+                    record);
+      report_change("largest_closing",
+                    "most bonds close",
+                    path.largest_closing,
+                    record);
+
+      record.add("/load_path/compared_with_global_branch", path.compared);
+      record.add("/load_path/above_global_branch", path.above_global);
+      record.add("/load_path/largest_excess", path.largest_excess);
+      if (path.compared > 0)
+        record.line(
+          "above global branch",
+          words("at ", path.above_global, " of ", path.compared, " factors") +
+            (path.above_global > 0 ?
+               words(", by ", 100. * path.largest_excess, " % of |J| at most") :
+               ""));
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  report_load_path(const LoadPathParameters &load_path,
+                   const RunResult<dim>     &result,
+                   Record                   &record)
+  {
+    report_totals(load_path_totals(result.path,
+                                   static_cast<unsigned int>(
+                                     load_path.factors.size())),
+                  result.solve.comes_off_at,
+                  record);
+    report_arc(result.arc, load_path.arc, record);
+  }
+
+
+
+  template void
+  report_load_path(const LoadPathParameters &, const RunResult<2> &, Record &);
+  template void
+  report_load_path(const LoadPathParameters &, const RunResult<3> &, Record &);
+} // namespace Debond

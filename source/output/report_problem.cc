@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/text.h>
+#include <debond/base/version.h>
+#include <debond/output/report.h>
+
+#include <set>
+#include <string>
+
+namespace Debond
+{
+  namespace
+  {
+    void
+    report_program(Record &record)
+    {
+      record.add("/revision", git_revision());
+      record.add("/deal_ii_version", deal_ii_version());
+      record.add("/build_type", build_type());
+      record.heading("Debond " + program_version() +
+                     (record.has_details() ?
+                        ", revision " + git_revision() + ", deal.II " +
+                          deal_ii_version() + ", " + build_type() :
+                        ""));
+    }
+
+
+
+    /// As the scene says it.
+    void
+    report_data(const ProblemParameters &problem,
+                const unsigned int       n_contact_nodes,
+                Record                  &record)
+    {
+      const auto list = [](const std::set<std::string> &names) {
+        return join({names.begin(), names.end()}, ", ");
+      };
+      const auto numbers = [](const Material &material) {
+        return words("E = ",
+                     material.young_modulus,
+                     ", nu = ",
+                     material.poisson_ratio,
+                     material.thermal_expansion == 0. ?
+                       "" :
+                       words(", alpha = ", material.thermal_expansion));
+      };
+      const Material &material = problem.materials.everywhere;
+      record.line("material",
+                  numbers(material) +
+                    (problem.dimension == 3 ? "" :
+                     material.hypothesis == Material::Hypothesis::plane_stress ?
+                                              ", plane stress" :
+                                              ", plane strain"));
+      for (const auto &[region, own] : problem.materials.of_regions())
+        record.line("material " + region, numbers(own));
+      record.line("clamped", list(problem.clamped_boundaries));
+      if (!problem.supports.rollers.empty())
+        record.line("roller", list(problem.supports.rollers));
+      if (!problem.supports.symmetry_planes.empty())
+        record.line("symmetry", list(problem.supports.symmetry_planes));
+      for (const auto &[side, displacement] : problem.supports.displacements)
+        record.line("displacement " + side, displacement);
+      if (!problem.supports.gap.empty())
+        record.line("initial gap", problem.supports.gap);
+      for (const auto &[side, gap] : problem.supports.gaps)
+        record.line("initial gap " + side, gap);
+      if (!problem.loads.body_force.empty())
+        record.line("body force", problem.loads.body_force);
+      for (const auto &[side, traction] : problem.loads.tractions)
+        record.line("traction " + side, traction);
+      if (!problem.loads.temperature_change.empty())
+        record.line("temperature change", problem.loads.temperature_change);
+      record.add("/contact_nodes", n_contact_nodes);
+      record.line("contact",
+                  words(list(problem.contact_boundaries),
+                        ", ",
+                        n_contact_nodes,
+                        " nodes"));
+      record.line("contact law",
+                  problem.law.name +
+                    (problem.law.data.empty() ?
+                       "" :
+                       ", " + problem.law.data + ", " +
+                         problem.quadrature_name + " quadrature"));
+      for (const auto &[side, bonds] : problem.law.boundaries)
+        record.line("bonds " + side,
+                    "a = " + bonds.stiffness + ", M = " + bonds.threshold);
+      for (const auto &[side, text] : problem.tangential_displacements)
+        record.line("tangential " + side, text);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  report_problem(const Scene<dim>   &scene,
+                 const MethodChoice &choice,
+                 const double        bundle_weight,
+                 Record             &record)
+  {
+    const ProblemParameters &problem = scene.parameters();
+    report_program(record);
+    record.heading("Problem");
+    record.add("/scene", problem.scene);
+    if (record.has_details())
+      record.line("scene", problem.scene);
+    record.add("/dimension", dim);
+    record.add("/cells", scene.n_cells());
+    record.add("/degree", problem.degree);
+    record.line("mesh",
+                words(scene.n_cells(),
+                      dim == 2 ? " triangles" : " tetrahedra",
+                      problem.degree == 2 ? ", quadratic displacements" : ""));
+
+    const unsigned int n_dofs = scene.n_unknowns();
+    const unsigned int n_nodes =
+      static_cast<unsigned int>(scene.contact_boundary().nodes.size());
+    // The paper counts the tangential displacements of the contact nodes,
+    // although they are fixed: 710 on its mesh 40x4.
+    const bool is_fixed = problem.tangential_displacement_fixed &&
+                          problem.tangential_displacements.empty();
+    const unsigned int n_dofs_paper =
+      n_dofs + (is_fixed ? (dim - 1) * n_nodes : 0);
+    record.add("/degrees_of_freedom", n_dofs);
+    record.add("/degrees_of_freedom_paper", n_dofs_paper);
+    record.line("unknowns",
+                words(n_dofs) +
+                  (is_fixed ?
+                     words(", with fixed tangential ones ", n_dofs_paper) :
+                     ""));
+    report_data(problem, n_nodes, record);
+    if (const auto &motions =
+          scene.problem().unknowns().held_by_contact().names;
+        !motions.empty())
+      record.line("held by contact",
+                  join(motions, ", ") + ", by bonds and the foundation alone");
+
+    record.add("/method", choice.method);
+    record.add("/linear_solver", choice.linear_solver);
+    record.line("method",
+                choice.method +
+                  (choice.linear_solver != LinearSolver::none ?
+                     ", " + choice.linear_solver + " linear solver" :
+                     "") +
+                  (choice.method == SolverMethod::euclidean_bundle ?
+                     words(", u_k = ", bundle_weight) :
+                     "") +
+                  (choice.reason.empty() ? "" :
+                                           ", chosen since " + choice.reason));
+  }
+
+
+
+  template void
+  report_problem(const Scene<2> &,
+                 const MethodChoice &,
+                 const double,
+                 Record &);
+  template void
+  report_problem(const Scene<3> &,
+                 const MethodChoice &,
+                 const double,
+                 Record &);
+} // namespace Debond

@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/text.h>
+#include <debond/output/report.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  namespace
+  {
+    /// The next of the bounds 1e-9, 1e-6, ... above a small error: the same on
+    /// all machines unless the error is close to one of them.
+    std::string
+    bound(const double error)
+    {
+      if (!std::isfinite(error))
+        return "not finite";
+      double upper = 1e-9;
+      while (error >= upper)
+        upper *= 1000.;
+      return "below " + scientific(upper, 0);
+    }
+
+
+
+    template <int dim>
+    void
+    report_status(const RunResult<dim> &result, Record &record)
+    {
+      record.heading(result.path.empty() ? "Result" :
+                                           "Result at the last load factor");
+      record.add("/status", result.status);
+      record.add("/message", result.message);
+      record.add("/notes", result.notes);
+      record.line("status",
+                  (result.is_answer() ? "" : "NOT CONVERGED: ") +
+                    result.status);
+      if (!result.is_success())
+        record.line("", result.message);
+      for (const std::string &note : result.notes)
+        record.line("note", note);
+
+      const SolveResult &solve = result.solve;
+      record.add("/functional", solve.functional);
+      if (result.has_displacement())
+        record.line("J", scientific(solve.functional, 10));
+      if (solve.functional_from_start)
+        record.add("/functional_from_start", *solve.functional_from_start);
+      if (solve.is_replaced)
+        record.line(
+          "J from start",
+          scientific(*solve.functional_from_start, 10) +
+            ", of the state that loading leads to; the lower one above was found"
+            " beside it");
+    }
+
+
+
+    void
+    report_estimate(const ErrorEstimate &estimate, Record &record)
+    {
+      record.add("/estimated_error", estimate.relative());
+      record.add("/estimated_error_of",
+                 estimate.is_of_J ? "J" : "stress energy");
+      record.line("error of the mesh",
+                  "about " + scientific(estimate.relative(), 1) +
+                    (estimate.is_of_J ?
+                       " of J" :
+                       " of the energy of the stresses, as J is near zero"));
+    }
+
+
+
+    /// @p n_nodes: all contact nodes.
+    void
+    report_minimum(const WhichMinimum &minimum,
+                   const bool          is_success,
+                   const unsigned int  n_nodes,
+                   Record             &record)
+    {
+      const bool        details = record.has_details();
+      const std::string kind    = is_success ? to_string(minimum.kind) : "";
+      record.add("/minimum/state", kind);
+      record.add("/minimum/search_trials", minimum.search_trials);
+      record.add("/minimum/search_improvements", minimum.search_improvements);
+      record.add("/minimum/search_failures", minimum.search_failures);
+      record.add("/minimum/search_nodes", minimum.search_nodes);
+      record.add("/minimum/closed_nodes", minimum.closed_nodes);
+      record.add("/minimum/front_windows", minimum.front_windows);
+      record.add("/minimum/front_trials", minimum.front_trials);
+      if (is_success)
+        {
+          std::string text = kind;
+          if (details && minimum.search_trials > 0)
+            text +=
+              words(", ", minimum.search_trials, " states searched") +
+              (minimum.search_nodes < n_nodes ?
+                 words(" on ", minimum.search_nodes, " of the contact nodes") :
+                 "");
+          if (details && minimum.front_windows > 0)
+            text += words(", ",
+                          minimum.front_trials,
+                          " in ",
+                          minimum.front_windows,
+                          " windows on fronts");
+          if (details && minimum.closed_nodes > 0)
+            text += words(", the minimum on ",
+                          minimum.closed_nodes,
+                          " coarser ones leads here");
+          if (minimum.search_failures > 0)
+            text += words(", ",
+                          minimum.search_failures,
+                          " of them led to no minimum");
+          record.line("minimum", text);
+        }
+
+      if (!minimum.proof_attempted)
+        return;
+      const std::string status = to_string(minimum.proof_status);
+      record.add("/proof/status", status);
+      record.add("/proof/nodes", minimum.proof_nodes);
+      record.add("/proof/lower_bound", minimum.lower_bound);
+      record.add("/proof/relative_gap", minimum.relative_gap);
+      record.line("proof",
+                  status + (details ?
+                              words(" after ",
+                                    minimum.proof_nodes,
+                                    " nodes, gap ",
+                                    scientific(minimum.relative_gap, 1),
+                                    " of what the bonds can change in J, J >= ",
+                                    scientific(minimum.lower_bound, 10)) :
+                              ""));
+    }
+
+
+
+    void
+    report_iterations(const SolveResult &result,
+                      const std::string &method,
+                      Record            &record)
+    {
+      const bool is_bundle = method != SolverMethod::majorise_minimise;
+      record.add("/iterations/total", result.iterations);
+      record.add("/iterations/long", result.long_steps);
+      record.add("/iterations/short", result.short_steps);
+      record.add("/iterations/null", result.null_steps);
+      record.add("/stop_criterion", result.criterion);
+      record.add("/largest_qp_residual", result.largest_qp_residual);
+      record.add("/linear_iterations", result.linear_iterations);
+      record.add("/condition_estimate",
+                 result.condition_estimate ?
+                   Record::Json(*result.condition_estimate) :
+                   Record::Json());
+      if (!record.has_details())
+        return;
+      record.line("iterations",
+                  words(result.iterations) + (is_bundle ?
+                                                words(" (long ",
+                                                      result.long_steps,
+                                                      ", short ",
+                                                      result.short_steps,
+                                                      ", null ",
+                                                      result.null_steps,
+                                                      ")") :
+                                                ""));
+      record.line(is_bundle ? "last v_k" : "optimality residual",
+                  scientific(result.criterion, 3));
+    }
+
+
+
+    template <int dim>
+    void
+    report_state(const Verification<dim> &verification,
+                 const LargestValues     &largest,
+                 Record                  &record)
+    {
+      Record::Json             states = Record::Json::object();
+      std::vector<std::string> texts;
+      for (unsigned int k = 0; k < verification.state_names.size(); ++k)
+        {
+          const auto         state = static_cast<BondState>(k);
+          const unsigned int count = verification.count(state);
+          if (state != BondState::held)
+            states[verification.name(state)] = count;
+          if (count > 0)
+            texts.push_back(words(verification.name(state), " ", count));
+        }
+      record.add("/bond_states", states);
+      record.line("contact nodes", join(texts, ", "));
+
+      record.add("/largest_opening", verification.largest_opening);
+      record.add("/broken_zone", verification.broken_zone);
+      record.line("opening",
+                  "largest " + scientific(verification.largest_opening, 3) +
+                    ", broken zone " + scientific(verification.broken_zone, 3));
+
+      record.add("/largest_displacement", largest.displacement);
+      record.add("/largest_displacement_gradient", largest.gradient);
+      record.add("/largest_von_mises", largest.von_mises);
+      record.line("largest",
+                  "displacement " + scientific(largest.displacement, 3) +
+                    ", its gradient " + scientific(largest.gradient, 1) +
+                    ", von Mises stress " + scientific(largest.von_mises, 3));
+    }
+
+
+
+    /// A resultant, Cartesian components.
+    template <int dim>
+    void
+    report_force(const std::string            &name,
+                 const std::string            &label,
+                 const dealii::Tensor<1, dim> &force,
+                 const bool                    is_logged,
+                 Record                       &record)
+    {
+      record.add("/" + name,
+                 std::vector<double>(force.begin_raw(), force.end_raw()));
+      if (!is_logged)
+        return;
+      std::vector<std::string> components;
+      for (unsigned int d = 0; d < dim; ++d)
+        components.push_back(scientific(force[d], 6));
+      record.line(label, "(" + join(components, ", ") + ")");
+    }
+
+
+
+    /// What the scene wants to know, and the means over all named pieces.
+    template <int dim>
+    void
+    report_probes(const RunResult<dim> &result, Record &record)
+    {
+      record.add("/probes", Record::Json::object());
+      for (const auto &[name, vector] : result.probes)
+        report_force("probes/" + name, "probe " + name, vector, true, record);
+      record.add("/mean_displacements", Record::Json::object());
+      for (const auto &[name, vector] : result.means)
+        report_force("mean_displacements/" + name, "", vector, false, record);
+      if (!result.path.empty())
+        record.add("/dissipated_energy",
+                   result.path.back().state.dissipated_energy);
+    }
+
+
+
+    void
+    report_certificate(const Certificate &certificate, Record &record)
+    {
+      const bool is_global = certificate.minimum == CertifiedMinimum::global;
+      record.heading("Certificate");
+      record.add("/certificate/minimum", is_global ? "global" : "fixed state");
+      record.line("of",
+                  is_global ?
+                    "the least J of the continuous problem" :
+                    "the least J of the continuous problem with the bonds of "
+                    "each side as they are");
+      record.add("/certificate/loads_are_exact", certificate.loads_are_exact);
+      if (!certificate.loads_are_exact)
+        record.line("loads",
+                    "for loads that are linear on each side and constant in "
+                    "each element, with the means of the given ones");
+      record.add("/certificate/lower", certificate.lower);
+      record.add("/certificate/upper", certificate.upper);
+      record.line("interval",
+                  scientific(certificate.lower, 10) + " to " +
+                    scientific(certificate.upper, 10));
+      record.add("/certificate/relative_width", certificate.width());
+      record.line("certified to",
+                  scientific(certificate.width(), 1) + " of |J|");
+      for (const CertifiedLength &length : certificate.lengths)
+        {
+          record.add("/certificate/lengths/" + length.state,
+                     {{"least", length.least}, {"largest", length.largest}});
+          record.line(length.state + " in all minima",
+                      scientific(length.least, 3) + " to " +
+                        scientific(length.largest, 3));
+        }
+      record.add("/certificate/unknowns", certificate.n_unknowns);
+      record.add("/certificate/contact_sides", certificate.n_sides);
+      record.add("/certificate/proof_nodes", certificate.proof_nodes);
+      record.add("/certificate/proof_status",
+                 to_string(certificate.proof_status));
+      if (record.has_details())
+        record.line("equilibrated stresses",
+                    words(certificate.n_unknowns,
+                          " unknowns, ",
+                          certificate.n_sides,
+                          " contact sides, ",
+                          certificate.proof_nodes,
+                          " nodes of branch and bound (",
+                          to_string(certificate.proof_status),
+                          ")"));
+    }
+
+
+
+    template <int dim>
+    void
+    report_verification(const ProblemParameters &problem,
+                        const RunResult<dim>    &result,
+                        Record                  &record)
+    {
+      const bool               details      = record.has_details();
+      const Verification<dim> &verification = result.verification;
+      const auto               error        = [details](const double value) {
+        return details ? scientific(value, 2) : bound(value);
+      };
+      record.heading("Verification, from A u - f");
+      record.add("/law_violation", verification.law_violation);
+      record.line("law violation",
+                  error(verification.law_violation) +
+                    (problem.law.name == "none" ?
+                       ", relative to the contact forces" :
+                       ", relative to what bonds bear and to the contact "
+                       "forces"));
+      record.add("/penetration", verification.penetration);
+      record.line("penetration", scientific(verification.penetration, 2));
+      record.add("/equilibrium_residual", verification.equilibrium_residual);
+      record.line("residual",
+                  error(verification.equilibrium_residual) +
+                    ", relative to the reactions");
+      record.add("/force_imbalance", verification.force_imbalance);
+      record.line("force imbalance",
+                  error(verification.force_imbalance) +
+                    ", relative to the forces");
+
+      if (const auto &distance = result.displacement_error; distance)
+        {
+          record.add("/displacement_error/l2", distance->l2);
+          record.add("/displacement_error/h1", distance->h1);
+          record.add("/displacement_error/energy_norm", distance->energy_norm);
+          record.add("/displacement_error/exact_energy",
+                     distance->exact_energy);
+          record.line("displacement error",
+                      scientific(distance->l2, 2) + " in L2, " +
+                        scientific(distance->h1, 2) + " in H1, " +
+                        scientific(distance->energy_norm, 2) +
+                        " in the energy norm, relative to the exact one");
+        }
+
+      report_force("applied_force",
+                   "applied force",
+                   verification.applied_force,
+                   true,
+                   record);
+      report_force("clamped_reaction",
+                   "force of supports",
+                   verification.clamped_reaction,
+                   details,
+                   record);
+      record.add("/reactions", Record::Json::object());
+      for (const auto &[name, force] : verification.reactions)
+        report_force(
+          "reactions/" + name, "  of " + name, force, details, record);
+      report_force("contact_reaction",
+                   "force of foundation",
+                   verification.contact_reaction,
+                   details,
+                   record);
+      report_force("tangential_reaction",
+                   "  tangential part",
+                   verification.tangential_reaction,
+                   details && (problem.tangential_displacement_fixed ||
+                               !problem.tangential_displacements.empty()),
+                   record);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  report_result(const Scene<dim>     &scene,
+                const MethodChoice   &choice,
+                const RunResult<dim> &result,
+                Record               &record)
+  {
+    if (!result.path.empty())
+      report_load_path(scene.parameters().load_path, result, record);
+    if (!result.levels.empty())
+      {
+        // Of the first mesh before.
+        record.add("/cells", scene.n_cells());
+        record.add("/degrees_of_freedom",
+                   scene.problem().unknowns().n_free_dofs());
+        record.add("/contact_nodes",
+                   scene.problem().unknowns().contact().size());
+      }
+    report_status(result, record);
+    if (result.estimate)
+      report_estimate(*result.estimate, record);
+    report_minimum(result.solve.minimum,
+                   result.is_success(),
+                   static_cast<unsigned int>(
+                     scene.contact_boundary().nodes.size()),
+                   record);
+    report_iterations(result.solve, choice.method, record);
+    if (!result.has_displacement())
+      return;
+    report_state(result.verification, result.largest, record);
+    report_probes(result, record);
+    report_verification(scene.parameters(), result, record);
+    if (result.certificate)
+      report_certificate(*result.certificate, record);
+  }
+
+
+
+  template void
+  report_result(const Scene<2> &,
+                const MethodChoice &,
+                const RunResult<2> &,
+                Record &);
+  template void
+  report_result(const Scene<3> &,
+                const MethodChoice &,
+                const RunResult<3> &,
+                Record &);
+} // namespace Debond
