@@ -21,10 +21,6 @@ namespace Debond
     /// away, as cells grow by a factor of at least 1.5.
     constexpr unsigned int n_coarse_ghosts = 2, n_ghosts_if_not_nested = 5;
 
-    /// Of a level that ranks share, for each of them: with less there are more
-    /// ghosts than own slabs.
-    constexpr unsigned int fewest_coarse_slabs = 4;
-
 
 
     /// Numbers of the vertices of a crossed mesh in the order in which its
@@ -284,8 +280,7 @@ namespace Debond
   {
     const std::vector<BoxParameters> boxes  = this->coarse_boxes();
     unsigned int                     result = 1;
-    while (result < boxes.size() &&
-           boxes[result - 1].cells[0] >= fewest_coarse_slabs * n_ranks)
+    while (result < boxes.size() && 2 * boxes[result - 1].cells[0] >= n_ranks)
       ++result;
     return result;
   }

@@ -186,10 +186,13 @@ namespace
 
   template <int dim>
   void
-  test(const std::array<unsigned int, 3> &cells, const unsigned int end_shared)
+  test(const std::array<unsigned int, 3> &cells,
+       const unsigned int                 end_shared,
+       const std::array<double, 3>       &lengths = BoxParameters().lengths)
   {
     BoxParameters parameters;
-    parameters.cells = cells;
+    parameters.cells   = cells;
+    parameters.lengths = lengths;
     const Box<dim>               box(parameters);
     const BodyProblem<dim>       whole(box, nullptr);
     const AdhesiveLaw            law(winkler_law(69., 2e-3).branches);
@@ -329,11 +332,13 @@ main(int argc, char *argv[])
                                       "Coarser ones as well")
                 << std::endl;
       std::cout << "2D" << std::endl;
-      test<2>({{80, 8, 1}}, end_shared);
+      test<2>({{160, 16, 1}}, end_shared);
       std::cout << "2D, odd numbers" << std::endl;
-      test<2>({{75, 7, 1}}, end_shared);
+      test<2>({{149, 15, 1}}, end_shared);
       std::cout << "3D" << std::endl;
-      test<3>({{20, 2, 2}}, end_shared);
+      test<3>({{40, 4, 4}}, end_shared);
+      std::cout << "Few layers of cells" << std::endl;
+      test<2>({{4, 512, 1}}, end_shared, {{0.01, 1.28, 1.}});
       std::cout << "3D, odd numbers" << std::endl;
       test<3>({{37, 5, 3}}, end_shared);
     }

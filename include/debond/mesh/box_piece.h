@@ -61,8 +61,8 @@ namespace Debond
     bool
     owns_cell_at(const dealii::Point<dim> &point) const;
 
-    /// How many levels, the finest one counted, have enough slabs of their own
-    /// for each rank; at least one, and not the coarsest.
+    /// How many levels, the finest one counted, have vertices for each rank (a
+    /// slab has two layers of them); at least one, and not the coarsest.
     unsigned int
     n_shared_levels() const;
 
