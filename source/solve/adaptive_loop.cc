@@ -28,10 +28,14 @@ namespace Debond
     constexpr double
     largest_growth(const unsigned int degree)
     {
-      return degree == 1 ? 4. : 1.7;
+      return degree == 1 ? 4. : 1.4;
     }
 
-    constexpr double least_growth = 1.25;
+    constexpr double
+    least_growth(const unsigned int degree)
+    {
+      return degree == 1 ? 1.25 : 1.1;
+    }
 
     /// The same if parts of a certificate's gap are to become smaller.
     constexpr double growth_for_gaps = 1.7;
@@ -52,6 +56,7 @@ namespace Debond
                  const unsigned int        dim,
                  const unsigned int        degree)
         : accuracy(accuracy)
+        , least(least_growth(degree))
         , largest(largest_growth(degree))
         , smooth_rate(2. * degree / dim)
         , rate(smooth_rate)
@@ -85,11 +90,12 @@ namespace Debond
           return largest;
         const double steps =
           std::max(1., std::ceil(std::log(whole) / std::log(largest)));
-        return std::max(least_growth, std::pow(whole, 1. / steps));
+        return std::max(least, std::pow(whole, 1. / steps));
       }
 
     private:
       const AccuracyParameters &accuracy;
+      const double              least;
       const double              largest;
       const double              smooth_rate;
       double                    rate; ///< error ~ unknowns^-rate
@@ -101,7 +107,9 @@ namespace Debond
 
     /// How often each cell is to be cut. The cell with the largest part of the
     /// estimate is next until there are enough; where the solution is smooth, a
-    /// half has 2^(-(2 + dim) / dim) of its part.
+    /// half has 2^(-(2 + dim) / dim) of its part, and at corners more: with
+    /// less for quadratic displacements those are cut too little where a mesh
+    /// may grow but once.
     std::vector<unsigned int>
     divisions(const std::vector<double> &parts,
               const unsigned int         dim,
@@ -494,9 +502,9 @@ namespace Debond
               by_gaps ? result.certificate->gaps : estimate.cells, dim, times));
             limit =
               too_large<dim>(problem, accuracy, solver.memory_limit, *body);
-            if (limit.empty() || times <= least_growth)
+            if (limit.empty() || times <= least_growth(problem.degree))
               break;
-            times = std::max(least_growth, 0.75 * times);
+            times = std::max(least_growth(problem.degree), 0.75 * times);
           }
         if (!limit.empty() || estimate.functional == 0.)
           {
