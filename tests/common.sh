@@ -31,3 +31,23 @@ expect_code() {
   [ $code -eq "$expected" ] ||
     fail "exit code $code in place of $expected: $(cat log errors)"
 }
+
+# signal_when SIGNAL CONDITION COMMAND...: runs it with its output in the files log
+# and errors, sends the signal when the condition, a command, holds, and leaves the
+# exit code in $code. With job control, for else SIGINT is ignored in the background.
+signal_when() {
+  local signal=$1 condition=$2
+  shift 2
+  : >log # of an earlier command
+  set -m
+  "$@" >log 2>errors &
+  process=$!
+  set +m
+  for _ in $(seq 6000); do
+    eval "$condition" && break
+    sleep 0.02
+  done
+  kill -s "$signal" $process
+  code=0
+  wait $process 2>/dev/null || code=$?
+}

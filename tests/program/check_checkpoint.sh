@@ -83,17 +83,9 @@ for signal in KILL INT TERM; do
   interval=1e6
   [ $signal != KILL ] || interval=1e-9
   rm -f log # of a run before, which has the line that is waited for
-  set -m
-  "$debond" bar.prm "${long[@]}" --set "Output/Directory=$signal" --set \
-    "Solver/Checkpoint interval=$interval" >log 2>errors &
-  process=$!
-  set +m
-  for _ in $(seq 1200); do
-    grep -sqE '^ +100 ' log && break
-    sleep 0.05
-  done
-  kill -s $signal $process
-  wait $process 2>/dev/null || true
+  signal_when $signal "grep -sqE '^ +100 ' log" \
+    "$debond" bar.prm "${long[@]}" --set "Output/Directory=$signal" --set \
+    "Solver/Checkpoint interval=$interval"
   [ -s $signal/checkpoint ] || fail "no checkpoint after SIG$signal"
   [ $signal = KILL ] || grep -q '"status": "interrupted"' $signal/summary.json ||
     fail "not marked as interrupted"

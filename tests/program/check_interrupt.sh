@@ -7,21 +7,10 @@ scene=$2
 
 for signal in INT TERM; do
   # Without a stop tolerance that can be met the solve would take hours.
-  # In a script background jobs ignore SIGINT, unless job control is on.
-  set -m
-  "$debond" "$scene" --set "Output/Directory=$signal" \
+  signal_when $signal "grep -qE '^ +100 ' log" \
+    "$debond" "$scene" --set "Output/Directory=$signal" \
     --set "Solver/Euclidean bundle/Stop tolerance=1e-300" \
-    --set "Solver/Euclidean bundle/Maximum iterations=1000000000" \
-    >log 2>errors &
-  process=$!
-  set +m
-  for _ in $(seq 200); do
-    grep -qE '^ +100 ' log && break
-    sleep 0.05
-  done
-  kill -s $signal $process
-  code=0
-  wait $process || code=$?
+    --set "Solver/Euclidean bundle/Maximum iterations=1000000000"
   cat log errors
   [ $code -eq 4 ] || { echo "exit code $code in place of 4"; exit 1; }
   grep -q '"status": "interrupted"' $signal/summary.json
@@ -31,20 +20,10 @@ for signal in INT TERM; do
 done
 
 # On refined meshes the result is that of the last mesh that was finished.
-set -m
-"$debond" "$scene" --set "Output/Directory=refined" \
-  --set "Solver/Method=automatic" --set "Accuracy/Target=1e-7" >log 2>errors &
-process=$!
-set +m
-for _ in $(seq 600); do
-  grep -q " mesh 3 " log && break
-  sleep 0.05
-done
 # While the next one is solved, unless the machine is slow.
-sleep 0.6
-kill -s INT $process
-code=0
-wait $process || code=$?
+signal_when INT 'grep -q " mesh 3 " log && sleep 0.6' \
+  "$debond" "$scene" --set "Output/Directory=refined" \
+  --set "Solver/Method=automatic" --set "Accuracy/Target=1e-7"
 [ $code -eq 4 ] || fail "exit code $code in place of 4: $(cat log errors)"
 # A mesh whose solve had only its search to end counts.
 if ! grep -q "the result is what it had found" errors; then

@@ -62,19 +62,10 @@ grep -q "blocked/load_path/contact-00002.vtu" errors || fail "$(cat errors)"
 [ "$(rows blocked)" -eq 7 ] || fail "The table is not complete."
 
 # A signal ends the path after the current factor.
-set -m
-"$debond" bar.prm --set "Output/Directory=interrupted" \
+signal_when INT 'grep -q "local minimum" log' \
+  "$debond" bar.prm --set "Output/Directory=interrupted" \
   --set "Load path/Factors=0:0.001:9" --set "Mesh/Cells=100, 10" \
-  --set "Output/Load path plots=false" >log 2>errors &
-process=$!
-set +m
-for _ in $(seq 600); do
-  grep -q "local minimum" log && break
-  sleep 0.05
-done
-kill -s INT $process
-code=0
-wait $process || code=$?
+  --set "Output/Load path plots=false"
 [ $code -eq 4 ] || fail "exit code $code in place of 4: $(cat errors)"
 steps=$(rows interrupted)
 [ "$steps" -gt 0 ] && [ "$steps" -lt 9001 ] || fail "$steps steps"
@@ -86,20 +77,11 @@ grep -q '"status": "interrupted"' interrupted/summary.json || fail "no status"
 grep -q "\"steps\": $steps," interrupted/summary.json || fail "no steps"
 
 # On refined meshes it leaves the path on the last mesh that was finished.
-set -m
-"$debond" bar.prm --set "Output/Directory=refined" \
+signal_when INT 'grep -q "mesh 6" log' \
+  "$debond" bar.prm --set "Output/Directory=refined" \
   --set "Load path/Factors=0:0.5:2, 1" --set "Load path/Global branch=none" \
   --set "Solver/Method=automatic" --set "Accuracy/Target=1e-7" \
-  --set "Output/Load path plots=false" >log 2>errors &
-process=$!
-set +m
-for _ in $(seq 600); do
-  grep -q "mesh 6" log && break
-  sleep 0.05
-done
-kill -s INT $process
-code=0
-wait $process || code=$?
+  --set "Output/Load path plots=false"
 [ $code -eq 4 ] || fail "exit code $code in place of 4: $(cat errors)"
 grep -q "that of the last mesh that was finished" errors || fail "$(cat errors)"
 [ "$(rows refined)" -eq 6 ] || fail "$(rows refined) factors in place of 6"

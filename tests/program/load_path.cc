@@ -799,6 +799,30 @@ namespace
 
 
 
+  AdaptiveResult
+  refine(const Parameters                &parameters,
+         std::shared_ptr<const Scene<2>> &mesh,
+         std::vector<AdaptiveLevel>      &levels,
+         FollowedPath<2>                 *path)
+  {
+    const MethodChoice choice =
+      choose_method(parameters, parameters.solver, parameters.accuracy);
+    mesh = make_first_scene<2>(parameters,
+                               parameters.accuracy,
+                               matrix_storage(choice));
+    return solve_adaptively<2>(
+      choice,
+      parameters.solver,
+      parameters.accuracy,
+      parameters.certificate.kind,
+      parameters.verification.tolerance,
+      [&](const AdaptiveLevel &level) { levels.push_back(level); },
+      mesh,
+      path);
+  }
+
+
+
   /// One mesh for all factors, beside a uniform one that is much finer (of the
   /// least J that of linear displacements is off by 7e-4).
   void
@@ -814,21 +838,10 @@ namespace
     std::vector<std::string> refined = benchmark(scene);
     refined.push_back("Accuracy/Target=" + std::to_string(target));
     refined.emplace_back("Solver/Method=automatic");
-    const Parameters   parameters = parameters_of(refined);
-    const MethodChoice choice =
-      choose_method(parameters, parameters.solver, parameters.accuracy);
-    auto                       mesh = make_first_scene<2>(parameters,
-                                    parameters.accuracy,
-                                    matrix_storage(choice));
-    std::vector<AdaptiveLevel> levels;
-    const AdaptiveResult       result = solve_adaptively<2>(
-      choice,
-      parameters.solver,
-      parameters.accuracy,
-      parameters.certificate.kind,
-      parameters.verification.tolerance,
-      [&](const AdaptiveLevel &level) { levels.push_back(level); },
-      mesh);
+    const Parameters                parameters = parameters_of(refined);
+    std::shared_ptr<const Scene<2>> mesh;
+    std::vector<AdaptiveLevel>      levels;
+    const AdaptiveResult result = refine(parameters, mesh, levels, nullptr);
     check("  no shortfall", result.shortfall.empty());
     check("  the estimate is below the target",
           levels.back().estimated_error,
@@ -937,22 +950,10 @@ namespace
                  "Load path/Factors=0.5, 1, 10",
                  "Accuracy/Target=1e-4",
                  "Solver/Method=automatic"}));
-    const MethodChoice choice =
-      choose_method(parameters, parameters.solver, parameters.accuracy);
-    auto                       mesh = make_first_scene<2>(parameters,
-                                    parameters.accuracy,
-                                    matrix_storage(choice));
-    std::vector<AdaptiveLevel> levels;
-    FollowedPath<2>            path;
-    const AdaptiveResult       result = solve_adaptively<2>(
-      choice,
-      parameters.solver,
-      parameters.accuracy,
-      parameters.certificate.kind,
-      parameters.verification.tolerance,
-      [&](const AdaptiveLevel &level) { levels.push_back(level); },
-      mesh,
-      &path);
+    std::shared_ptr<const Scene<2>> mesh;
+    std::vector<AdaptiveLevel>      levels;
+    FollowedPath<2>                 path;
+    const AdaptiveResult result = refine(parameters, mesh, levels, &path);
     check("  it comes off", result.solve.status == SolverStatus::comes_off);
     check("  after two factors", path.steps.size() == 2);
     check("  several meshes", levels.size() > 2);

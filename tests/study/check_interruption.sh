@@ -30,18 +30,8 @@ cp output/study/table.csv uninterrupted.csv
 
 for signal in INT TERM; do
   rm -rf output
-  # In a script background jobs ignore SIGINT, unless job control is on.
-  set -m
-  "$debond" --study study.prm --jobs 1 >log 2>errors &
-  process=$!
-  set +m
-  for _ in $(seq 6000); do
-    [ -e "output/study/cases/u_k=0.05/summary.json" ] && break
-    sleep 0.02
-  done
-  kill -s $signal $process
-  code=0
-  wait $process || code=$?
+  signal_when $signal '[ -e "output/study/cases/u_k=0.05/summary.json" ]' \
+    "$debond" --study study.prm --jobs 1
   [ $code -eq 4 ] || fail "exit code $code in place of 4: $(cat log errors)"
   ! pgrep -P $process >/dev/null || fail "a case is still running"
   ! [ -e output/study/index.md ] || fail "a report was written"
@@ -71,17 +61,8 @@ subsection Sweep 1
 end
 STUDY
 case=output/long/cases/u_k=0.05
-set -m
-"$debond" --study long.prm >log 2>errors &
-process=$!
-set +m
-for _ in $(seq 6000); do
-  grep -sqE '^ +100 ' $case/log && break
-  sleep 0.02
-done
-kill -s INT $process
-code=0
-wait $process || code=$?
+signal_when INT "grep -sqE '^ +100 ' \$case/log" \
+  "$debond" --study long.prm
 [ $code -eq 4 ] || fail "exit code $code in place of 4: $(cat log errors)"
 [ -s $case/checkpoint ] || fail "no checkpoint"
 expect_code 0 "$debond" --study long.prm
