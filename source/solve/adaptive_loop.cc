@@ -316,6 +316,30 @@ namespace Debond
 
 
 
+    /// All intervals for the least J hold for the same number, whatever mesh
+    /// they are of: a bound of a coarser mesh may be the better one.
+    class Narrowest
+    {
+    public:
+      void
+      intersect(Certificate &certificate)
+      {
+        if (certificate.minimum != CertifiedMinimum::global ||
+            !certificate.loads_are_exact)
+          return;
+        lower             = std::max(lower, certificate.lower);
+        upper             = std::min(upper, certificate.upper);
+        certificate.lower = lower;
+        certificate.upper = upper;
+      }
+
+    private:
+      double lower = -std::numeric_limits<double>::infinity();
+      double upper = std::numeric_limits<double>::infinity();
+    };
+
+
+
     std::string
     too_wide(const Certificate &certificate, const double target)
     {
@@ -387,6 +411,7 @@ namespace Debond
     std::shared_ptr<const Body<dim>>              finished, latest;
     std::unique_ptr<const dealii::Vector<double>> start;
     MeshGrowth growth(accuracy, dim, problem.degree);
+    Narrowest  narrowest;
     while (true)
       {
         const bool        is_first = !next;
@@ -454,6 +479,7 @@ namespace Debond
                                    result.solve.u,
                                    is_last,
                                    [&]() { return !guard.requested(); });
+              narrowest.intersect(*result.certificate);
             }
           catch (const EquilibriumError &error)
             {

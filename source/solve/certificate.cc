@@ -292,37 +292,6 @@ namespace Debond
             });
         }
     }
-
-
-
-    /// Adds what the sides lose by stiffness that is taken from the elements
-    /// and by the rounded law, at the displacement itself: the difference of
-    /// the sides of theorem 1 or 2 without that of the stresses.
-    void
-    add_losses(const EquilibriumProblem            &equilibrium,
-               const std::vector<double>           &trace_constants,
-               const BranchMinimum                 &law,
-               const GlobalBound                   &bound,
-               const std::vector<CellDisplacement> &displacement,
-               std::vector<double>                 &gaps)
-    {
-      const std::vector<double> energies =
-        equilibrium.strain_energies(displacement);
-      const std::vector<ContactSide> &sides = equilibrium.contact_sides();
-      for (unsigned int i = 0; i < sides.size(); ++i)
-        {
-          const double D = bound.shifts[i];
-          const Trace  trace(sides[i], displacement);
-          double loss = 0.5 * D / trace_constants[i] * energies[sides[i].cell];
-          if (!bound.sides[i].piece)
-            loss += trace.integral([&](double, const double s) {
-              return law.value(s);
-            }) - sides[i].length *
-                      (RoundedBranches(law, D).minimum().value(trace.mean()) -
-                       D * trace.slope * trace.slope / 6.);
-          gaps[sides[i].cell] += std::max(0., loss);
-        }
-    }
   } // namespace
 
 
@@ -426,12 +395,21 @@ namespace Debond
             .energy(eigen_view(contact.trace(u)));
         const double own = rounding();
         certificate.upper += own;
+        std::vector<double> side_energies(certificate.n_sides, 0.);
+        if (is_own)
+          {
+            const std::vector<double> energies =
+              equilibrium.strain_energies(displacement);
+            for (unsigned int i = 0; i < certificate.n_sides; ++i)
+              side_energies[i] = energies[equilibrium.contact_sides()[i].cell];
+          }
         GlobalBound bound        = bound_global(equilibrium,
                                          trace_constants,
                                          law,
                                          side_means(equilibrium,
                                                     contact.boundary(),
                                                     contact.trace(u)),
+                                         side_energies,
                                          certificate.upper,
                                          proof,
                                          may_go_on);
@@ -440,12 +418,9 @@ namespace Debond
         certificate.proof_status = bound.status;
         certificate.proof_nodes  = bound.nodes;
         if (!certificate.gaps.empty())
-          add_losses(equilibrium,
-                     trace_constants,
-                     law,
-                     bound,
-                     displacement,
-                     certificate.gaps);
+          for (unsigned int i = 0; i < certificate.n_sides; ++i)
+            certificate.gaps[equilibrium.contact_sides()[i].cell] +=
+              bound.losses[i];
         certificate.sides = std::move(bound.sides);
         certificate.lengths =
           certified_lengths(certificate.sides, scene->law());

@@ -29,11 +29,45 @@ namespace Debond
 
     constexpr double least_shift = 0.005;
 
-    /// Problems in which what is certain is used, as long as more is.
-    constexpr unsigned int n_stages = 6;
+    /// Problems in which what is certain is used, as long as each makes the
+    /// interval narrower by a part.
+    constexpr unsigned int n_stages = 18;
+
+    /// Shifts where no piece is certain are at least so many times the
+    /// stiffness of the bonds, in turn: what makes ranges narrower and what
+    /// makes the bound higher differ from scene to scene.
+    constexpr std::array<double, 3> least_shifts = {{1., 3., 0.3}};
+
+    /// Stages without such a gain that end it.
+    constexpr unsigned int n_idle_stages = 3;
+
+    constexpr double least_gain = 0.05;
 
     /// Nodes that tell where minimisers are.
     constexpr unsigned int n_nodes_of_ranges = 32;
+
+
+
+    /// Larger shifts round the law by little more than nothing.
+    constexpr double largest_uncertain_shift = 40.;
+
+    /// What the rounded law is below the law, at the most, as far from a mean
+    /// as a tenth of the distance of the first kink.
+    double
+    largest_loss(const BranchMinimum   &law,
+                 const RoundedBranches &rounded,
+                 const double           mean)
+    {
+      const BranchMinimum own    = rounded.minimum();
+      const double        margin = 0.1 * std::abs(law[0].lower);
+      double              result = 0.;
+      for (const double part : {-1., -0.5, 0., 0.5, 1.})
+        {
+          const double s = std::min(mean + part * margin, 0.);
+          result         = std::max(result, law.value(s) - own.value(s));
+        }
+      return result;
+    }
 
 
 
@@ -108,9 +142,11 @@ namespace Debond
     public:
       Sides(const EquilibriumProblem  &equilibrium,
             const std::vector<double> &trace_constants,
-            const BranchMinimum       &law)
+            const BranchMinimum       &law,
+            const std::vector<double> &energies)
         : equilibrium(equilibrium)
         , trace_constants(trace_constants)
+        , energies(energies)
         , law(law)
         , sides(equilibrium.contact_sides())
         , n(static_cast<unsigned int>(sides.size()))
@@ -126,12 +162,14 @@ namespace Debond
 
       std::vector<double>
       shifts_for_ranges(const std::vector<SideRange> &ranges,
-                        const double                  multiple) const;
+                        const Eigen::VectorXd        &means,
+                        const Eigen::VectorXd        &slopes,
+                        const double                  least_multiple) const;
 
-      /// The sides of which the ranges say on which piece of the law they are.
-      unsigned int
-      n_certain(const std::vector<SideRange> &ranges,
-                const std::vector<double>    &D) const;
+      /// What the sides lose at the means @p m: by stiffness, and where no
+      /// piece is certain by slopes and the rounded law.
+      std::vector<double>
+      losses(const MeanProblem &problem, const Eigen::VectorXd &m) const;
 
       /// At @p means it measures its rounding.
       MeanProblem
@@ -155,6 +193,7 @@ namespace Debond
 
       const EquilibriumProblem       &equilibrium;
       const std::vector<double>      &trace_constants;
+      const std::vector<double>      &energies;
       const BranchMinimum            &law;
       const std::vector<ContactSide> &sides;
       const unsigned int              n;
@@ -184,36 +223,69 @@ namespace Debond
 
 
 
-    /// Large enough for the piece of the law to be certain, if that can be,
-    /// otherwise the given multiple of the bonds' stiffness.
+    /// Those that lose least: large enough for the piece of the law to be
+    /// certain, if that can be, or for means and slopes near the given ones to
+    /// lose little by stiffness, slopes and rounding together, but at least the
+    /// given multiple of the bonds' stiffness.
     std::vector<double>
     Sides::shifts_for_ranges(const std::vector<SideRange> &ranges,
-                             const double                  multiple) const
+                             const Eigen::VectorXd        &means,
+                             const Eigen::VectorXd        &slopes,
+                             const double                  least_multiple) const
     {
       const double        a = law[0].curvature;
       std::vector<double> shifts;
       for (unsigned int i = 0; i < n; ++i)
         {
-          double D = least_shift * a;
-          while (D < available(i) &&
-                 !RoundedBranches(law, D).exact_piece(ranges[i].linear))
-            D *= 1.1;
-          shifts.push_back(
-            D < available(i) ? D : std::min(multiple * a, available(i)));
+          const double of_stiffness = 0.5 * energies[i] / trace_constants[i];
+          const double of_slope = sides[i].length * slopes(i) * slopes(i) / 6.;
+          double       best     = least_shift * a;
+          double       least    = std::numeric_limits<double>::infinity();
+          for (double D = best; D < available(i); D *= 1.2)
+            {
+              const RoundedBranches rounded(law, D);
+              const bool            is_certain =
+                rounded.exact_piece(ranges[i].linear).has_value();
+              if (!is_certain && D > largest_uncertain_shift * a)
+                continue;
+              double cost = D * of_stiffness;
+              if (!is_certain)
+                cost += D * of_slope +
+                        sides[i].length * largest_loss(law, rounded, means(i));
+              if (cost < least)
+                {
+                  least = cost;
+                  best  = D;
+                }
+              if (is_certain)
+                break;
+            }
+          if (!RoundedBranches(law, best).exact_piece(ranges[i].linear))
+            best = std::max(best, least_multiple * a);
+          shifts.push_back(std::min(best, available(i)));
         }
       return shifts;
     }
 
 
 
-    unsigned int
-    Sides::n_certain(const std::vector<SideRange> &ranges,
-                     const std::vector<double>    &D) const
+    std::vector<double>
+    Sides::losses(const MeanProblem &problem, const Eigen::VectorXd &m) const
     {
-      unsigned int result = 0;
+      const Eigen::VectorXd k = problem.offset + problem.slopes * m;
+      std::vector<double>   result;
       for (unsigned int i = 0; i < n; ++i)
-        result +=
-          RoundedBranches(law, D[i]).exact_piece(ranges[i].linear) ? 1 : 0;
+        {
+          const double D = problem.shifts[i];
+          result.push_back(0.5 * D / trace_constants[i] * energies[i]);
+          if (problem.pieces[i])
+            continue;
+          const double s       = std::min(m(i), 0.);
+          const double rounded = RoundedBranches(law, D).minimum().value(s);
+          const double c       = law[law.index(s)].curvature;
+          result.back() += sides[i].length * (law.value(s) - rounded +
+                                              (c + D) * k(i) * k(i) / 6.);
+        }
       return result;
     }
 
@@ -307,6 +379,18 @@ namespace Debond
         }
       throw EquilibriumError("the equilibrated stresses are not determined by "
                              "the mean displacements of the contact sides");
+    }
+
+
+
+    /// The piece of the law on which all of the interval is, if it is one.
+    std::optional<unsigned int>
+    piece_of(const Interval &interval, const BranchMinimum &law)
+    {
+      const unsigned int piece = law.index(interval.upper);
+      if (law.index(interval.lower) != piece)
+        return {};
+      return piece;
     }
 
 
@@ -501,11 +585,12 @@ namespace Debond
                const std::vector<double>      &trace_constants,
                const BranchMinimum            &law,
                const Eigen::VectorXd          &means,
+               const std::vector<double>      &energies,
                const double                    upper,
                const BranchAndBoundParameters &proof_parameters,
                const std::function<bool()>    &may_go_on)
   {
-    const Sides sides(equilibrium, trace_constants, law);
+    const Sides sides(equilibrium, trace_constants, law, energies);
 
     constexpr double       infinity = std::numeric_limits<double>::infinity();
     const Interval         all      = {-infinity, infinity};
@@ -513,9 +598,12 @@ namespace Debond
 
     BranchAndBoundParameters parameters = proof_parameters;
     parameters.tolerance                = proof_tolerance * std::abs(upper);
-    GlobalBound result;
+    GlobalBound                result;
+    std::optional<MeanProblem> best, latest;
+    Eigen::VectorXd            latest_means;
     /// Returns the bound.
-    const auto add_bound = [&](const MeanProblem &problem) {
+    const auto add_bound = [&](std::vector<double> D) {
+      MeanProblem                problem = sides.mean_problem(ranges, means, D);
       const BranchAndBoundResult proof =
         BranchAndBound(parameters)
           .minimize(problem.S,
@@ -527,41 +615,45 @@ namespace Debond
       const double lower = proof.status == ProofStatus::no_bound ?
                              -infinity :
                              problem.constant + proof.lower - problem.rounding;
+      latest_means       = proof.s;
+      latest             = std::move(problem);
       if (lower > result.lower)
         {
           result.lower    = lower;
-          result.rounding = problem.rounding;
+          result.rounding = latest->rounding;
           result.status   = proof.status;
+          result.losses   = sides.losses(*latest, proof.s);
         }
       return lower;
     };
 
-    std::optional<MeanProblem> best;
-    double                     best_shift = 0., best_lower = -infinity;
+    double          best_lower = -infinity;
+    Eigen::VectorXd best_means = means;
     for (const double multiple : first_shifts)
-      {
-        std::vector<double> D       = sides.shifts_for_means(means, multiple);
-        MeanProblem         problem = sides.mean_problem(ranges, means, D);
-        const double        lower   = add_bound(problem);
-        if (!best || lower > best_lower)
-          {
-            best       = std::move(problem);
-            best_shift = multiple;
-            best_lower = lower;
-          }
-      }
-    unsigned int n_certain = 0;
+      if (const double lower =
+            add_bound(sides.shifts_for_means(means, multiple));
+          !best || lower > best_lower)
+        {
+          best       = std::move(latest);
+          best_means = latest_means;
+          best_lower = lower;
+        }
+    unsigned int n_idle = 0;
     for (unsigned int stage = 0; stage < n_stages && may_go_on(); ++stage)
       {
         shrink(*best, upper, may_go_on, ranges);
-        std::vector<double> D = sides.shifts_for_ranges(ranges, best_shift);
-        const unsigned int  before = n_certain;
-        n_certain                  = sides.n_certain(ranges, D);
-        // Even if no side is certain, the first new shifts are better ones.
-        if (stage > 0 && n_certain <= before)
+        const double before = upper - result.lower;
+        add_bound(
+          sides.shifts_for_ranges(ranges,
+                                  best_means,
+                                  best->offset + best->slopes * best_means,
+                                  least_shifts[stage % least_shifts.size()]));
+        best       = std::move(latest);
+        best_means = latest_means;
+        n_idle =
+          upper - result.lower > (1. - least_gain) * before ? n_idle + 1 : 0;
+        if (n_idle == n_idle_stages)
           break;
-        best = sides.mean_problem(ranges, means, D);
-        add_bound(*best);
       }
 
     for (unsigned int i = 0; i < ranges.size(); ++i)
@@ -572,9 +664,8 @@ namespace Debond
           {{{vertices[side.vertices[0]], vertices[side.vertices[1]]}},
            ranges[i].mean,
            ranges[i].linear,
-           best->pieces[i]});
+           piece_of(ranges[i].linear, law)});
       }
-    result.shifts = best->shifts;
     return result;
   }
 } // namespace Debond

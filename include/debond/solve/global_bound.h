@@ -49,8 +49,8 @@ namespace Debond
 
     std::vector<CertifiedSide> sides;
 
-    /// D of theorem 1 for the last bound, of the sides.
-    std::vector<double> shifts;
+    /// What each of them loses where the best bound is the least.
+    std::vector<double> losses;
   };
 
 
@@ -67,13 +67,16 @@ namespace Debond
    * minimisers are (theorems 1 and 2 of doc/reference/certificate.md).
    *
    * @p means: of u_nu on the contact sides, of a good displacement; @p upper:
-   * a value of J that is reached. Throws EquilibriumError if there is no bound.
+   * a value of J that is reached; @p energies: of its strains in the cells
+   * above the contact sides, for the choice of shifts. Throws EquilibriumError
+   * if there is no bound.
    */
   GlobalBound
   bound_global(const EquilibriumProblem       &equilibrium,
                const std::vector<double>      &trace_constants,
                const BranchMinimum            &law,
                const Eigen::VectorXd          &means,
+               const std::vector<double>      &energies,
                const double                    upper,
                const BranchAndBoundParameters &proof,
                const std::function<bool()>    &may_go_on);
