@@ -855,11 +855,17 @@ namespace
     uniform.insert(uniform.end(), test.uniform.begin(), test.uniform.end());
     const Path<2> on_uniform = follow<2>(uniform);
     check("  all factors", on_refined.steps.size() == on_uniform.steps.size());
+    // The estimate is of J with the bonds as they are: that other bonds broke
+    // for good on the way is no part of it.
+    const auto stored = [](const Path<2> &path, const unsigned int k) {
+      const auto &state = path.steps[k].state;
+      return state.functional - state.dissipated_energy;
+    };
     double error = 0.;
     for (unsigned int k = 0; k < on_uniform.steps.size(); ++k)
-      error = std::max(error,
-                       std::abs(1. - on_refined.steps[k].state.functional /
-                                       on_uniform.steps[k].state.functional));
+      error =
+        std::max(error,
+                 std::abs(1. - stored(on_refined, k) / stored(on_uniform, k)));
     check("  J at all factors", error, 1.25 * target);
     check("  fewer unknowns than the uniform mesh",
           mesh->problem().unknowns().n_dofs() < test.most_unknowns);
