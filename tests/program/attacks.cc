@@ -863,10 +863,10 @@ main(int argc, char *argv[])
     for (const unsigned int first_of_kind : {first_supported, first_glued})
       for (unsigned int k = 0; k < 60; ++k)
         numbers.push_back(first_of_kind + k);
-  // Forces that are rounding, a plateau of J beside a lower one, and a moved
-  // side where contact sides meet.
+  // Forces that are rounding, a plateau of J beside a lower one, a moved side
+  // where contact sides meet, and a thin plate that turns until it presses.
   if (argc <= 1)
-    for (const unsigned int number : {30247, 20462, 30424})
+    for (const unsigned int number : {30247, 20462, 30424, 40172})
       numbers.push_back(number);
 
   std::map<std::string, unsigned int> kinds, reasons;

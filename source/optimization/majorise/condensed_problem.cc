@@ -32,6 +32,11 @@ namespace Debond
     /// Repeated steps differ by less, relatively.
     constexpr double same_step = 1e-3;
 
+    /// What a rigid motion away from the foundation may go towards it, relative
+    /// to itself: no more than rounding, since a long thin body that turns on
+    /// one of its ends presses there by little of what the other end moves.
+    constexpr double towards_foundation = 1e-7;
+
 
 
     Eigen::MatrixXd
@@ -227,12 +232,21 @@ namespace Debond
             s = x;
             return {qp.status, n_systems, 0};
           }
-        // Away from the foundation, and rigid.
+        // It would go on like this for ever, or until it meets the foundation.
         if (last_step.size() > 0 &&
             (step - last_step).norm() <= same_step * step.norm() &&
-            step.maxCoeff() <= same_step * step.norm() &&
             (step - Z * motion).norm() <= same_step * step.norm())
-          return {SolverStatus::comes_off, n_systems, 0};
+          {
+            const Eigen::VectorXd rigid = Z * motion;
+            const double          least = towards_foundation * rigid.norm();
+            double                until = std::numeric_limits<double>::max();
+            for (Eigen::Index j = 0; j < x.size(); ++j)
+              if (rigid[j] > least)
+                until = std::min(until, -x[j] / rigid[j]);
+            if (rigid.maxCoeff() <= least)
+              return {SolverStatus::comes_off, n_systems, 0};
+            x += until * rigid;
+          }
         last_step = step;
       }
     return {SolverStatus::quadratic_program, n_systems, 0};
