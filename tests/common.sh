@@ -43,11 +43,13 @@ signal_when() {
   "$@" >log 2>errors &
   process=$!
   set +m
+  local held=
   for _ in $(seq 6000); do
-    eval "$condition" && break
+    eval "$condition" && held=yes && break
     sleep 0.02
   done
   kill -s "$signal" $process
   code=0
   wait $process 2>/dev/null || code=$?
+  [ -n "$held" ] || fail "never: $condition; $(cat log errors)"
 }
