@@ -418,7 +418,7 @@ namespace Debond
         certificate.proof_status = bound.status;
         certificate.proof_nodes  = bound.nodes;
         if (!certificate.gaps.empty())
-          for (unsigned int i = 0; i < certificate.n_sides; ++i)
+          for (unsigned int i = 0; i < bound.losses.size(); ++i)
             certificate.gaps[equilibrium.contact_sides()[i].cell] +=
               bound.losses[i];
         certificate.sides = std::move(bound.sides);

@@ -49,7 +49,8 @@ namespace Debond
 
     std::vector<CertifiedSide> sides;
 
-    /// What each of them loses where the best bound is the least.
+    /// What each of them loses where the best bound is the least; empty if
+    /// there is none.
     std::vector<double> losses;
   };
 
