@@ -239,12 +239,12 @@ namespace Debond
           {
             const Eigen::VectorXd rigid = Z * motion;
             const double          least = towards_foundation * rigid.norm();
-            double                until = std::numeric_limits<double>::max();
+            if (rigid.maxCoeff() <= least)
+              return {SolverStatus::comes_off, n_systems, 0};
+            double until = std::numeric_limits<double>::max();
             for (Eigen::Index j = 0; j < x.size(); ++j)
               if (rigid[j] > least)
                 until = std::min(until, -x[j] / rigid[j]);
-            if (rigid.maxCoeff() <= least)
-              return {SolverStatus::comes_off, n_systems, 0};
             x += until * rigid;
           }
         last_step = step;
