@@ -56,8 +56,7 @@ namespace Debond
 
 
   LinearSolve
-  solve_by_cholesky(const dealii::SparseMatrix<double> &A,
-                    const dealii::Vector<double>       &f)
+  solve_by_cholesky(const dealii::SparseMatrix<double> &A, const DofVector &f)
   {
     LinearSolve    result;
     cholmod_common common;
@@ -100,8 +99,8 @@ namespace Debond
     LinearSolve     result;
     const Multigrid preconditioner(problem);
     result.u.reinit(problem.unknowns().n_dofs());
-    dealii::SolverControl control(1000, 1e-10 * problem.load().l2_norm());
-    dealii::SolverCG<dealii::Vector<double>> cg(control);
+    dealii::SolverControl       control(1000, 1e-10 * problem.load().l2_norm());
+    dealii::SolverCG<DofVector> cg(control);
     cg.solve(problem.trilinos_matrix(),
              result.u,
              problem.load(),

@@ -88,13 +88,12 @@ namespace Debond
 
   template <int dim>
   DisplacementError
-  displacement_error(const ElasticProblem<dim>    &problem,
-                     const dealii::Vector<double> &u,
-                     const dealii::Function<dim>  &exact)
+  displacement_error(const ElasticProblem<dim>   &problem,
+                     const DofVector             &u,
+                     const dealii::Function<dim> &exact)
   {
     dealii::SymmetricTensor<4, dim> stiffness;
-    const dealii::Vector<double>    displacement =
-      problem.unknowns().cartesian_displacement(u);
+    const DofVector displacement = problem.unknowns().cartesian_displacement(u);
     const unsigned int               degree = problem.unknowns().degree();
     const dealii::QGaussSimplex<dim> rule(3);
     const double reference_volume = dim == 2 ? 0.5 : 1. / 6.;
@@ -160,10 +159,10 @@ namespace Debond
 
   template DisplacementError
   displacement_error(const ElasticProblem<2> &,
-                     const dealii::Vector<double> &,
+                     const DofVector &,
                      const dealii::Function<2> &);
   template DisplacementError
   displacement_error(const ElasticProblem<3> &,
-                     const dealii::Vector<double> &,
+                     const DofVector &,
                      const dealii::Function<3> &);
 } // namespace Debond

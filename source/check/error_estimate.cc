@@ -137,15 +137,15 @@ namespace Debond
     class Residuals
     {
     public:
-      Residuals(const ElasticProblem<dim>    &problem,
-                const AdhesionIntegral<dim>  &adhesion,
-                const BoundaryConditions     &conditions,
-                const Supports<dim>          &supports,
-                const Loads<dim>             &loads,
-                const dealii::Vector<double> &u,
-                const LoadFactors             factors,
-                const Loads<dim>             *dead_loads,
-                const ProblemPiece<dim>      *piece)
+      Residuals(const ElasticProblem<dim>   &problem,
+                const AdhesionIntegral<dim> &adhesion,
+                const BoundaryConditions    &conditions,
+                const Supports<dim>         &supports,
+                const Loads<dim>            &loads,
+                const DofVector             &u,
+                const LoadFactors            factors,
+                const Loads<dim>            *dead_loads,
+                const ProblemPiece<dim>     *piece)
         : degree(problem.unknowns().degree())
         , adhesion(adhesion)
         , boundary(problem.unknowns().contact().boundary())
@@ -157,7 +157,7 @@ namespace Debond
         , load_factor(factors.loads)
         , largest_s(largest(piece == nullptr ? s : piece->trace(u)))
       {
-        const dealii::Vector<double> displacement =
+        const DofVector displacement =
           problem.unknowns().cartesian_displacement(u, factors);
         const auto &dofs = problem.unknowns().dof_handler();
         cells.reserve(dofs.get_triangulation().n_active_cells());
@@ -257,7 +257,7 @@ namespace Debond
       };
 
       static double
-      largest(const dealii::Vector<double> &s)
+      largest(const DofVector &s)
       {
         return s.size() > 0 ? s.linfty_norm() : 0.;
       }
@@ -587,7 +587,7 @@ namespace Debond
       const BoundaryConditions                                &conditions;
       const Supports<dim>                                     &supports;
       const Loads<dim>                                        &loads;
-      const dealii::Vector<double>                             s;
+      const DofVector                                          s;
       const Loads<dim>                                        *dead_loads;
       const double                                             load_factor;
       const double                                             largest_s;
@@ -642,16 +642,16 @@ namespace Debond
 
   template <int dim>
   ErrorEstimate
-  estimate_error(const ElasticProblem<dim>    &problem,
-                 const AdhesionIntegral<dim>  &adhesion,
-                 const BoundaryConditions     &conditions,
-                 const Supports<dim>          &supports,
-                 const Loads<dim>             &loads,
-                 const dealii::Vector<double> &u,
-                 const double                  functional,
-                 const LoadFactors             factors,
-                 const Loads<dim>             *dead_loads,
-                 const ProblemPiece<dim>      *piece)
+  estimate_error(const ElasticProblem<dim>   &problem,
+                 const AdhesionIntegral<dim> &adhesion,
+                 const BoundaryConditions    &conditions,
+                 const Supports<dim>         &supports,
+                 const Loads<dim>            &loads,
+                 const DofVector             &u,
+                 const double                 functional,
+                 const LoadFactors            factors,
+                 const Loads<dim>            *dead_loads,
+                 const ProblemPiece<dim>     *piece)
   {
     std::optional<Residuals<dim>> residuals;
     std::string                   error;
@@ -708,7 +708,7 @@ namespace Debond
                  const BoundaryConditions &,
                  const Supports<2> &,
                  const Loads<2> &,
-                 const dealii::Vector<double> &,
+                 const DofVector &,
                  const double,
                  const LoadFactors,
                  const Loads<2> *,
@@ -719,7 +719,7 @@ namespace Debond
                  const BoundaryConditions &,
                  const Supports<3> &,
                  const Loads<3> &,
-                 const dealii::Vector<double> &,
+                 const DofVector &,
                  const double,
                  const LoadFactors,
                  const Loads<3> *,

@@ -8,14 +8,13 @@ namespace Debond
 {
   template <int dim>
   LargestValues
-  largest_values(const ElasticProblem<dim>    &problem,
-                 const dealii::Vector<double> &u,
-                 const LoadFactors             factors)
+  largest_values(const ElasticProblem<dim> &problem,
+                 const DofVector           &u,
+                 const LoadFactors          factors)
   {
-    const dealii::Vector<double> displacement =
+    const DofVector displacement =
       problem.unknowns().cartesian_displacement(u, factors);
-    const dealii::Vector<double> at_nodes =
-      problem.unknowns().nodal_values(displacement);
+    const DofVector at_nodes = problem.unknowns().nodal_values(displacement);
 
     LargestValues largest;
     for (const auto &cell :
@@ -44,10 +43,10 @@ namespace Debond
 
   template LargestValues
   largest_values(const ElasticProblem<2> &,
-                 const dealii::Vector<double> &,
+                 const DofVector &,
                  const LoadFactors);
   template LargestValues
   largest_values(const ElasticProblem<3> &,
-                 const dealii::Vector<double> &,
+                 const DofVector &,
                  const LoadFactors);
 } // namespace Debond

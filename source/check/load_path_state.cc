@@ -27,16 +27,16 @@ namespace Debond
     /// LoadPathState::unit_displacement_work.
     template <int dim>
     double
-    work_of_supports(const ElasticProblem<dim>    &problem,
-                     const AdhesionIntegral<dim>  &adhesion,
-                     const LoadFactors             factors,
-                     const dealii::Vector<double> &u,
-                     const dealii::Vector<double> &s)
+    work_of_supports(const ElasticProblem<dim>   &problem,
+                     const AdhesionIntegral<dim> &adhesion,
+                     const LoadFactors            factors,
+                     const DofVector             &u,
+                     const DofVector             &s)
     {
       const ElasticUnknowns<dim> &unknowns = problem.unknowns();
       if (!unknowns.has_prescribed_displacements())
         return 0.;
-      dealii::Vector<double> displacement = unknowns.lifting({0., 1.});
+      DofVector displacement = unknowns.lifting({0., 1.});
       displacement -= unknowns.lifting({0., 0.});
       double sum = problem.fields().residual(u, factors) * displacement;
       const std::vector<double> forces = adhesion.held_forces(eigen_view(s));
@@ -51,18 +51,18 @@ namespace Debond
 
   template <int dim>
   LoadPathState<dim>
-  load_path_state(const ElasticProblem<dim>    &problem,
-                  const AdhesionIntegral<dim>  &adhesion,
-                  const Probes<dim>            &means,
-                  const Probes<dim>            &probes,
-                  const LoadFactors             factors,
-                  const dealii::Vector<double> &u,
-                  const Verification<dim>      &verification)
+  load_path_state(const ElasticProblem<dim>   &problem,
+                  const AdhesionIntegral<dim> &adhesion,
+                  const Probes<dim>           &means,
+                  const Probes<dim>           &probes,
+                  const LoadFactors            factors,
+                  const DofVector             &u,
+                  const Verification<dim>     &verification)
   {
-    const auto &nodes = problem.unknowns().contact().boundary().nodes;
-    dealii::Vector<double> s(problem.unknowns().contact().size());
-    LoadPathState<dim>     state   = {};
-    double                 measure = 0.;
+    const auto        &nodes = problem.unknowns().contact().boundary().nodes;
+    DofVector          s(problem.unknowns().contact().size());
+    LoadPathState<dim> state   = {};
+    double             measure = 0.;
 
     constexpr unsigned int n_known =
       static_cast<unsigned int>(BondState::held) + 1;
@@ -147,7 +147,7 @@ namespace Debond
                   const Probes<2> &,
                   const Probes<2> &,
                   const LoadFactors,
-                  const dealii::Vector<double> &,
+                  const DofVector &,
                   const Verification<2> &);
   template LoadPathState<3>
   load_path_state(const ElasticProblem<3> &,
@@ -155,6 +155,6 @@ namespace Debond
                   const Probes<3> &,
                   const Probes<3> &,
                   const LoadFactors,
-                  const dealii::Vector<double> &,
+                  const DofVector &,
                   const Verification<3> &);
 } // namespace Debond

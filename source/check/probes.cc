@@ -112,17 +112,17 @@ namespace Debond
 
   template <int dim>
   ProbeValues<dim>
-  Probes<dim>::values(const ElasticProblem<dim>    &problem,
-                      const dealii::Vector<double> &u,
-                      const LoadFactors             factors,
-                      const ProblemPiece<dim>      *piece) const
+  Probes<dim>::values(const ElasticProblem<dim> &problem,
+                      const DofVector           &u,
+                      const LoadFactors          factors,
+                      const ProblemPiece<dim>   *piece) const
   {
-    const auto whole = [piece](const dealii::Vector<double> &v) {
+    const auto whole = [piece](const DofVector &v) {
       return piece == nullptr ? v : piece->gather(v);
     };
-    const dealii::Vector<double> displacement =
+    const DofVector displacement =
       whole(problem.unknowns().cartesian_displacement(u, factors));
-    dealii::Vector<double> forces;
+    DofVector forces;
     if (std::any_of(sums.begin(), sums.end(), [](const Sum &sum) {
           return sum.of_forces;
         }))
@@ -135,7 +135,7 @@ namespace Debond
         auto weights = sum.weights;
         if (piece != nullptr)
           {
-            dealii::Vector<double> of_unknowns(problem.unknowns().n_dofs());
+            DofVector of_unknowns(problem.unknowns().n_dofs());
             for (const auto &[dof, weight] : weights)
               of_unknowns(dof) = weight;
             of_unknowns = whole(of_unknowns);

@@ -93,7 +93,7 @@ namespace Debond
                const AdhesionIntegral<dim>         &adhesion,
                const ContactBoundary<dim>          &boundary,
                const std::vector<ContactNodeState> &nodes,
-               const dealii::Vector<double>        &rounding,
+               const DofVector                     &rounding,
                const double                         largest_reaction,
                const double                         largest_displacement)
     {
@@ -217,7 +217,7 @@ namespace Debond
     template <int dim>
     void
     compute_violations(const AdhesionIntegral<dim>   &adhesion,
-                       const dealii::Vector<double>  &s,
+                       const DofVector               &s,
                        const std::vector<LawScale>   &scales,
                        std::vector<ContactNodeState> &nodes)
     {
@@ -280,9 +280,9 @@ namespace Debond
 
     template <int dim>
     LargestResiduals
-    largest_residuals(const ElasticProblem<dim>    &problem,
-                      const dealii::Vector<double> &residual,
-                      const ProblemPiece<dim>      *piece)
+    largest_residuals(const ElasticProblem<dim> &problem,
+                      const DofVector           &residual,
+                      const ProblemPiece<dim>   *piece)
     {
       std::vector<bool> supported(problem.unknowns().n_dofs(), false);
       for (const auto normal : problem.unknowns().contact().normals())
@@ -312,7 +312,7 @@ namespace Debond
     /// an empty vector. The unknowns of a node follow each other.
     template <int dim, typename Dofs>
     std::vector<dealii::Tensor<1, dim>>
-    at_contact_nodes(const dealii::Vector<double> &vectors, const Dofs &normals)
+    at_contact_nodes(const DofVector &vectors, const Dofs &normals)
     {
       std::vector<dealii::Tensor<1, dim>> result;
       if (vectors.size() == 0)
@@ -330,16 +330,16 @@ namespace Debond
 
     template <int dim>
     void
-    compute_force_balance(const ElasticProblem<dim>    &problem,
-                          const dealii::Vector<double> &residual,
-                          const std::vector<double>    &held_forces,
-                          const LoadFactors             factors,
-                          const double                  smallest_force,
-                          const ProblemPiece<dim>      *piece,
-                          Verification<dim>            &result)
+    compute_force_balance(const ElasticProblem<dim> &problem,
+                          const DofVector           &residual,
+                          const std::vector<double> &held_forces,
+                          const LoadFactors          factors,
+                          const double               smallest_force,
+                          const ProblemPiece<dim>   *piece,
+                          Verification<dim>         &result)
     {
       // Of all unknowns, on the first of several ranks.
-      const auto whole = [piece](const dealii::Vector<double> &v) {
+      const auto whole = [piece](const DofVector &v) {
         return piece == nullptr ? v : piece->gather(v);
       };
       const auto       &normals = problem.unknowns().contact().normals();
@@ -354,8 +354,8 @@ namespace Debond
       std::vector<bool>           is_supported(unknowns.n_dofs(), false);
       for (const auto &[dof, unused] : unknowns.supported())
         is_supported[dof] = true;
-      dealii::Vector<double>    clamped(problem.unknowns().n_dofs());
-      dealii::Vector<double>    contact(problem.unknowns().n_dofs());
+      DofVector                 clamped(problem.unknowns().n_dofs());
+      DofVector                 contact(problem.unknowns().n_dofs());
       std::vector<unsigned int> component(problem.unknowns().n_dofs());
       for (const auto &cell :
            problem.unknowns().dof_handler().active_cell_iterators())
@@ -379,8 +379,8 @@ namespace Debond
             }
         }
 
-      const auto resultant = [&](const dealii::Vector<double> &forces) {
-        const dealii::Vector<double> cartesian =
+      const auto resultant = [&](const DofVector &forces) {
+        const DofVector cartesian =
           whole(problem.unknowns().cartesian_forces(forces));
         dealii::Tensor<1, dim> sum;
         for (unsigned int i = 0; i < cartesian.size(); ++i)
@@ -388,7 +388,7 @@ namespace Debond
         return sum;
       };
 
-      const dealii::Vector<double> applied =
+      const DofVector applied =
         whole(problem.fields().applied_nodal_forces(factors));
       if (piece == nullptr)
         result.applied_force = problem.fields().total_load(factors);
@@ -408,7 +408,7 @@ namespace Debond
           all_names.insert(of_rank.begin(), of_rank.end());
       for (const std::string &name : all_names)
         {
-          dealii::Vector<double> of_support(unknowns.n_dofs());
+          DofVector of_support(unknowns.n_dofs());
           for (const auto &[dof, support] : unknowns.supported())
             if (names[support] == name)
               of_support(dof) = residual(dof);
@@ -425,7 +425,7 @@ namespace Debond
             result.reactions[names[held[k].support]] += force;
         }
 
-      dealii::Vector<double> tangential = contact;
+      DofVector tangential = contact;
       for (const auto normal : normals)
         tangential(normal) = 0.;
       result.tangential_reaction = resultant(tangential);
@@ -436,7 +436,7 @@ namespace Debond
           at_contact_nodes<dim>(tangential, piece->normal_numbers());
 
       // Resultants can vanish where forces do not.
-      dealii::Vector<double> supports = clamped;
+      DofVector supports = clamped;
       supports += contact;
       supports = whole(supports);
       const double scale =
@@ -453,13 +453,13 @@ namespace Debond
 
   template <int dim>
   Verification<dim>
-  verify(const ElasticProblem<dim>    &problem,
-         const AdhesionIntegral<dim>  &adhesion,
-         const AdhesiveLaw            &law,
-         const dealii::Vector<double> &u,
-         const LoadFactors             factors,
-         const double                  tolerance,
-         const ProblemPiece<dim>      *piece)
+  verify(const ElasticProblem<dim>   &problem,
+         const AdhesionIntegral<dim> &adhesion,
+         const AdhesiveLaw           &law,
+         const DofVector             &u,
+         const LoadFactors            factors,
+         const double                 tolerance,
+         const ProblemPiece<dim>     *piece)
   {
     const bool is_finite =
       piece == nullptr ?
@@ -476,20 +476,19 @@ namespace Debond
     const ContactBoundary<dim> &boundary =
       piece == nullptr ? problem.unknowns().contact().boundary() :
                          piece->boundary();
-    const auto trace = [&](const dealii::Vector<double> &v) {
+    const auto trace = [&](const DofVector &v) {
       return piece == nullptr ? problem.unknowns().contact().trace(v) :
                                 piece->trace(v);
     };
-    const auto largest_entry = [&](const dealii::Vector<double> &v) {
+    const auto largest_entry = [&](const DofVector &v) {
       return piece == nullptr ? v.linfty_norm() :
                                 piece->nodes().largest(v.begin());
     };
-    const dealii::Vector<double> residual =
-      problem.fields().residual(u, factors);
+    const DofVector residual = problem.fields().residual(u, factors);
 
-    const dealii::Vector<double> s               = trace(u);
-    const dealii::Vector<double> normal_residual = trace(residual);
-    const std::vector<Interval>  forces =
+    const DofVector             s               = trace(u);
+    const DofVector             normal_residual = trace(residual);
+    const std::vector<Interval> forces =
       adhesion.force_intervals(eigen_view(s), 0.);
 
     Verification<dim> result;
@@ -513,14 +512,13 @@ namespace Debond
         result.penetration = std::max(result.penetration, s(i));
       }
 
-    dealii::Vector<double> displacement = u;
+    DofVector displacement = u;
     if (problem.unknowns().has_lifting())
       displacement += problem.unknowns().lifting(factors);
     const double           largest_displacement = largest_entry(displacement);
     const LargestResiduals largest =
       largest_residuals(problem, residual, piece);
-    const dealii::Vector<double> rounding =
-      problem.fields().residual_rounding(u, factors);
+    const DofVector rounding = problem.fields().residual_rounding(u, factors);
     const std::vector<LawScale> scales = law_scales(law,
                                                     adhesion,
                                                     boundary,
@@ -590,7 +588,7 @@ namespace Debond
   verify(const ElasticProblem<2> &,
          const AdhesionIntegral<2> &,
          const AdhesiveLaw &,
-         const dealii::Vector<double> &,
+         const DofVector &,
          const LoadFactors,
          const double,
          const ProblemPiece<2> *);
@@ -598,7 +596,7 @@ namespace Debond
   verify(const ElasticProblem<3> &,
          const AdhesionIntegral<3> &,
          const AdhesiveLaw &,
-         const dealii::Vector<double> &,
+         const DofVector &,
          const LoadFactors,
          const double,
          const ProblemPiece<3> *);

@@ -46,10 +46,10 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  ContactSpace<dim>::trace(const dealii::Vector<double> &u) const
+  DofVector
+  ContactSpace<dim>::trace(const DofVector &u) const
   {
-    dealii::Vector<double> s(size());
+    DofVector s(size());
     for (unsigned int i = 0; i < size(); ++i)
       s(i) = u(normal_dofs[i]);
     return s;
@@ -59,8 +59,7 @@ namespace Debond
 
   template <int dim>
   void
-  ContactSpace<dim>::add_normal(const VectorView       &s,
-                                dealii::Vector<double> &u) const
+  ContactSpace<dim>::add_normal(const VectorView &s, DofVector &u) const
   {
     for (unsigned int i = 0; i < size(); ++i)
       u(normal_dofs[i]) += s(i);
@@ -80,7 +79,7 @@ namespace Debond
 
   template <int dim>
   bool
-  ContactSpace<dim>::is_admissible(const dealii::Vector<double> &u) const
+  ContactSpace<dim>::is_admissible(const DofVector &u) const
   {
     return std::all_of(normal_dofs.begin(),
                        normal_dofs.end(),
@@ -92,10 +91,10 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
+  DofVector
   ContactSpace<dim>::at_rest() const
   {
-    dealii::Vector<double> s(size());
+    DofVector s(size());
     for (unsigned int i = 0; i < size(); ++i)
       s(i) = 0. - nodes_and_faces.nodes[i].gap;
     return s;

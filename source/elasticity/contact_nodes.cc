@@ -126,7 +126,7 @@ namespace Debond
                         const BoundaryConditions             &conditions,
                         const Supports<dim>                  &supports,
                         NodeSupports<dim>                    &node_supports,
-                        dealii::Vector<double>               &gap)
+                        DofVector                            &gap)
         : faces(faces)
         , supports(supports)
         , node_supports(node_supports)
@@ -320,7 +320,7 @@ namespace Debond
       const std::vector<BoundaryFace<dim>> &faces;
       const Supports<dim>                  &supports;
       NodeSupports<dim>                    &node_supports;
-      dealii::Vector<double>               &gap;
+      DofVector                            &gap;
 
       /// By node index; clamped vertices are left out.
       std::map<unsigned int, ContactVertex<dim>> vertices;
@@ -345,7 +345,7 @@ namespace Debond
                      const Supports<dim>                  &supports,
                      const double                          diameter,
                      NodeSupports<dim>                    &node_supports,
-                     dealii::Vector<double>               &gap)
+                     DofVector                            &gap)
   {
     return ContactSpaceMaker<dim>(
              faces, degree, conditions, supports, node_supports, gap)
@@ -361,7 +361,7 @@ namespace Debond
                      const Supports<2> &,
                      const double,
                      NodeSupports<2> &,
-                     dealii::Vector<double> &);
+                     DofVector &);
   template ContactSpace<3>
   make_contact_space(const std::vector<BoundaryFace<3>> &,
                      const unsigned int,
@@ -369,5 +369,5 @@ namespace Debond
                      const Supports<3> &,
                      const double,
                      NodeSupports<3> &,
-                     dealii::Vector<double> &);
+                     DofVector &);
 } // namespace Debond

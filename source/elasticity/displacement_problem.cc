@@ -9,11 +9,11 @@
 namespace Debond
 {
   DisplacementProblem::DisplacementProblem(
-    const dealii::Vector<double>    &load,
+    const DofVector                 &load,
     const PiecewiseQuadratic        &nonsmooth,
     const std::vector<unsigned int> &contact_normals,
-    const dealii::Vector<double>    &diagonal_of_A,
-    dealii::Vector<double>          &start,
+    const DofVector                 &diagonal_of_A,
+    DofVector                       &start,
     const std::function<bool()>     &go_on)
     : f(load)
     , phi(nonsmooth)
@@ -30,10 +30,10 @@ namespace Debond
 
 
 
-  dealii::Vector<double>
-  DisplacementProblem::trace(const dealii::Vector<double> &v) const
+  DofVector
+  DisplacementProblem::trace(const DofVector &v) const
   {
-    dealii::Vector<double> s(static_cast<unsigned int>(normals.size()));
+    DofVector s(static_cast<unsigned int>(normals.size()));
     for (unsigned int i = 0; i < normals.size(); ++i)
       s(i) = v(normals[i]);
     return s;
@@ -42,8 +42,7 @@ namespace Debond
 
 
   double
-  DisplacementProblem::product(const dealii::Vector<double> &a,
-                               const dealii::Vector<double> &b) const
+  DisplacementProblem::product(const DofVector &a, const DofVector &b) const
   {
     return a * b;
   }
@@ -51,7 +50,7 @@ namespace Debond
 
 
   double
-  DisplacementProblem::norm(const dealii::Vector<double> &v) const
+  DisplacementProblem::norm(const DofVector &v) const
   {
     return std::sqrt(product(v, v));
   }
@@ -61,10 +60,10 @@ namespace Debond
   MajorantProblem::State
   DisplacementProblem::evaluate()
   {
-    dealii::Vector<double> internal(u.size());
+    DofVector internal(u.size());
     multiply(internal, u);
-    const dealii::Vector<double> s  = trace(u);
-    const Eigen::VectorXd        xi = phi.subgradient(eigen_view(s));
+    const DofVector       s  = trace(u);
+    const Eigen::VectorXd xi = phi.subgradient(eigen_view(s));
 
     State        state;
     const double energy   = 0.5 * product(internal, u);
@@ -74,12 +73,12 @@ namespace Debond
 
     // The terms of a row of A u are as large as diagonal times displacement,
     // and cancel.
-    dealii::Vector<double> terms = diagonal;
+    DofVector terms = diagonal;
     terms.scale(u);
     force_rounding = 4. * std::numeric_limits<double>::epsilon() * norm(terms);
     state.functional_rounding = force_rounding * norm(u);
 
-    dealii::Vector<double> violation = f;
+    DofVector violation = f;
     violation -= internal;
     largest_force  = std::max({norm(f), norm(internal), xi.norm()});
     state.n_active = 0;
@@ -107,7 +106,7 @@ namespace Debond
   DisplacementProblem::majorise()
   {
     // Phi <= Phi(s_k) + xi'(s - s_k) + 1/2 (s - s_k)'E (s - s_k).
-    const dealii::Vector<double>      point        = trace(u);
+    const DofVector                   point        = trace(u);
     const auto                        s            = eigen_view(point);
     const Eigen::SparseMatrix<double> previous_E   = E;
     const Eigen::VectorXd             previous_b_c = b_c;
@@ -124,24 +123,23 @@ namespace Debond
 
 
   void
-  DisplacementProblem::majorant_force(dealii::Vector<double> &force) const
+  DisplacementProblem::majorant_force(DofVector &force) const
   {
     multiply(force, u);
     force.sadd(-1., 1., f);
-    const dealii::Vector<double> s   = trace(u);
-    const Eigen::VectorXd        E_s = E * eigen_view(s);
+    const DofVector       s   = trace(u);
+    const Eigen::VectorXd E_s = E * eigen_view(s);
     add_normal(Eigen::VectorXd(b_c - E_s), force);
   }
 
 
 
   void
-  DisplacementProblem::multiply_majorant(
-    dealii::Vector<double>       &dst,
-    const dealii::Vector<double> &src) const
+  DisplacementProblem::multiply_majorant(DofVector       &dst,
+                                         const DofVector &src) const
   {
     multiply(dst, src);
-    const dealii::Vector<double> s = trace(src);
+    const DofVector s = trace(src);
     add_normal(Eigen::VectorXd(E * eigen_view(s)), dst);
     restrict_to_free(dst);
   }
@@ -149,7 +147,7 @@ namespace Debond
 
 
   void
-  DisplacementProblem::restrict_to_free(dealii::Vector<double> &v) const
+  DisplacementProblem::restrict_to_free(DofVector &v) const
   {
     for (unsigned int i = 0; i < normals.size(); ++i)
       if (active[i] != 0 && normals[i] != dealii::numbers::invalid_unsigned_int)

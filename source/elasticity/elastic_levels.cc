@@ -188,8 +188,8 @@ namespace Debond
       {
         if (l + 1 == levels.size() && !is_shared(l))
           break;
-        const Transfer<dim>   &transfer = truncated_cycle->transfer(l);
-        dealii::Vector<double> coarse_load(transfer.n_coarse_nodes() * dim);
+        const Transfer<dim> &transfer = truncated_cycle->transfer(l);
+        DofVector            coarse_load(transfer.n_coarse_nodes() * dim);
         transfer.restrict_to(coarse_load.begin(), load(l).begin());
         if (is_shared(l) && !is_shared(l + 1))
           {
@@ -399,7 +399,7 @@ namespace Debond
 
 
   template <int dim>
-  const dealii::Vector<double> &
+  const DofVector &
   ElasticLevels<dim>::load(const unsigned int l) const
   {
     return l == 0 && !root ? problem.load() : levels[l].load;
@@ -409,9 +409,9 @@ namespace Debond
 
   template <int dim>
   void
-  ElasticLevels<dim>::vmult(const unsigned int            l,
-                            dealii::Vector<double>       &dst,
-                            const dealii::Vector<double> &src) const
+  ElasticLevels<dim>::vmult(const unsigned int l,
+                            DofVector         &dst,
+                            const DofVector   &src) const
   {
     if (l == 0)
       problem.matrix().vmult(dst, src);
@@ -431,16 +431,14 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  ElasticLevels<dim>::trace(const unsigned int            l,
-                            const dealii::Vector<double> &v) const
+  DofVector
+  ElasticLevels<dim>::trace(const unsigned int l, const DofVector &v) const
   {
     if (l == 0 && piece != nullptr)
       return piece->trace(v);
     if (is_shared(l))
       return (*levels[l].trace)(v);
-    dealii::Vector<double> s(
-      static_cast<unsigned int>(levels[l].normals.size()));
+    DofVector s(static_cast<unsigned int>(levels[l].normals.size()));
     for (unsigned int i = 0; i < s.size(); ++i)
       s(i) = v(levels[l].normals[i]);
     return s;
@@ -450,9 +448,9 @@ namespace Debond
 
   template <int dim>
   double
-  ElasticLevels<dim>::product(const unsigned int            l,
-                              const dealii::Vector<double> &a,
-                              const dealii::Vector<double> &b) const
+  ElasticLevels<dim>::product(const unsigned int l,
+                              const DofVector   &a,
+                              const DofVector   &b) const
   {
     return levels[l].nodes->product(a.begin(), b.begin());
   }
@@ -461,8 +459,7 @@ namespace Debond
 
   template <int dim>
   void
-  ElasticLevels<dim>::update_ghosts(const unsigned int      l,
-                                    dealii::Vector<double> &v) const
+  ElasticLevels<dim>::update_ghosts(const unsigned int l, DofVector &v) const
   {
     levels[l].nodes->update_ghosts(v.begin());
   }
@@ -502,10 +499,10 @@ namespace Debond
 
   template <int dim>
   void
-  ElasticLevels<dim>::add_column(const unsigned int      l,
-                                 const unsigned int      column,
-                                 const double            factor,
-                                 dealii::Vector<double> &v) const
+  ElasticLevels<dim>::add_column(const unsigned int l,
+                                 const unsigned int column,
+                                 const double       factor,
+                                 DofVector         &v) const
   {
     visit_row(l, column, [&](const unsigned int i, const double entry) {
       v(i) += factor * entry;
@@ -561,12 +558,12 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
+  DofVector
   ElasticLevels<dim>::from_vertex_displacements(
     const unsigned int                         l,
     const std::vector<dealii::Tensor<1, dim>> &displacements) const
   {
-    dealii::Vector<double> result(n_unknowns(l));
+    DofVector result(n_unknowns(l));
     for (unsigned int i = 0; i < displacements.size(); ++i)
       for (unsigned int d = 0; d < dim; ++d)
         result(i * dim + d) = displacements[i][d];
@@ -584,11 +581,10 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  ElasticLevels<dim>::prolongate(const unsigned int            l,
-                                 const dealii::Vector<double> &u) const
+  DofVector
+  ElasticLevels<dim>::prolongate(const unsigned int l, const DofVector &u) const
   {
-    dealii::Vector<double> result(n_unknowns(l - 1)), coarse(u);
+    DofVector result(n_unknowns(l - 1)), coarse(u);
     if (is_shared(l - 1) && !is_shared(l))
       {
         std::vector<double> local(std::size_t(root->n_local_nodes()) * dim);

@@ -41,9 +41,9 @@ namespace Debond
     });
     const std::vector<double> pressures =
       thermal_stresses(dofs, materials, loads);
-    dealii::Vector<double> applied_forces = load_vector(dofs, loads);
+    DofVector applied_forces = load_vector(dofs, loads);
     add_thermal_forces(dofs, pressures, applied_forces);
-    dealii::Vector<double> dead_forces;
+    DofVector dead_forces;
     if (dead_loads.body_force || !dead_loads.tractions.empty())
       {
         dead_forces = load_vector(dofs, dead_loads);
@@ -53,9 +53,8 @@ namespace Debond
       elastic_unknowns, materials, applied_forces, pressures, dead_forces);
 
     const auto load_with = [&](const LoadFactors factors) {
-      dealii::Vector<double> load =
-        elastic_fields->residual(dealii::Vector<double>(dofs.n_dofs()),
-                                 factors);
+      DofVector load =
+        elastic_fields->residual(DofVector(dofs.n_dofs()), factors);
       load *= -1.;
       constraints.set_zero(load);
       return load;
@@ -225,7 +224,7 @@ namespace Debond
 
 
   template <int dim>
-  const dealii::Vector<double> &
+  const DofVector &
   ElasticProblem<dim>::load() const
   {
     return system_load;
@@ -234,7 +233,7 @@ namespace Debond
 
 
   template <int dim>
-  const dealii::Vector<double> &
+  const DofVector &
   ElasticProblem<dim>::constant_load() const
   {
     return load_without_factor;
@@ -243,7 +242,7 @@ namespace Debond
 
 
   template <int dim>
-  const dealii::Vector<double> &
+  const DofVector &
   ElasticProblem<dim>::displacement_load() const
   {
     return load_of_displacements;
@@ -252,10 +251,10 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
+  DofVector
   ElasticProblem<dim>::load_at(const LoadFactors factors) const
   {
-    dealii::Vector<double> load = system_load;
+    DofVector load = system_load;
     load *= factors.loads;
     if (load_without_factor.size() > 0)
       load.add(1. - factors.loads, load_without_factor);
@@ -272,7 +271,7 @@ namespace Debond
   {
     return elastic_unknowns.has_lifting() ?
              elastic_fields->elastic_functional(
-               dealii::Vector<double>(elastic_unknowns.n_dofs()), factors) :
+               DofVector(elastic_unknowns.n_dofs()), factors) :
              0.;
   }
 

@@ -526,7 +526,7 @@ namespace Debond
     dealii::SparsityPattern pattern;
     pattern.copy_from(entries);
     dealii::SparseMatrix<double> K(pattern);
-    dealii::Vector<double>       f(n);
+    DofVector                    f(n);
     double                       constant = 0.;
     for (unsigned int element = 0; element < places.size(); ++element)
       {
@@ -637,9 +637,9 @@ namespace Debond
 
 
   Eigen::VectorXd
-  EquilibriumProblem::stress_of(const unsigned int            element,
-                                const dealii::Vector<double> &unknowns,
-                                const double                  weight) const
+  EquilibriumProblem::stress_of(const unsigned int element,
+                                const DofVector   &unknowns,
+                                const double       weight) const
   {
     const std::vector<unsigned int> numbers = unknowns_of(element);
     Eigen::VectorXd                 own(numbers.size());
@@ -651,9 +651,8 @@ namespace Debond
 
 
   std::vector<double>
-  EquilibriumProblem::constitutive_gaps(
-    const std::vector<CellDisplacement> &u,
-    const dealii::Vector<double>        &unknowns) const
+  EquilibriumProblem::constitutive_gaps(const std::vector<CellDisplacement> &u,
+                                        const DofVector &unknowns) const
   {
     std::vector<double> gaps(mesh.n_active_cells(), 0.);
     for (unsigned int element = 0; element < places.size(); ++element)
@@ -701,8 +700,8 @@ namespace Debond
                                   const Eigen::VectorXd     &kept,
                                   const std::vector<double> &weights) const
   {
-    const dealii::Vector<double> unknowns =
-      condensed.expand(dealii::Vector<double>(kept.begin(), kept.end()));
+    const DofVector unknowns =
+      condensed.expand(DofVector(kept.begin(), kept.end()));
     double energy = 0.;
     for (unsigned int element = 0; element < places.size(); ++element)
       {
@@ -733,8 +732,7 @@ namespace Debond
 
 
   std::vector<dealii::SymmetricTensor<2, 2>>
-  EquilibriumProblem::mean_stresses(
-    const dealii::Vector<double> &unknowns) const
+  EquilibriumProblem::mean_stresses(const DofVector &unknowns) const
   {
     std::vector<dealii::SymmetricTensor<2, 2>> result(mesh.n_active_cells());
     for (unsigned int element = 0; element < places.size(); ++element)

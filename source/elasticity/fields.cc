@@ -12,12 +12,11 @@
 namespace Debond
 {
   template <int dim>
-  ElasticFields<dim>::ElasticFields(
-    const ElasticUnknowns<dim>   &unknowns,
-    const ByRegion<Material>     &materials,
-    const dealii::Vector<double> &applied_forces,
-    const std::vector<double>    &thermal_stresses,
-    const dealii::Vector<double> &dead_forces)
+  ElasticFields<dim>::ElasticFields(const ElasticUnknowns<dim> &unknowns,
+                                    const ByRegion<Material>   &materials,
+                                    const DofVector            &applied_forces,
+                                    const std::vector<double> &thermal_stresses,
+                                    const DofVector           &dead_forces)
     : unknowns(unknowns)
     , materials(materials)
     , stiffness(materials.transformed([](const Material &material) {
@@ -43,10 +42,10 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
+  DofVector
   ElasticFields<dim>::applied_nodal_forces(const LoadFactors factors) const
   {
-    dealii::Vector<double> forces = live_forces;
+    DofVector forces = live_forces;
     forces *= factors.loads;
     if (dead_forces.size() > 0)
       forces += dead_forces;
@@ -56,14 +55,13 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  ElasticFields<dim>::residual(const dealii::Vector<double> &u,
-                               const LoadFactors             factors) const
+  DofVector
+  ElasticFields<dim>::residual(const DofVector  &u,
+                               const LoadFactors factors) const
   {
-    const dealii::Vector<double> displacement =
-      unknowns.cartesian_displacement(u, factors);
+    const DofVector displacement = unknowns.cartesian_displacement(u, factors);
 
-    dealii::Vector<double> forces(unknowns.n_dofs());
+    DofVector forces(unknowns.n_dofs());
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
       {
         const BernsteinSimplex<dim> simplex(cell, unknowns.degree());
@@ -90,14 +88,13 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  ElasticFields<dim>::residual_rounding(const dealii::Vector<double> &u,
+  DofVector
+  ElasticFields<dim>::residual_rounding(const DofVector  &u,
                                         const LoadFactors factors) const
   {
-    const dealii::Vector<double> displacement =
-      unknowns.cartesian_displacement(u, factors);
+    const DofVector displacement = unknowns.cartesian_displacement(u, factors);
 
-    dealii::Vector<double> rounding(unknowns.n_dofs());
+    DofVector rounding(unknowns.n_dofs());
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
       {
         const BernsteinSimplex<dim> simplex(cell, unknowns.degree());
@@ -121,7 +118,7 @@ namespace Debond
                                               simplex.gradient(n, point).norm();
           }
       }
-    const dealii::Vector<double> forces = applied_nodal_forces(factors);
+    const DofVector forces = applied_nodal_forces(factors);
     for (unsigned int i = 0; i < rounding.size(); ++i)
       rounding[i] = std::numeric_limits<double>::epsilon() *
                     (rounding[i] + std::abs(forces[i]));
@@ -132,11 +129,10 @@ namespace Debond
 
   template <int dim>
   dealii::SymmetricTensor<2, dim>
-  ElasticFields<dim>::stress(
-    const Cell                   &cell,
-    const dealii::Vector<double> &cartesian_displacement,
-    const LoadFactors             factors,
-    const Barycentric            &point) const
+  ElasticFields<dim>::stress(const Cell        &cell,
+                             const DofVector   &cartesian_displacement,
+                             const LoadFactors  factors,
+                             const Barycentric &point) const
   {
     dealii::SymmetricTensor<2, dim> stress =
       stiffness(cell->material_id()) *
@@ -152,11 +148,10 @@ namespace Debond
 
   template <int dim>
   dealii::SymmetricTensor<2, 3>
-  ElasticFields<dim>::solid_stress(
-    const Cell                   &cell,
-    const dealii::Vector<double> &cartesian_displacement,
-    const LoadFactors             factors,
-    const Barycentric            &point) const
+  ElasticFields<dim>::solid_stress(const Cell        &cell,
+                                   const DofVector   &cartesian_displacement,
+                                   const LoadFactors  factors,
+                                   const Barycentric &point) const
   {
     return material(cell).solid_stress(
       stress(cell, cartesian_displacement, factors, point),
@@ -199,9 +194,9 @@ namespace Debond
   template <int dim>
   dealii::Tensor<2, dim>
   ElasticFields<dim>::displacement_gradient(
-    const Cell                   &cell,
-    const dealii::Vector<double> &cartesian_displacement,
-    const Barycentric            &point) const
+    const Cell        &cell,
+    const DofVector   &cartesian_displacement,
+    const Barycentric &point) const
   {
     return gradient(BernsteinSimplex<dim>(cell, unknowns.degree()),
                     CellNodes<dim>(cell),
@@ -213,11 +208,10 @@ namespace Debond
 
   template <int dim>
   dealii::Tensor<2, dim>
-  ElasticFields<dim>::gradient(
-    const BernsteinSimplex<dim>  &simplex,
-    const CellNodes<dim>         &nodes,
-    const dealii::Vector<double> &cartesian_displacement,
-    const Barycentric            &point)
+  ElasticFields<dim>::gradient(const BernsteinSimplex<dim> &simplex,
+                               const CellNodes<dim>        &nodes,
+                               const DofVector   &cartesian_displacement,
+                               const Barycentric &point)
   {
     dealii::Tensor<2, dim> result;
     // The basis sums to one: without vertex 0 there are only differences of
@@ -237,7 +231,7 @@ namespace Debond
 
   template <int dim>
   double
-  ElasticFields<dim>::elastic_functional(const dealii::Vector<double> &u,
+  ElasticFields<dim>::elastic_functional(const DofVector  &u,
                                          const LoadFactors factors) const
   {
     return elastic_terms(u, factors).sum();
@@ -247,8 +241,8 @@ namespace Debond
 
   template <int dim>
   typename ElasticFields<dim>::Terms
-  ElasticFields<dim>::elastic_terms(const dealii::Vector<double> &u,
-                                    const LoadFactors             factors) const
+  ElasticFields<dim>::elastic_terms(const DofVector  &u,
+                                    const LoadFactors factors) const
   {
     return terms(u, factors, unknowns.in_frames(applied_nodal_forces(factors)));
   }
@@ -257,18 +251,18 @@ namespace Debond
 
   template <int dim>
   double
-  ElasticFields<dim>::strain_energy(const dealii::Vector<double> &u,
-                                    const LoadFactors             factors) const
+  ElasticFields<dim>::strain_energy(const DofVector  &u,
+                                    const LoadFactors factors) const
   {
-    return terms(u, factors, dealii::Vector<double>(u.size())).sum();
+    return terms(u, factors, DofVector(u.size())).sum();
   }
 
 
 
   template <int dim>
   double
-  ElasticFields<dim>::load_work(const dealii::Vector<double> &u,
-                                const LoadFactors             factors) const
+  ElasticFields<dim>::load_work(const DofVector  &u,
+                                const LoadFactors factors) const
   {
     return unknowns.in_frames(live_forces) * lifted(u, factors);
   }
@@ -276,11 +270,11 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  ElasticFields<dim>::lifted(const dealii::Vector<double> &u,
-                             const LoadFactors             factors) const
+  DofVector
+  ElasticFields<dim>::lifted(const DofVector  &u,
+                             const LoadFactors factors) const
   {
-    dealii::Vector<double> x = u;
+    DofVector x = u;
     if (unknowns.has_lifting())
       x += unknowns.lifting(factors);
     return x;
@@ -290,13 +284,12 @@ namespace Debond
 
   template <int dim>
   typename ElasticFields<dim>::Terms
-  ElasticFields<dim>::terms(const dealii::Vector<double> &u,
-                            const LoadFactors             factors,
-                            const dealii::Vector<double> &load) const
+  ElasticFields<dim>::terms(const DofVector  &u,
+                            const LoadFactors factors,
+                            const DofVector  &load) const
   {
-    const dealii::Vector<double> displacement =
-      unknowns.cartesian_displacement(u, factors);
-    Terms result = {{}, load, lifted(u, factors)};
+    const DofVector displacement = unknowns.cartesian_displacement(u, factors);
+    Terms           result       = {{}, load, lifted(u, factors)};
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
       {
         const BernsteinSimplex<dim> simplex(cell, unknowns.degree());
@@ -336,9 +329,9 @@ namespace Debond
   dealii::Tensor<1, dim>
   ElasticFields<dim>::total_load(const LoadFactors factors) const
   {
-    const dealii::Vector<double> applied_forces = applied_nodal_forces(factors);
-    dealii::Tensor<1, dim>       result;
-    std::vector<bool>            visited(
+    const DofVector        applied_forces = applied_nodal_forces(factors);
+    dealii::Tensor<1, dim> result;
+    std::vector<bool>      visited(
       n_nodes(unknowns.dof_handler().get_triangulation(), unknowns.degree()),
       false);
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())

@@ -21,10 +21,10 @@ namespace Debond
 
 
     template <int dim>
-    dealii::Vector<double>
+    DofVector
     diagonal_of(const ElasticLevels<dim> &levels, const unsigned int l)
     {
-      dealii::Vector<double> result(levels.n_unknowns(l));
+      DofVector result(levels.n_unknowns(l));
       for (unsigned int i = 0; i < result.size(); ++i)
         result(i) = levels.diagonal_entry(l, i);
       return result;
@@ -34,15 +34,15 @@ namespace Debond
 
     /// Products on a level, for deal.II's solvers.
     template <int dim>
-    class LevelVector : public dealii::Vector<double>
+    class LevelVector : public DofVector
     {
     public:
       LevelVector() = default;
 
-      LevelVector(const ElasticLevels<dim>     &elastic_levels,
-                  const unsigned int            level,
-                  const dealii::Vector<double> &values)
-        : dealii::Vector<double>(values)
+      LevelVector(const ElasticLevels<dim> &elastic_levels,
+                  const unsigned int        level,
+                  const DofVector          &values)
+        : DofVector(values)
         , levels(&elastic_levels)
         , l(level)
       {}
@@ -50,7 +50,7 @@ namespace Debond
       void
       reinit(const LevelVector &other, const bool omit_zeroing = false)
       {
-        dealii::Vector<double>::reinit(other, omit_zeroing);
+        DofVector::reinit(other, omit_zeroing);
         levels = other.levels;
         l      = other.l;
       }
@@ -86,9 +86,7 @@ namespace Debond
     template <int dim>
     struct LinearOperator
     {
-      std::function<void(dealii::Vector<double> &,
-                         const dealii::Vector<double> &)>
-        product;
+      std::function<void(DofVector &, const DofVector &)> product;
 
       void
       vmult(LevelVector<dim> &dst, const LevelVector<dim> &src) const
@@ -104,7 +102,7 @@ namespace Debond
   LevelProblem<dim>::LevelProblem(ElasticLevels<dim>          &elastic_levels,
                                   const unsigned int           level,
                                   const PiecewiseQuadratic    &nonsmooth,
-                                  dealii::Vector<double>      &start,
+                                  DofVector                   &start,
                                   const std::function<bool()> &go_on)
     : DisplacementProblem(elastic_levels.load(level),
                           nonsmooth,
@@ -121,8 +119,7 @@ namespace Debond
 
   template <int dim>
   void
-  LevelProblem<dim>::multiply(dealii::Vector<double>       &dst,
-                              const dealii::Vector<double> &src) const
+  LevelProblem<dim>::multiply(DofVector &dst, const DofVector &src) const
   {
     levels.vmult(l, dst, src);
   }
@@ -130,8 +127,8 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  LevelProblem<dim>::trace(const dealii::Vector<double> &v) const
+  DofVector
+  LevelProblem<dim>::trace(const DofVector &v) const
   {
     return levels.trace(l, v);
   }
@@ -140,8 +137,7 @@ namespace Debond
 
   template <int dim>
   double
-  LevelProblem<dim>::product(const dealii::Vector<double> &a,
-                             const dealii::Vector<double> &b) const
+  LevelProblem<dim>::product(const DofVector &a, const DofVector &b) const
   {
     return levels.product(l, a, b);
   }
@@ -150,14 +146,14 @@ namespace Debond
 
   template <int dim>
   void
-  LevelProblem<dim>::smooth_contact(dealii::Vector<double> &force)
+  LevelProblem<dim>::smooth_contact(DofVector &force)
   {
     // Each rank goes through all nodes, and then adds what that does to its
     // unknowns.
-    using Entry                    = Eigen::SparseMatrix<double>::InnerIterator;
-    dealii::Vector<double>       s = trace(u);
-    const dealii::Vector<double> old_s   = s;
-    dealii::Vector<double>       force_s = trace(force);
+    using Entry             = Eigen::SparseMatrix<double>::InnerIterator;
+    DofVector       s       = trace(u);
+    const DofVector old_s   = s;
+    DofVector       force_s = trace(force);
     for (unsigned int i = 0; i < normals.size(); ++i)
       {
         const double stiffness = contact_rows.coeff(i, i) + E.coeff(i, i);
@@ -195,11 +191,11 @@ namespace Debond
   MajorantProblem::Minimisation
   LevelProblem<dim>::minimise(const double tolerance)
   {
-    const double           required   = tolerance * largest_force;
-    const auto             previous_u = u;
-    Minimisation           result     = {SolverStatus::quadratic_program, 0, 0};
-    dealii::Vector<double> force(u.size()), free_force(u.size()),
-      correction(u.size()), image(u.size());
+    const double required   = tolerance * largest_force;
+    const auto   previous_u = u;
+    Minimisation result     = {SolverStatus::quadratic_program, 0, 0};
+    DofVector    force(u.size()), free_force(u.size()), correction(u.size()),
+      image(u.size());
     const auto interrupted = [&]() {
       result.status = SolverStatus::interrupted;
       u             = previous_u;
@@ -213,8 +209,8 @@ namespace Debond
           return interrupted();
         ++result.active_set_steps;
         smooth_contact(force);
-        const dealii::Vector<double> s       = trace(u);
-        const dealii::Vector<double> force_s = trace(force);
+        const DofVector s       = trace(u);
+        const DofVector force_s = trace(force);
         for (unsigned int i = 0; i < normals.size(); ++i)
           active[i] = s(i) == 0. && force_s(i) >= 0.;
         free_force = force;
@@ -246,7 +242,7 @@ namespace Debond
           }
         else
           {
-            LevelVector<dim> x(levels, l, dealii::Vector<double>(u.size()));
+            LevelVector<dim>       x(levels, l, DofVector(u.size()));
             const LevelVector<dim> b(levels, l, free_force);
             dealii::SolverControl  control(maximum_cycles, 0.9 * required);
             dealii::PrimitiveVectorMemory<LevelVector<dim>> memory;
@@ -258,19 +254,17 @@ namespace Debond
                                    dealii::SolverControl::failure;
             });
             const LinearOperator<dim> majorant = {
-              [this](dealii::Vector<double>       &dst,
-                     const dealii::Vector<double> &src) {
+              [this](DofVector &dst, const DofVector &src) {
                 multiply_majorant(dst, src);
               }};
             const LinearOperator<dim> preconditioner = {
-              [this](dealii::Vector<double>       &dst,
-                     const dealii::Vector<double> &src) {
+              [this](DofVector &dst, const DofVector &src) {
                 levels.cycle().vmult(dst, src);
               }};
             try
               {
                 cg.solve(majorant, x, b, preconditioner);
-                correction = static_cast<const dealii::Vector<double> &>(x);
+                correction = static_cast<const DofVector &>(x);
               }
             catch (const dealii::SolverControl::NoConvergence &)
               {
@@ -284,8 +278,8 @@ namespace Debond
           }
 
         // Onto s <= 0, and then as far as the majorant falls.
-        double longest           = std::numeric_limits<double>::infinity();
-        dealii::Vector<double> c = trace(correction);
+        double    longest = std::numeric_limits<double>::infinity();
+        DofVector c       = trace(correction);
         for (unsigned int i = 0; i < normals.size(); ++i)
           {
             c(i) = std::min(c(i), -s(i));

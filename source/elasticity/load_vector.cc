@@ -69,7 +69,7 @@ namespace Debond
     private:
       const dealii::Function<dim> &function;
       const std::string            name;
-      dealii::Vector<double>       values;
+      DofVector                    values;
     };
 
 
@@ -523,7 +523,7 @@ namespace Debond
     void
     add_body_force(const dealii::DoFHandler<dim> &dof_handler,
                    const dealii::Function<dim>   &function,
-                   dealii::Vector<double>        &forces)
+                   DofVector                     &forces)
     {
       const std::string      name = "body force";
       CheckedLoad<dim>       body_force(function, name);
@@ -565,7 +565,7 @@ namespace Debond
                  const std::string               &name,
                  const dealii::Function<dim>     &function,
                  const unsigned int               n_faces_of_whole,
-                 dealii::Vector<double>          &forces)
+                 DofVector                       &forces)
     {
       unsigned int n_faces = n_faces_of_whole;
       for (const auto &cell : dof_handler.active_cell_iterators())
@@ -622,11 +622,11 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
+  DofVector
   load_vector(const dealii::DoFHandler<dim> &dof_handler,
               const Loads<dim>              &loads)
   {
-    dealii::Vector<double> forces(dof_handler.n_dofs());
+    DofVector forces(dof_handler.n_dofs());
 
     // The load that is being integrated, for errors.
     std::optional<dealii::types::boundary_id> boundary;
@@ -658,8 +658,8 @@ namespace Debond
 
 
 
-  template dealii::Vector<double>
+  template DofVector
   load_vector(const dealii::DoFHandler<2> &, const Loads<2> &);
-  template dealii::Vector<double>
+  template DofVector
   load_vector(const dealii::DoFHandler<3> &, const Loads<3> &);
 } // namespace Debond

@@ -10,12 +10,10 @@ namespace Debond
 {
   template <int dim>
   std::vector<dealii::Tensor<1, dim>>
-  vertex_displacements(const ElasticProblem<dim>    &problem,
-                       const dealii::Vector<double> &u)
+  vertex_displacements(const ElasticProblem<dim> &problem, const DofVector &u)
   {
     const dealii::DoFHandler<dim> &dofs = problem.unknowns().dof_handler();
-    const dealii::Vector<double>   displacement =
-      problem.unknowns().cartesian_displacement(u);
+    const DofVector displacement = problem.unknowns().cartesian_displacement(u);
     std::vector<dealii::Tensor<1, dim>> at_vertices(
       dofs.get_triangulation().n_vertices());
     for (const auto &cell : dofs.active_cell_iterators())
@@ -29,12 +27,12 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
+  DofVector
   from_vertex_displacements(
     const std::vector<dealii::Tensor<1, dim>> &displacements,
     const ElasticProblem<dim>                 &problem)
   {
-    dealii::Vector<double> result(problem.unknowns().n_dofs());
+    DofVector result(problem.unknowns().n_dofs());
     for (const auto &cell :
          problem.unknowns().dof_handler().active_cell_iterators())
       {
@@ -56,7 +54,7 @@ namespace Debond
       {
         // Between nodes a gap is not what a coarser mesh sees.
         const ContactSpace<dim> &contact = problem.unknowns().contact();
-        dealii::Vector<double>   excess  = contact.trace(result);
+        DofVector                excess  = contact.trace(result);
         for (double &s : excess)
           s = -std::max(s, 0.);
         contact.add_normal(eigen_view(excess), result);
@@ -67,9 +65,9 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
+  DofVector
   divided_displacement(const ElasticProblem<dim>       &source,
-                       const dealii::Vector<double>    &u,
+                       const DofVector                 &u,
                        const std::vector<unsigned int> &ancestors,
                        const ElasticProblem<dim>       &target)
   {
@@ -79,11 +77,10 @@ namespace Debond
     for (const auto &cell :
          source.unknowns().dof_handler().active_cell_iterators())
       whole_cells.push_back(cell);
-    const unsigned int           degree = source.unknowns().degree();
-    const dealii::Vector<double> coefficients =
-      source.unknowns().cartesian_displacement(u);
+    const unsigned int degree    = source.unknowns().degree();
+    const DofVector coefficients = source.unknowns().cartesian_displacement(u);
 
-    dealii::Vector<double> result(target.unknowns().n_dofs());
+    DofVector result(target.unknowns().n_dofs());
     for (const auto &cell :
          target.unknowns().dof_handler().active_cell_iterators())
       {
@@ -127,11 +124,11 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  interpolate_displacement(const Body<dim>              &body,
-                           const ElasticProblem<dim>    &source,
-                           const dealii::Vector<double> &u,
-                           const ElasticProblem<dim>    &target)
+  DofVector
+  interpolate_displacement(const Body<dim>           &body,
+                           const ElasticProblem<dim> &source,
+                           const DofVector           &u,
+                           const ElasticProblem<dim> &target)
   {
     const auto mesh_of = [](const ElasticProblem<dim> &problem) -> const auto &
     {
@@ -147,35 +144,33 @@ namespace Debond
 
 
   template std::vector<dealii::Tensor<1, 2>>
-  vertex_displacements(const ElasticProblem<2> &,
-                       const dealii::Vector<double> &);
+  vertex_displacements(const ElasticProblem<2> &, const DofVector &);
   template std::vector<dealii::Tensor<1, 3>>
-  vertex_displacements(const ElasticProblem<3> &,
-                       const dealii::Vector<double> &);
-  template dealii::Vector<double>
+  vertex_displacements(const ElasticProblem<3> &, const DofVector &);
+  template DofVector
   from_vertex_displacements(const std::vector<dealii::Tensor<1, 2>> &,
                             const ElasticProblem<2> &);
-  template dealii::Vector<double>
+  template DofVector
   from_vertex_displacements(const std::vector<dealii::Tensor<1, 3>> &,
                             const ElasticProblem<3> &);
-  template dealii::Vector<double>
+  template DofVector
   divided_displacement(const ElasticProblem<2> &,
-                       const dealii::Vector<double> &,
+                       const DofVector &,
                        const std::vector<unsigned int> &,
                        const ElasticProblem<2> &);
-  template dealii::Vector<double>
+  template DofVector
   divided_displacement(const ElasticProblem<3> &,
-                       const dealii::Vector<double> &,
+                       const DofVector &,
                        const std::vector<unsigned int> &,
                        const ElasticProblem<3> &);
-  template dealii::Vector<double>
+  template DofVector
   interpolate_displacement(const Body<2> &,
                            const ElasticProblem<2> &,
-                           const dealii::Vector<double> &,
+                           const DofVector &,
                            const ElasticProblem<2> &);
-  template dealii::Vector<double>
+  template DofVector
   interpolate_displacement(const Body<3> &,
                            const ElasticProblem<3> &,
-                           const dealii::Vector<double> &,
+                           const DofVector &,
                            const ElasticProblem<3> &);
 } // namespace Debond

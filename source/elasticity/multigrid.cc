@@ -15,14 +15,13 @@ namespace Debond
   {
     // ML reads the modes one after the other from a plain array, during the
     // initialisation only.
-    std::vector<dealii::Vector<double>> modes =
-      problem.unknowns().rigid_body_modes();
-    for (dealii::Vector<double> &mode : modes)
+    std::vector<DofVector> modes = problem.unknowns().rigid_body_modes();
+    for (DofVector &mode : modes)
       for (const dealii::types::global_dof_index i : held)
         mode(i) = 0.;
     std::vector<double> near_null_space;
     near_null_space.reserve(modes.size() * problem.unknowns().n_dofs());
-    for (const dealii::Vector<double> &mode : modes)
+    for (const DofVector &mode : modes)
       near_null_space.insert(near_null_space.end(), mode.begin(), mode.end());
 
     Teuchos::ParameterList parameters;
@@ -43,8 +42,7 @@ namespace Debond
 
 
   void
-  Multigrid::vmult(dealii::Vector<double>       &dst,
-                   const dealii::Vector<double> &src) const
+  Multigrid::vmult(DofVector &dst, const DofVector &src) const
   {
     cycle.vmult(dst, src);
   }

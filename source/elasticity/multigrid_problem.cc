@@ -30,7 +30,7 @@ namespace Debond
     {}
 
     void
-    vmult(dealii::Vector<double> &dst, const dealii::Vector<double> &src) const
+    vmult(DofVector &dst, const DofVector &src) const
     {
       problem.multiply_majorant(dst, src);
     }
@@ -51,7 +51,7 @@ namespace Debond
     {}
 
     void
-    vmult(dealii::Vector<double> &dst, const dealii::Vector<double> &src) const
+    vmult(DofVector &dst, const DofVector &src) const
     {
       problem.multigrid.vmult(dst, src);
       problem.restrict_to_free(dst);
@@ -66,10 +66,10 @@ namespace Debond
   namespace
   {
     template <int dim>
-    dealii::Vector<double>
+    DofVector
     diagonal_of(const ElasticProblem<dim> &problem)
     {
-      dealii::Vector<double> result(problem.unknowns().n_dofs());
+      DofVector result(problem.unknowns().n_dofs());
       for (unsigned int i = 0; i < result.size(); ++i)
         result(i) = problem.diagonal_entry(i);
       return result;
@@ -82,7 +82,7 @@ namespace Debond
   MultigridProblem<dim>::MultigridProblem(const ElasticProblem<dim> &problem,
                                           const PiecewiseQuadratic  &nonsmooth,
                                           const Multigrid &preconditioner,
-                                          dealii::Vector<double>      &start,
+                                          DofVector       &start,
                                           const std::function<bool()> &go_on)
     : DisplacementProblem(problem.load(),
                           nonsmooth,
@@ -99,8 +99,7 @@ namespace Debond
 
   template <int dim>
   void
-  MultigridProblem<dim>::multiply(dealii::Vector<double>       &dst,
-                                  const dealii::Vector<double> &src) const
+  MultigridProblem<dim>::multiply(DofVector &dst, const DofVector &src) const
   {
     A.vmult(dst, src);
   }
@@ -118,10 +117,9 @@ namespace Debond
     Minimisation         result = {SolverStatus::quadratic_program, 0, 0};
 
     // Between active sets u may be outside K.
-    const dealii::Vector<double> previous_u = u;
+    const DofVector previous_u = u;
 
-    dealii::Vector<double> force(u.size()), free_force(u.size()),
-      correction(u.size());
+    DofVector       force(u.size()), free_force(u.size()), correction(u.size());
     Eigen::VectorXd excess(normals.size()), mu(normals.size());
     majorant_force(force);
     bool settled = false; // the active set
@@ -147,10 +145,8 @@ namespace Debond
             required :
             std::max(required, linear_reduction * free_force.l2_norm()));
         correction = 0.;
-        dealii::SolverCG<dealii::Vector<double>> cg(control);
-        cg.connect([this](const unsigned int,
-                          const double,
-                          const dealii::Vector<double> &) {
+        dealii::SolverCG<DofVector> cg(control);
+        cg.connect([this](const unsigned int, const double, const DofVector &) {
           return may_go_on() ? dealii::SolverControl::success :
                                dealii::SolverControl::failure;
         });

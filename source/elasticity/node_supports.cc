@@ -364,7 +364,7 @@ namespace Debond
 
 
   template <int dim>
-  const dealii::Vector<double> &
+  const DofVector &
   NodeSupports<dim>::displacements() const
   {
     return prescribed;

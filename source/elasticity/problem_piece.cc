@@ -254,8 +254,8 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  ProblemPiece<dim>::trace(const dealii::Vector<double> &v) const
+  DofVector
+  ProblemPiece<dim>::trace(const DofVector &v) const
   {
     return (*shared_trace)(v);
   }
@@ -351,8 +351,8 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  ProblemPiece<dim>::gather(const dealii::Vector<double> &v) const
+  DofVector
+  ProblemPiece<dim>::gather(const DofVector &v) const
   {
     std::vector<double> values;
     for (const auto &[begin, end] : shared_nodes.own_ranges())
@@ -360,7 +360,7 @@ namespace Debond
                     v.begin() + std::size_t(begin) * dim,
                     v.begin() + std::size_t(end) * dim);
     const std::vector<double> whole = gather(all_nodes, dim, values);
-    return dealii::Vector<double>(whole.begin(), whole.end());
+    return DofVector(whole.begin(), whole.end());
   }
 
 
@@ -379,8 +379,8 @@ namespace Debond
 
   template <int dim>
   double
-  ProblemPiece<dim>::elastic_functional(const ElasticFields<dim>     &fields,
-                                        const dealii::Vector<double> &u) const
+  ProblemPiece<dim>::elastic_functional(const ElasticFields<dim> &fields,
+                                        const DofVector          &u) const
   {
     auto terms         = fields.elastic_terms(u);
     terms.load         = gather(terms.load);

@@ -87,14 +87,14 @@ namespace Debond
 
 
 
-  dealii::Vector<double>
-  CondensedCorrection::solve(const dealii::Vector<double> &r) const
+  DofVector
+  CondensedCorrection::solve(const DofVector &r) const
   {
-    return condensed.solve(r, [this](const dealii::Vector<double> &g) {
-      dealii::Vector<double> s(g.size());
+    return condensed.solve(r, [this](const DofVector &g) {
+      DofVector s(g.size());
       if (free.empty())
         return s;
-      dealii::Vector<double> s_free(static_cast<unsigned int>(free.size()));
+      DofVector s_free(static_cast<unsigned int>(free.size()));
       for (unsigned int k = 0; k < free.size(); ++k)
         s_free(k) = g(free[k]);
       factor.solve(s_free);
@@ -124,10 +124,10 @@ namespace Debond
 
 
 
-  dealii::Vector<double>
-  MultigridCorrection::solve(const dealii::Vector<double> &r) const
+  DofVector
+  MultigridCorrection::solve(const DofVector &r) const
   {
-    dealii::Vector<double> result(r.size());
+    DofVector result(r.size());
     multigrid.vmult(result, r);
     for (unsigned int i = 0; i < normals.size(); ++i)
       if (active[i] != 0)
@@ -159,10 +159,10 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  LevelCorrection<dim>::solve(const dealii::Vector<double> &r) const
+  DofVector
+  LevelCorrection<dim>::solve(const DofVector &r) const
   {
-    dealii::Vector<double> result(r.size());
+    DofVector result(r.size());
     levels.cycle().vmult(result, r);
     return result;
   }
@@ -171,10 +171,10 @@ namespace Debond
 
   template <int dim>
   double
-  energy_rounding(const ElasticProblem<dim>    &problem,
-                  const PiecewiseQuadratic     &phi,
-                  const LoadFactors             factors,
-                  const dealii::Vector<double> &u)
+  energy_rounding(const ElasticProblem<dim> &problem,
+                  const PiecewiseQuadratic  &phi,
+                  const LoadFactors          factors,
+                  const DofVector           &u)
   {
     // <A u, u> = <f, u> - <xi, s> at a minimum: contact forces do no work.
     double terms = 0.;
@@ -187,7 +187,7 @@ namespace Debond
     if (unknowns.has_lifting())
       {
         // Of u itself, what is large in w is not.
-        dealii::Vector<double> x = unknowns.lifting(factors);
+        DofVector x = unknowns.lifting(factors);
         x += u;
         terms = 0.;
         for (unsigned int i = 0; i < x.size(); ++i)
@@ -199,8 +199,8 @@ namespace Debond
       }
     double energy = problem.load_at(factors) * u;
 
-    const dealii::Vector<double> s  = problem.unknowns().contact().trace(u);
-    const Eigen::VectorXd        xi = phi.subgradient(eigen_view(s));
+    const DofVector       s  = problem.unknowns().contact().trace(u);
+    const Eigen::VectorXd xi = phi.subgradient(eigen_view(s));
     for (unsigned int i = 0; i < s.size(); ++i)
       energy -= xi(i) * s(i);
     // Where nothing of the energy is known there is every reason to refine.
@@ -219,13 +219,13 @@ namespace Debond
     class ExtendedMajorant
     {
     public:
-      ExtendedMajorant(const ElasticProblem<dim>    &elastic_problem,
-                       const PiecewiseQuadratic     &nonsmooth,
-                       const LoadFactors             factors,
-                       CorrectionSolver             &correction_solver,
-                       const std::function<bool()>  &go_on,
-                       const dealii::Vector<double> &start,
-                       RefinementResult             &counts)
+      ExtendedMajorant(const ElasticProblem<dim>   &elastic_problem,
+                       const PiecewiseQuadratic    &nonsmooth,
+                       const LoadFactors            factors,
+                       CorrectionSolver            &correction_solver,
+                       const std::function<bool()> &go_on,
+                       const DofVector             &start,
+                       RefinementResult            &counts)
         : A(elastic_problem)
         , problem(elastic_problem)
         , phi(nonsmooth)
@@ -302,10 +302,10 @@ namespace Debond
         return false;
       }
 
-      dealii::Vector<double>
+      DofVector
       rounded() const
       {
-        dealii::Vector<double> point(static_cast<unsigned int>(u.size()));
+        DofVector point(static_cast<unsigned int>(u.size()));
         for (unsigned int i = 0; i < point.size(); ++i)
           point(i) = static_cast<double>(u(i));
         for (const auto normal : normals)
@@ -321,7 +321,7 @@ namespace Debond
 
     private:
       static ExtendedVector
-      to_extended(const dealii::Vector<double> &v)
+      to_extended(const DofVector &v)
       {
         return Eigen::Map<const Eigen::VectorXd>(v.begin(), v.size())
           .template cast<long double>();
@@ -361,8 +361,8 @@ namespace Debond
       precondition(const ExtendedVector &r) const
       {
         // The range of double is smaller.
-        const long double      scale = r.template lpNorm<Eigen::Infinity>();
-        dealii::Vector<double> rounded_r(static_cast<unsigned int>(r.size()));
+        const long double scale = r.template lpNorm<Eigen::Infinity>();
+        DofVector         rounded_r(static_cast<unsigned int>(r.size()));
         if (scale == 0.)
           return ExtendedVector::Zero(r.size());
         for (unsigned int i = 0; i < rounded_r.size(); ++i)
@@ -448,7 +448,7 @@ namespace Debond
          const LoadFactors            factors,
          CorrectionSolver            &solver,
          const std::function<bool()> &may_go_on,
-         dealii::Vector<double>      &u)
+         DofVector                   &u)
   {
     RefinementResult      result;
     ExtendedMajorant<dim> majorant(
@@ -471,7 +471,7 @@ namespace Debond
                       const LoadFactors            factors,
                       CorrectionSolver            &solver,
                       const std::function<bool()> &may_go_on,
-                      dealii::Vector<double>      &u)
+                      DofVector                   &u)
   {
     const double rounding = energy_rounding(problem, phi, factors, u);
     if (rounding <= largest_energy_rounding)
@@ -502,40 +502,40 @@ namespace Debond
   energy_rounding(const ElasticProblem<2> &,
                   const PiecewiseQuadratic &,
                   const LoadFactors,
-                  const dealii::Vector<double> &);
+                  const DofVector &);
   template double
   energy_rounding(const ElasticProblem<3> &,
                   const PiecewiseQuadratic &,
                   const LoadFactors,
-                  const dealii::Vector<double> &);
+                  const DofVector &);
   template Refined
   refine_where_needed(const ElasticProblem<2> &,
                       const PiecewiseQuadratic &,
                       const LoadFactors,
                       CorrectionSolver &,
                       const std::function<bool()> &,
-                      dealii::Vector<double> &);
+                      DofVector &);
   template Refined
   refine_where_needed(const ElasticProblem<3> &,
                       const PiecewiseQuadratic &,
                       const LoadFactors,
                       CorrectionSolver &,
                       const std::function<bool()> &,
-                      dealii::Vector<double> &);
+                      DofVector &);
   template RefinementResult
   refine(const ElasticProblem<2> &,
          const PiecewiseQuadratic &,
          const LoadFactors,
          CorrectionSolver &,
          const std::function<bool()> &,
-         dealii::Vector<double> &);
+         DofVector &);
   template RefinementResult
   refine(const ElasticProblem<3> &,
          const PiecewiseQuadratic &,
          const LoadFactors,
          CorrectionSolver &,
          const std::function<bool()> &,
-         dealii::Vector<double> &);
+         DofVector &);
   template class LevelCorrection<2>;
   template class LevelCorrection<3>;
 } // namespace Debond

@@ -74,7 +74,7 @@ namespace Debond
   void
   add_thermal_forces(const dealii::DoFHandler<dim> &dof_handler,
                      const std::vector<double>     &thermal_stresses,
-                     dealii::Vector<double>        &forces)
+                     DofVector                     &forces)
   {
     if (thermal_stresses.empty())
       return;
@@ -112,9 +112,9 @@ namespace Debond
   template void
   add_thermal_forces(const dealii::DoFHandler<2> &,
                      const std::vector<double> &,
-                     dealii::Vector<double> &);
+                     DofVector &);
   template void
   add_thermal_forces(const dealii::DoFHandler<3> &,
                      const std::vector<double> &,
-                     dealii::Vector<double> &);
+                     DofVector &);
 } // namespace Debond

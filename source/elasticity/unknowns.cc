@@ -207,10 +207,10 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
+  DofVector
   ElasticUnknowns<dim>::lifting(const LoadFactors factors) const
   {
-    dealii::Vector<double> G(n_dofs());
+    DofVector G(n_dofs());
     if (has_prescribed_displacements())
       G.equ(factors.displacements, node_supports.displacements());
     if (has_gap())
@@ -258,14 +258,14 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  ElasticUnknowns<dim>::cartesian_displacement(const dealii::Vector<double> &w,
+  DofVector
+  ElasticUnknowns<dim>::cartesian_displacement(const DofVector  &w,
                                                const LoadFactors factors) const
   {
-    dealii::Vector<double> u = w;
+    DofVector u = w;
     if (has_lifting())
       u += lifting(factors);
-    dealii::Vector<double> result = u;
+    DofVector result = u;
     for (const DisplacementFrame<dim> &frame : frames())
       for (unsigned int d = 0; d < dim; ++d)
         {
@@ -280,11 +280,11 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
+  DofVector
   ElasticUnknowns<dim>::nodal_values(
-    const dealii::Vector<double> &cartesian_displacement) const
+    const DofVector &cartesian_displacement) const
   {
-    dealii::Vector<double> result = cartesian_displacement;
+    DofVector result = cartesian_displacement;
     if (degree() == 2)
       for (const auto &cell : dofs.active_cell_iterators())
         {
@@ -305,10 +305,10 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  ElasticUnknowns<dim>::to_frames(const dealii::Vector<double> &cartesian) const
+  DofVector
+  ElasticUnknowns<dim>::to_frames(const DofVector &cartesian) const
   {
-    dealii::Vector<double> result = cartesian;
+    DofVector result = cartesian;
     for (const DisplacementFrame<dim> &frame : frames())
       for (unsigned int k = 0; k < dim; ++k)
         {
@@ -323,11 +323,11 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
+  DofVector
   ElasticUnknowns<dim>::from_cartesian(
-    const dealii::Vector<double> &cartesian_displacement) const
+    const DofVector &cartesian_displacement) const
   {
-    dealii::Vector<double> result = to_frames(cartesian_displacement);
+    DofVector result = to_frames(cartesian_displacement);
     if (has_lifting())
       result -= lifting();
     constraints().set_zero(result);
@@ -337,10 +337,10 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  ElasticUnknowns<dim>::in_frames(const dealii::Vector<double> &forces) const
+  DofVector
+  ElasticUnknowns<dim>::in_frames(const DofVector &forces) const
   {
-    dealii::Vector<double> result = forces;
+    DofVector result = forces;
     for (const DisplacementFrame<dim> &frame : frames())
       for (unsigned int k = 0; k < dim; ++k)
         {
@@ -355,11 +355,10 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  ElasticUnknowns<dim>::cartesian_forces(
-    const dealii::Vector<double> &forces) const
+  DofVector
+  ElasticUnknowns<dim>::cartesian_forces(const DofVector &forces) const
   {
-    dealii::Vector<double> result = forces;
+    DofVector result = forces;
     for (const DisplacementFrame<dim> &frame : frames())
       for (unsigned int d = 0; d < dim; ++d)
         {
@@ -374,12 +373,11 @@ namespace Debond
 
 
   template <int dim>
-  std::vector<dealii::Vector<double>>
+  std::vector<DofVector>
   ElasticUnknowns<dim>::rigid_body_modes() const
   {
-    constexpr unsigned int              n_rotations = dim * (dim - 1) / 2;
-    std::vector<dealii::Vector<double>> modes(
-      dim + n_rotations, dealii::Vector<double>(dofs.n_dofs()));
+    constexpr unsigned int n_rotations = dim * (dim - 1) / 2;
+    std::vector<DofVector> modes(dim + n_rotations, DofVector(dofs.n_dofs()));
     for (const auto &cell : dofs.active_cell_iterators())
       {
         const CellNodes<dim> nodes(cell);
@@ -398,7 +396,7 @@ namespace Debond
                 }
           }
       }
-    for (dealii::Vector<double> &mode : modes)
+    for (DofVector &mode : modes)
       {
         mode = to_frames(mode);
         constraints().set_zero(mode);

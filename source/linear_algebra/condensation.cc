@@ -224,7 +224,7 @@ namespace Debond
 
   Condensation::Condensation(
     const dealii::SparseMatrix<double>      &A,
-    const dealii::Vector<double>            &f,
+    const DofVector                         &f,
     const std::vector<unsigned int>         &kept,
     const std::function<bool(unsigned int)> &is_excluded,
     const OtherParts                        &others,
@@ -298,7 +298,7 @@ namespace Debond
 
 
 
-  const dealii::Vector<double> &
+  const DofVector &
   Condensation::load() const
   {
     return g;
@@ -368,7 +368,7 @@ namespace Debond
 
 
   std::vector<double>
-  Condensation::forward(const dealii::Vector<double> &f) const
+  Condensation::forward(const DofVector &f) const
   {
     std::vector<double> right_side(unknowns.size());
     for (unsigned int i = 0; i < unknowns.size(); ++i)
@@ -378,13 +378,13 @@ namespace Debond
 
 
 
-  dealii::Vector<double>
+  DofVector
   Condensation::condensed_load(const std::vector<double> &reduced) const
   {
     const unsigned int n_kept = static_cast<unsigned int>(L_ss.m());
     const unsigned int n_eliminated =
       static_cast<unsigned int>(unknowns.size()) - n_kept;
-    dealii::Vector<double> result(n_kept);
+    DofVector result(n_kept);
     for (unsigned int i = 0; i < n_kept; ++i)
       for (unsigned int j = 0; j <= i; ++j)
         result(i) += L_ss(i, j) * reduced[n_eliminated + j];
@@ -393,9 +393,9 @@ namespace Debond
 
 
 
-  dealii::Vector<double>
-  Condensation::backward(const std::vector<double>    &reduced,
-                         const dealii::Vector<double> &s) const
+  DofVector
+  Condensation::backward(const std::vector<double> &reduced,
+                         const DofVector           &s) const
   {
     const unsigned int n_eliminated =
       static_cast<unsigned int>(unknowns.size()) - s.size();
@@ -411,7 +411,7 @@ namespace Debond
       }
     x = factor->solve(CHOLMOD_Pt, factor->solve(CHOLMOD_Lt, x));
 
-    dealii::Vector<double> u(n);
+    DofVector u(n);
     for (unsigned int i = 0; i < n_eliminated; ++i)
       u(unknowns[i]) = x[i];
     for (unsigned int i = 0; i < s.size(); ++i)
@@ -421,19 +421,18 @@ namespace Debond
 
 
 
-  dealii::Vector<double>
-  Condensation::expand(const dealii::Vector<double> &s) const
+  DofVector
+  Condensation::expand(const DofVector &s) const
   {
     return backward(y, s);
   }
 
 
 
-  dealii::Vector<double>
+  DofVector
   Condensation::solve(
-    const dealii::Vector<double> &other_f,
-    const std::function<dealii::Vector<double>(const dealii::Vector<double> &)>
-      &kept_unknowns) const
+    const DofVector                                   &other_f,
+    const std::function<DofVector(const DofVector &)> &kept_unknowns) const
   {
     const std::vector<double> reduced = forward(other_f);
     return backward(reduced, kept_unknowns(condensed_load(reduced)));

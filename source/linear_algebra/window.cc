@@ -8,8 +8,8 @@
 namespace Debond
 {
   Window::Window(const dealii::SparseMatrix<double>      &A,
-                 const dealii::Vector<double>            &f,
-                 const dealii::Vector<double>            &u,
+                 const DofVector                         &f,
+                 const DofVector                         &u,
                  const unsigned int                       center,
                  const unsigned int                       n_rings,
                  const std::function<bool(unsigned int)> &is_excluded)
@@ -89,7 +89,7 @@ namespace Debond
 
 
 
-  const dealii::Vector<double> &
+  const DofVector &
   Window::load() const
   {
     return b;

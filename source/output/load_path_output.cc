@@ -58,9 +58,9 @@ namespace Debond
 
   template <int dim>
   void
-  LoadPathOutput<dim>::add(const LoadPathStep<dim>      &step,
-                           const dealii::Vector<double> &u,
-                           const Verification<dim>      &verification)
+  LoadPathOutput<dim>::add(const LoadPathStep<dim> &step,
+                           const DofVector         &u,
+                           const Verification<dim> &verification)
   {
     if (!error.empty() || !(output.path_body_vtu || output.path_contact_vtu))
       return;

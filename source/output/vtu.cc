@@ -48,7 +48,7 @@ namespace Debond
     template <int dim>
     VtuGrid
     body_grid(const ElasticProblem<dim>    &problem,
-              const dealii::Vector<double> &u,
+              const DofVector              &u,
               const LoadFactors             factors,
               const ErrorEstimate          *estimate,
               const std::vector<CellField> &more,
@@ -59,11 +59,10 @@ namespace Debond
       const auto  material = [&problem](const auto &cell) -> const Material  &{
         return problem.fields().material(cell);
       };
-      const unsigned int           degree = problem.unknowns().degree();
-      const dealii::Vector<double> displacement =
+      const unsigned int degree = problem.unknowns().degree();
+      const DofVector    displacement =
         problem.unknowns().cartesian_displacement(u, factors);
-      const dealii::Vector<double> at_nodes =
-        problem.unknowns().nodal_values(displacement);
+      const DofVector at_nodes = problem.unknowns().nodal_values(displacement);
 
       VtuGrid grid;
       grid.type      = cell_type<dim>(degree);
@@ -214,7 +213,7 @@ namespace Debond
   template <int dim>
   void
   write_body_vtu(const ElasticProblem<dim>    &problem,
-                 const dealii::Vector<double> &u,
+                 const DofVector              &u,
                  const std::string            &file_name,
                  const LoadFactors             factors,
                  const ErrorEstimate          *estimate,
@@ -230,11 +229,11 @@ namespace Debond
 
   template <int dim>
   std::vector<std::string>
-  write_body_pieces(const ElasticProblem<dim>    &problem,
-                    const ProblemPiece<dim>      &piece,
-                    const dealii::Vector<double> &u,
-                    const ErrorEstimate          *estimate,
-                    const std::string            &directory)
+  write_body_pieces(const ElasticProblem<dim> &problem,
+                    const ProblemPiece<dim>   &piece,
+                    const DofVector           &u,
+                    const ErrorEstimate       *estimate,
+                    const std::string         &directory)
   {
     const VtuGrid grid = body_grid<dim>(problem, u, 1., estimate, {}, &piece);
 
@@ -395,14 +394,14 @@ namespace Debond
 
   template void
   write_body_vtu(const ElasticProblem<2> &,
-                 const dealii::Vector<double> &,
+                 const DofVector &,
                  const std::string &,
                  const LoadFactors,
                  const ErrorEstimate *,
                  const std::vector<CellField> &);
   template void
   write_body_vtu(const ElasticProblem<3> &,
-                 const dealii::Vector<double> &,
+                 const DofVector &,
                  const std::string &,
                  const LoadFactors,
                  const ErrorEstimate *,
@@ -410,13 +409,13 @@ namespace Debond
   template std::vector<std::string>
   write_body_pieces(const ElasticProblem<2> &,
                     const ProblemPiece<2> &,
-                    const dealii::Vector<double> &,
+                    const DofVector &,
                     const ErrorEstimate *,
                     const std::string &);
   template std::vector<std::string>
   write_body_pieces(const ElasticProblem<3> &,
                     const ProblemPiece<3> &,
-                    const dealii::Vector<double> &,
+                    const DofVector &,
                     const ErrorEstimate *,
                     const std::string &);
   template void

@@ -10,9 +10,9 @@ namespace Debond
 {
   template <int dim>
   std::optional<DisplacementError>
-  error_of(const std::string            &exact_displacement,
-           const Scene<dim>             &scene,
-           const dealii::Vector<double> &u)
+  error_of(const std::string &exact_displacement,
+           const Scene<dim>  &scene,
+           const DofVector   &u)
   {
     if (exact_displacement.empty())
       return {};
@@ -183,13 +183,9 @@ namespace Debond
 
 
   template std::optional<DisplacementError>
-  error_of(const std::string &,
-           const Scene<2> &,
-           const dealii::Vector<double> &);
+  error_of(const std::string &, const Scene<2> &, const DofVector &);
   template std::optional<DisplacementError>
-  error_of(const std::string &,
-           const Scene<3> &,
-           const dealii::Vector<double> &);
+  error_of(const std::string &, const Scene<3> &, const DofVector &);
   template std::string
   verification_message(const double, const RunResult<2> &);
   template std::string

@@ -59,7 +59,7 @@ namespace Debond
     // Before the solve, so that nothing is lost if it is not finite somewhere.
     error_of(parameters.verification.exact_displacement,
              *scene,
-             dealii::Vector<double>(scene->problem().unknowns().n_dofs()));
+             DofVector(scene->problem().unknowns().n_dofs()));
     const std::unique_ptr<const Certifier> certifier =
       make_certifier(certificate, scene);
     RunCheckpoints checkpoints(parameters.checkpoints,
@@ -161,10 +161,10 @@ namespace Debond
         solver,
         parameters.verification.tolerance,
         *scene,
-        [&](const LoadPathStep<dim>      &step,
-            const dealii::Vector<double> &u,
-            const Verification<dim>      &verification,
-            const AdhesionIntegral<dim>  &bonds) {
+        [&](const LoadPathStep<dim>     &step,
+            const DofVector             &u,
+            const Verification<dim>     &verification,
+            const AdhesionIntegral<dim> &bonds) {
           result.verification = verification;
           path.bonds = std::make_shared<const AdhesionIntegral<dim>>(bonds);
           path_output->add(step, u, verification);

@@ -195,11 +195,11 @@ namespace Debond
 
     /// The displacement u of the scene, on the next mesh.
     template <int dim>
-    dealii::Vector<double>
-    on_next_mesh(const Scene<dim>             &scene,
-                 const dealii::Vector<double> &u,
-                 const BisectedBody<dim>      &body,
-                 const Scene<dim>             &next)
+    DofVector
+    on_next_mesh(const Scene<dim>        &scene,
+                 const DofVector         &u,
+                 const BisectedBody<dim> &body,
+                 const Scene<dim>        &next)
     {
       if (scene.problem().unknowns().degree() == 2)
         return divided_displacement(scene.problem(),
@@ -216,11 +216,11 @@ namespace Debond
 
     template <int dim>
     ErrorEstimate
-    estimate_of(const Scene<dim>             &scene,
-                const AdhesionIntegral<dim>  &bonds,
-                const dealii::Vector<double> &u,
-                const double                  functional,
-                const LoadFactors             factors)
+    estimate_of(const Scene<dim>            &scene,
+                const AdhesionIntegral<dim> &bonds,
+                const DofVector             &u,
+                const double                 functional,
+                const LoadFactors            factors)
     {
       return estimate_error(scene.problem(),
                             bonds,
@@ -255,8 +255,8 @@ namespace Debond
         solver,
         tolerance,
         scene,
-        [&](const LoadPathStep<dim>      &step,
-            const dealii::Vector<double> &u,
+        [&](const LoadPathStep<dim> &step,
+            const DofVector         &u,
             const Verification<dim> &,
             const AdhesionIntegral<dim> &bonds) {
           path.bonds = std::make_shared<const AdhesionIntegral<dim>>(bonds);
@@ -286,7 +286,7 @@ namespace Debond
       [[maybe_unused]] const double                             target,
       [[maybe_unused]] const BranchAndBoundParameters          &proof,
       [[maybe_unused]] const std::shared_ptr<const Scene<dim>> &scene,
-      [[maybe_unused]] const dealii::Vector<double>            &u,
+      [[maybe_unused]] const DofVector                         &u,
       [[maybe_unused]] const bool                               is_last,
       [[maybe_unused]] const std::function<bool()>             &may_go_on)
     {
@@ -403,15 +403,15 @@ namespace Debond
                    FollowedPath<dim>                                *path)
   {
     // Of all meshes.
-    const ProblemParameters                       problem = scene->parameters();
-    AdaptiveResult                                result;
-    const InterruptGuard                          guard;
-    dealii::Timer                                 timer;
-    std::shared_ptr<const Scene<dim>>             next;
-    std::shared_ptr<const Body<dim>>              finished, latest;
-    std::unique_ptr<const dealii::Vector<double>> start;
-    MeshGrowth growth(accuracy, dim, problem.degree);
-    Narrowest  narrowest;
+    const ProblemParameters           problem = scene->parameters();
+    AdaptiveResult                    result;
+    const InterruptGuard              guard;
+    dealii::Timer                     timer;
+    std::shared_ptr<const Scene<dim>> next;
+    std::shared_ptr<const Body<dim>>  finished, latest;
+    std::unique_ptr<const DofVector>  start;
+    MeshGrowth                        growth(accuracy, dim, problem.degree);
+    Narrowest                         narrowest;
     while (true)
       {
         const bool        is_first = !next;
@@ -565,7 +565,7 @@ namespace Debond
             interrupt(result.solve);
             return result;
           }
-        start = std::make_unique<const dealii::Vector<double>>(
+        start = std::make_unique<const DofVector>(
           on_next_mesh(*scene, result.solve.u, *body, *next));
         // Its memory is for the next mesh; the state of a path knows it.
         finished = latest;

@@ -62,9 +62,9 @@ namespace Debond
 
     /// Means of u_nu on sides, from a mesh at least as fine.
     Eigen::VectorXd
-    side_means(const EquilibriumProblem     &equilibrium,
-               const ContactBoundary<2>     &boundary,
-               const dealii::Vector<double> &trace)
+    side_means(const EquilibriumProblem &equilibrium,
+               const ContactBoundary<2> &boundary,
+               const DofVector          &trace)
     {
       const auto     &sides = equilibrium.contact_sides();
       Eigen::VectorXd means = Eigen::VectorXd::Zero(sides.size());
@@ -259,8 +259,8 @@ namespace Debond
       certificate.lower   = condensed->energy_at_zero() - 0.5 * x.dot(S * x);
       certificate.reserve = equilibrium.rounding_of(*condensed, x);
       certificate.upper   = equilibrium.elastic_functional(displacement);
-      const dealii::Vector<double> kept(x.begin(), x.end());
-      const dealii::Vector<double> unknowns = condensed->expand(kept);
+      const DofVector kept(x.begin(), x.end());
+      const DofVector unknowns = condensed->expand(kept);
       certificate.gaps = equilibrium.constitutive_gaps(displacement, unknowns);
       certificate.stresses = equilibrium.mean_stresses(unknowns);
       for (Eigen::Index i = 0; i < n; ++i)
@@ -340,7 +340,7 @@ namespace Debond
 
   Certificate
   Certifier::certify(const Scene<2>                 &solved,
-                     const dealii::Vector<double>   &u,
+                     const DofVector                &u,
                      const BranchAndBoundParameters &proof,
                      const std::function<bool()>    &may_go_on) const
   {

@@ -20,7 +20,7 @@ namespace Debond
 {
   namespace
   {
-    using Vector = dealii::Vector<double>;
+    using Vector = DofVector;
 
 
 

@@ -9,8 +9,7 @@
 namespace Debond
 {
   void
-  write_displacement(const dealii::Vector<double> &u,
-                     const std::string            &file_name)
+  write_displacement(const DofVector &u, const std::string &file_name)
   {
     write_atomically(file_name, [&u](std::ostream &out) {
       out.precision(std::numeric_limits<double>::max_digits10);
@@ -21,11 +20,11 @@ namespace Debond
 
 
 
-  dealii::Vector<double>
+  DofVector
   read_displacement(const std::string &file_name, const unsigned int n_dofs)
   {
-    std::ifstream          file(file_name);
-    dealii::Vector<double> u(n_dofs);
+    std::ifstream file(file_name);
+    DofVector     u(n_dofs);
     for (double &value : u)
       file >> value;
     if (!file || !(file >> std::ws).eof())

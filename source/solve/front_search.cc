@@ -75,7 +75,7 @@ namespace Debond
       FrontSearch(const Scene<dim>            &scene,
                   const MajoriseMinimise      &method,
                   const std::function<bool()> &may_go_on,
-                  dealii::Vector<double>      &u)
+                  DofVector                   &u)
         : scene(scene)
         , unknowns(scene.problem().unknowns())
         , method(method)
@@ -180,7 +180,7 @@ namespace Debond
         result.complete = result.complete && search.complete;
         if (improvements == 0)
           return;
-        const dealii::Vector<double> v = condensed.expand(from_eigen(part));
+        const DofVector v = condensed.expand(from_eigen(part));
         for (unsigned int k = 0; k < v.size(); ++k)
           u(window.unknowns()[k]) = v(k);
       }
@@ -189,7 +189,7 @@ namespace Debond
       const ElasticUnknowns<dim>          &unknowns;
       const MajoriseMinimise              &method;
       const std::function<bool()>         &may_go_on;
-      dealii::Vector<double>              &u;
+      DofVector                           &u;
       const NeighbourGraph                 graph;
       const SeparableBranches              lumped;
       std::map<unsigned int, unsigned int> node_of; ///< by the unknown s
@@ -204,7 +204,7 @@ namespace Debond
   search_fronts(const Scene<dim>            &scene,
                 const MajoriseMinimise      &method,
                 const std::function<bool()> &may_go_on,
-                dealii::Vector<double>      &u)
+                DofVector                   &u)
   {
     return FrontSearch<dim>(scene, method, may_go_on, u).search();
   }
@@ -215,10 +215,10 @@ namespace Debond
   search_fronts(const Scene<2> &,
                 const MajoriseMinimise &,
                 const std::function<bool()> &,
-                dealii::Vector<double> &);
+                DofVector &);
   template FrontSearchResult
   search_fronts(const Scene<3> &,
                 const MajoriseMinimise &,
                 const std::function<bool()> &,
-                dealii::Vector<double> &);
+                DofVector &);
 } // namespace Debond

@@ -111,9 +111,9 @@ namespace Debond
 
 
   double
-  condensed_functional(const Condensation           &condensed,
-                       const PiecewiseQuadratic     &adhesion,
-                       const dealii::Vector<double> &s)
+  condensed_functional(const Condensation       &condensed,
+                       const PiecewiseQuadratic &adhesion,
+                       const DofVector          &s)
   {
     Eigen::VectorXd point = eigen_view(s);
     return CondensedProblem(symmetric_view(condensed.schur_complement()),

@@ -25,7 +25,7 @@ namespace Debond
 {
   namespace
   {
-    using Vector = dealii::Vector<double>;
+    using Vector = DofVector;
 
 
 

@@ -176,8 +176,7 @@ namespace Debond
           if (!parameters.bonds_heal)
             bonds.break_for_good(path.point_before_kinks());
           scale_load(factors);
-          const dealii::Vector<double> u =
-            condensed.expand(from_eigen(path.point()));
+          const DofVector u = condensed.expand(from_eigen(path.point()));
           const Verification<dim> verification =
             Debond::verify(scene.problem(), bonds, scene.law(), u, factors);
           LoadPathStep<dim> step = {};
@@ -267,8 +266,8 @@ namespace Debond
       bool
       solve(const LoadFactors factors, const LoadPathObserver<dim> &observer)
       {
-        const dealii::Vector<double> last   = s;
-        const double                 factor = factors.loads;
+        const DofVector last   = s;
+        const double    factor = factors.loads;
 
         scale_load(factors);
         Eigen::VectorXd  point = eigen_view(s);
@@ -315,10 +314,10 @@ namespace Debond
             adhesion.break_for_good(eigen_view(s));
             scale_load(factors);
           }
-        const dealii::Vector<double> u            = displacement(factors, s);
-        const Verification<dim>      verification = verify(factors, u);
-        step.state  = state(factors, u, verification);
-        step.status = to_string(minimum.status);
+        const DofVector         u            = displacement(factors, s);
+        const Verification<dim> verification = verify(factors, u);
+        step.state                           = state(factors, u, verification);
+        step.status                          = to_string(minimum.status);
         kinds.push_back(kind_without_search(scene.law(), adhesion, s));
         if (!can_be_verified(minimum.status))
           step.message = result.message = location(step) + minimum.message;
@@ -348,13 +347,12 @@ namespace Debond
       }
 
       /// Of all unknowns, refined where rounding has a say in it.
-      dealii::Vector<double>
-      displacement(const LoadFactors             factors,
-                   const dealii::Vector<double> &point)
+      DofVector
+      displacement(const LoadFactors factors, const DofVector &point)
       {
-        dealii::Vector<double> u = condensed.expand(point);
-        CondensedCorrection    solver(condensed);
-        const std::string      note = refine_where_needed(
+        DofVector           u = condensed.expand(point);
+        CondensedCorrection solver(condensed);
+        const std::string   note = refine_where_needed(
                                    scene.problem(),
                                    adhesion,
                                    factors,
@@ -368,16 +366,16 @@ namespace Debond
       }
 
       Verification<dim>
-      verify(const LoadFactors factors, const dealii::Vector<double> &u) const
+      verify(const LoadFactors factors, const DofVector &u) const
       {
         return Debond::verify(
           scene.problem(), adhesion, scene.law(), u, factors);
       }
 
       LoadPathState<dim>
-      state(const LoadFactors             factors,
-            const dealii::Vector<double> &u,
-            const Verification<dim>      &verification) const
+      state(const LoadFactors        factors,
+            const DofVector         &u,
+            const Verification<dim> &verification) const
       {
         return load_path_state(scene.problem(),
                                adhesion,
@@ -436,9 +434,9 @@ namespace Debond
 
       /// See LoadPathStep::change_factor.
       std::optional<double>
-      change_factor(const LoadFactors             last_factors,
-                    const dealii::Vector<double> &last,
-                    const LoadFactors             factors)
+      change_factor(const LoadFactors last_factors,
+                    const DofVector  &last,
+                    const LoadFactors factors)
       {
         const BranchMinimum &branches  = scene.law().branches();
         bool                 has_slope = false;
@@ -496,10 +494,10 @@ namespace Debond
       /// The same where bonds are not at nodes. On the way to their first
       /// change they are linear springs.
       std::optional<double>
-      change_between_nodes(const bool                    is_proportional,
-                           const LoadFactors             last_factors,
-                           const dealii::Vector<double> &last,
-                           const LoadFactors             factors)
+      change_between_nodes(const bool        is_proportional,
+                           const LoadFactors last_factors,
+                           const DofVector  &last,
+                           const LoadFactors factors)
       {
         const Eigen::VectorXd start = eigen_view(last);
         // What is prescribed on the contact boundary changes the springs'
@@ -563,9 +561,9 @@ namespace Debond
 
       /// The same if displacements are proportional to the factor.
       std::optional<double>
-      proportional_change(const double                  last_factor,
-                          const dealii::Vector<double> &last,
-                          const double                  factor) const
+      proportional_change(const double     last_factor,
+                          const DofVector &last,
+                          const double     factor) const
       {
         const BranchMinimum &branches  = scene.law().branches();
         double               first     = factor / last_factor;
@@ -597,10 +595,10 @@ namespace Debond
       add_global(const double factor, const BranchPoint &point)
       {
         scale_load(factor);
-        const dealii::Vector<double> u = displacement(factor, point.s);
-        const Verification<dim>      verification = verify(factor, u);
-        LoadPathState<dim>           global   = state(factor, u, verification);
-        const bool                   verified = is_verified(verification);
+        const DofVector         u            = displacement(factor, point.s);
+        const Verification<dim> verification = verify(factor, u);
+        LoadPathState<dim>      global       = state(factor, u, verification);
+        const bool              verified     = is_verified(verification);
         if (verified)
           global.minimum = to_string(point.which.kind);
         for (unsigned int k = 0; k < steps.size(); ++k)
@@ -664,12 +662,12 @@ namespace Debond
       AdhesionIntegral<dim>           adhesion;
       Condensation                    condensed;
       const Eigen::MatrixXd           free_motions;
-      dealii::Vector<double>          s;
+      DofVector                       s;
       SolveResult                     result;
 
       /// By step.
-      std::vector<dealii::Vector<double>> points;
-      std::vector<MinimumKind>            kinds;
+      std::vector<DofVector>   points;
+      std::vector<MinimumKind> kinds;
     };
   } // namespace
 

@@ -11,7 +11,7 @@ namespace Debond
 {
   namespace
   {
-    using Vector = dealii::Vector<double>;
+    using Vector = DofVector;
 
 
 

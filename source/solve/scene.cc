@@ -20,10 +20,10 @@ namespace Debond
     /// Throws std::invalid_argument if the file has no displacement that the
     /// problem admits.
     template <int dim>
-    dealii::Vector<double>
+    DofVector
     read_start(const std::string &file_name, const ElasticProblem<dim> &problem)
     {
-      const dealii::Vector<double> u =
+      const DofVector u =
         read_displacement(file_name, problem.unknowns().n_dofs());
       bool admissible = true;
       for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
@@ -363,7 +363,7 @@ namespace Debond
 
 
   template <int dim>
-  const Objective<dealii::Vector<double>> &
+  const Objective<DofVector> &
   Scene<dim>::functional() const
   {
     return *energy;
@@ -372,7 +372,7 @@ namespace Debond
 
 
   template <int dim>
-  const dealii::Vector<double> &
+  const DofVector &
   Scene<dim>::start() const
   {
     return first_iterate;
@@ -427,8 +427,8 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Vector<double>
-  Scene<dim>::contact_trace(const dealii::Vector<double> &u) const
+  DofVector
+  Scene<dim>::contact_trace(const DofVector &u) const
   {
     return problem_piece ? problem_piece->trace(u) :
                            elastic_problem->unknowns().contact().trace(u);

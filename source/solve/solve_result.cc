@@ -44,7 +44,7 @@ namespace Debond
 
   template <int dim>
   double
-  functional_of(const Scene<dim> &scene, const dealii::Vector<double> &u)
+  functional_of(const Scene<dim> &scene, const DofVector &u)
   {
     const ElasticProblem<dim> &problem = scene.problem();
     return (scene.piece() == nullptr ?
@@ -56,7 +56,7 @@ namespace Debond
 
 
   template double
-  functional_of(const Scene<2> &, const dealii::Vector<double> &);
+  functional_of(const Scene<2> &, const DofVector &);
   template double
-  functional_of(const Scene<3> &, const dealii::Vector<double> &);
+  functional_of(const Scene<3> &, const DofVector &);
 } // namespace Debond

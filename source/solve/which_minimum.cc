@@ -380,7 +380,7 @@ namespace Debond
           const AdhesionIntegral<dim> &adhesion,
           const Condensation          &condensed,
           const std::function<bool()> &may_go_on,
-          dealii::Vector<double>      &s,
+          DofVector                   &s,
           WhichMinimum                &result)
     {
       const SeparableBranches lumped = lumped_bonds(law, adhesion);
@@ -453,9 +453,9 @@ namespace Debond
 
   template <int dim>
   MinimumKind
-  kind_without_search(const AdhesiveLaw            &law,
-                      const AdhesionIntegral<dim>  &adhesion,
-                      const dealii::Vector<double> &s)
+  kind_without_search(const AdhesiveLaw           &law,
+                      const AdhesionIntegral<dim> &adhesion,
+                      const DofVector             &s)
   {
     if (law.branches().size() == 1 || s.size() == 0)
       return MinimumKind::global;
@@ -479,7 +479,7 @@ namespace Debond
                       const AdhesionIntegral<dim> &adhesion,
                       const Condensation          &condensed,
                       const std::function<bool()> &may_go_on,
-                      dealii::Vector<double>      &s)
+                      DofVector                   &s)
   {
     WhichMinimum result;
     result.kind = kind_without_search(law, adhesion, s);
@@ -536,11 +536,11 @@ namespace Debond
   template MinimumKind
   kind_without_search(const AdhesiveLaw &,
                       const AdhesionIntegral<2> &,
-                      const dealii::Vector<double> &);
+                      const DofVector &);
   template MinimumKind
   kind_without_search(const AdhesiveLaw &,
                       const AdhesionIntegral<3> &,
-                      const dealii::Vector<double> &);
+                      const DofVector &);
   template WhichMinimum
   find_better_minimum(const SolverParameters &,
                       const ContactBoundary<2> &,
@@ -548,7 +548,7 @@ namespace Debond
                       const AdhesionIntegral<2> &,
                       const Condensation &,
                       const std::function<bool()> &,
-                      dealii::Vector<double> &);
+                      DofVector &);
   template WhichMinimum
   find_better_minimum(const SolverParameters &,
                       const ContactBoundary<3> &,
@@ -556,5 +556,5 @@ namespace Debond
                       const AdhesionIntegral<3> &,
                       const Condensation &,
                       const std::function<bool()> &,
-                      dealii::Vector<double> &);
+                      DofVector &);
 } // namespace Debond

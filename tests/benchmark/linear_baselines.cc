@@ -19,9 +19,9 @@ namespace
   /// |A u - f| / |f|.
   template <int dim>
   double
-  residual(const ElasticProblem<dim> &problem, const dealii::Vector<double> &u)
+  residual(const ElasticProblem<dim> &problem, const DofVector &u)
   {
-    dealii::Vector<double> r(u.size());
+    DofVector r(u.size());
     return problem.matrix().residual(r, u, problem.load()) /
            problem.load().l2_norm();
   }
@@ -52,7 +52,7 @@ namespace
     problem.assemble(material, loads);
     const LinearSolve direct =
       solve_by_cholesky(problem.matrix(), problem.load());
-    dealii::Vector<double> difference = direct.u;
+    DofVector difference = direct.u;
     difference -= iterative.u;
     std::cout << "  residuals below 5e-10: "
               << verdict(residual(problem, direct.u), 5e-10) << ", "

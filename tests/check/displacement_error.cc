@@ -63,8 +63,7 @@ namespace
     }
 
     void
-    vector_value(const dealii::Point<2> &p,
-                 dealii::Vector<double> &values) const override
+    vector_value(const dealii::Point<2> &p, DofVector &values) const override
     {
       for (unsigned int d = 0; d < 2; ++d)
         values(d) = value(p, d);
@@ -101,8 +100,7 @@ namespace
     {}
 
     void
-    vector_value(const dealii::Point<2> &p,
-                 dealii::Vector<double> &values) const override
+    vector_value(const dealii::Point<2> &p, DofVector &values) const override
     {
       values(0) = -mu * (g_2(p[0]) * g_1(p[1]) + g(p[0]) * g_3(p[1]));
       values(1) = mu * (g_3(p[0]) * g(p[1]) + g_1(p[0]) * g_2(p[1]));
@@ -129,19 +127,19 @@ namespace
     Loads<2> loads;
     loads.body_force = std::make_shared<BodyForce>(material.shear_modulus());
     problem.assemble(material, loads);
-    const Condensation           condensed(problem.matrix(),
+    const Condensation condensed(problem.matrix(),
                                  problem.load(),
                                  {},
                                  [&](const unsigned int i) {
                                    return problem.unknowns().is_constrained(i);
                                  });
-    const dealii::Vector<double> u = condensed.expand(dealii::Vector<double>());
+    const DofVector    u = condensed.expand(DofVector());
 
     const Displacement      exact;
     const DisplacementError error = displacement_error(problem, u, exact);
-    const auto              norm  = [&](const dealii::Vector<double>       &v,
+    const auto              norm  = [&](const DofVector                    &v,
                           const dealii::VectorTools::NormType kind) {
-      dealii::Vector<double> cells(mesh.n_active_cells());
+      DofVector cells(mesh.n_active_cells());
       dealii::VectorTools::integrate_difference(
         problem.unknowns().mapping(),
         problem.unknowns().dof_handler(),
@@ -152,8 +150,8 @@ namespace
         kind);
       return cells.l2_norm();
     };
-    const dealii::Vector<double> zero(u.size());
-    const double                 l2 = norm(u, dealii::VectorTools::L2_norm) /
+    const DofVector zero(u.size());
+    const double    l2 = norm(u, dealii::VectorTools::L2_norm) /
                       norm(zero, dealii::VectorTools::L2_norm);
     const double h1 = norm(u, dealii::VectorTools::H1_seminorm) /
                       norm(zero, dealii::VectorTools::H1_seminorm);

@@ -21,7 +21,7 @@ using namespace Debond;
 
 namespace
 {
-  using Vector = dealii::Vector<double>;
+  using Vector = DofVector;
 
 
 

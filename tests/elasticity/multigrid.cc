@@ -87,14 +87,16 @@ namespace
     const BodyProblem<dim> coarse(coarse_box, MatrixStorage::serial);
     const BodyProblem<dim> fine(fine_box, MatrixStorage::serial);
 
-    dealii::Vector<double> u(coarse.problem->unknowns().n_dofs());
+    DofVector u(coarse.problem->unknowns().n_dofs());
     for (unsigned int i = 0; i < u.size(); ++i)
       u(i) = coarse.problem->unknowns().is_constrained(i) ?
                0. :
                std::sin(1. + i * i);
-    const dealii::Vector<double> v = interpolate_displacement(
-      Box<dim>(coarse_box), *coarse.problem, u, *fine.problem);
-    const double energy = coarse.problem->matrix().matrix_norm_square(u);
+    const DofVector v      = interpolate_displacement(Box<dim>(coarse_box),
+                                                 *coarse.problem,
+                                                 u,
+                                                 *fine.problem);
+    const double    energy = coarse.problem->matrix().matrix_norm_square(u);
     check("  difference of the energies",
           std::abs(fine.problem->matrix().matrix_norm_square(v) / energy - 1.),
           1e-12);
@@ -103,9 +105,11 @@ namespace
             (coarse.problem->load().l2_norm() * u.l2_norm()),
           1e-11);
 
-    const dealii::Vector<double> back = interpolate_displacement(
-      Box<dim>(fine_box), *fine.problem, v, *coarse.problem);
-    dealii::Vector<double> difference = back;
+    const DofVector back       = interpolate_displacement(Box<dim>(fine_box),
+                                                    *fine.problem,
+                                                    v,
+                                                    *coarse.problem);
+    DofVector       difference = back;
     difference -= u;
     check("  difference at the vertices of both",
           difference.linfty_norm() / u.linfty_norm(),
@@ -125,9 +129,9 @@ namespace
     // Modes are in the null space except next to the supports: the elastic
     // energy of a mode that is cut off there is no larger than that of a
     // vector of its size, which would be about n^2 dim times larger.
-    const auto            &A = body.problem->trilinos_matrix();
-    dealii::Vector<double> product(body.problem->unknowns().n_dofs());
-    double                 rows_with_force = 0.;
+    const auto &A = body.problem->trilinos_matrix();
+    DofVector   product(body.problem->unknowns().n_dofs());
+    double      rows_with_force = 0.;
     for (const auto &mode : body.problem->unknowns().rigid_body_modes())
       {
         A.vmult(product, mode);
@@ -141,11 +145,13 @@ namespace
           rows_with_force,
           0.5);
 
-    const Multigrid        multigrid(*body.problem);
-    dealii::Vector<double> u(body.problem->unknowns().n_dofs());
-    dealii::SolverControl  control(60, 1e-10 * body.problem->load().l2_norm());
-    dealii::SolverCG<dealii::Vector<double>>(control).solve(
-      A, u, body.problem->load(), multigrid);
+    const Multigrid       multigrid(*body.problem);
+    DofVector             u(body.problem->unknowns().n_dofs());
+    dealii::SolverControl control(60, 1e-10 * body.problem->load().l2_norm());
+    dealii::SolverCG<DofVector>(control).solve(A,
+                                               u,
+                                               body.problem->load(),
+                                               multigrid);
     std::cout << "  conjugate gradients within 60 iterations: "
               << verdict(control.last_step(), 60) << '\n';
 
@@ -185,8 +191,8 @@ namespace
         check("  difference of the functionals",
               std::abs(iterated.functional / J - 1.),
               1e-11);
-        dealii::Vector<double> difference = condensed.expand(from_eigen(s));
-        const double           size       = difference.linfty_norm();
+        DofVector    difference = condensed.expand(from_eigen(s));
+        const double size       = difference.linfty_norm();
         difference -= u;
         check("  difference of the displacements",
               difference.linfty_norm() / size,
@@ -202,15 +208,15 @@ namespace
         bool ended = true, kept = true;
         for (const unsigned int allowed : {0, 1, 10, 30})
           {
-            u                            = 0.;
-            unsigned int           asked = 0;
-            dealii::Vector<double> last(u);
-            MultigridProblem<dim>  stopped(*body.problem,
+            u                           = 0.;
+            unsigned int          asked = 0;
+            DofVector             last(u);
+            MultigridProblem<dim> stopped(*body.problem,
                                           adhesion,
                                           multigrid,
                                           u,
                                           [&]() { return ++asked <= allowed; });
-            const auto             result = MajoriseMinimise({}).minimize(
+            const auto            result = MajoriseMinimise({}).minimize(
               stopped, [&](const MajoriseMinimiseIteration &) {
                 last = u;
                 return true;

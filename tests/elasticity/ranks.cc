@@ -24,7 +24,7 @@ using namespace Debond;
 
 namespace
 {
-  using Vector = dealii::Vector<double>;
+  using Vector = DofVector;
 
   const MPI_Comm communicator = MPI_COMM_WORLD;
 

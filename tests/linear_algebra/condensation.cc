@@ -77,8 +77,7 @@ namespace
     elimination.mmult(product, block(others, kept));
     S.add(-1., product);
 
-    dealii::Vector<double> f_others(others.size()), g(kept.size()),
-      interior(others.size());
+    DofVector f_others(others.size()), g(kept.size()), interior(others.size());
     for (unsigned int i = 0; i < others.size(); ++i)
       f_others(i) = problem.load()(others[i]);
     elimination.vmult(g, f_others);
@@ -89,7 +88,7 @@ namespace
 
     dealii::FullMatrix<double> S_error = condensed.schur_complement();
     S_error.add(-1., S);
-    dealii::Vector<double> g_error = condensed.load();
+    DofVector g_error = condensed.load();
     g_error -= g;
     std::cout << "  Schur complement to 1e-12: "
               << verdict(S_error.frobenius_norm() / S.frobenius_norm(), 1e-12)
@@ -101,7 +100,7 @@ namespace
 
     // For any s: equilibrium inside, S s - g on the contact nodes, the same
     // energy.
-    dealii::Vector<double> s(kept.size()), force(kept.size());
+    DofVector s(kept.size()), force(kept.size());
     for (unsigned int i = 0; i < s.size(); ++i)
       s(i) = -0.001 * (1 + i % 5);
     condensed.schur_complement().vmult(force, s);
@@ -109,8 +108,8 @@ namespace
       condensed.energy_at_zero() + 0.5 * (s * force) - condensed.load() * s;
     force -= condensed.load();
 
-    const dealii::Vector<double> u = condensed.expand(s);
-    dealii::Vector<double>       A_u(u.size());
+    const DofVector u = condensed.expand(s);
+    DofVector       A_u(u.size());
     problem.matrix().vmult(A_u, u);
     const double energy_of_u = 0.5 * (u * A_u) - problem.load() * u;
     A_u -= problem.load();
@@ -132,7 +131,7 @@ namespace
     condensed.schur_complement().vmult(force, s);
     const double scaled_energy =
       condensed.energy_at_zero() + 0.5 * (s * force) - condensed.load() * s;
-    const dealii::Vector<double> scaled_u = condensed.expand(s);
+    const DofVector scaled_u = condensed.expand(s);
     problem.matrix().vmult(A_u, scaled_u);
     const double energy_of_scaled_u =
       0.5 * (scaled_u * A_u) - factor * (problem.load() * scaled_u);
@@ -150,7 +149,7 @@ namespace
     // Without contact: A u = f.
     dealii::FullMatrix<double> S_inverse(S);
     S_inverse.gauss_jordan();
-    dealii::Vector<double> s_free(kept.size());
+    DofVector s_free(kept.size());
     S_inverse.vmult(s_free, g);
     const double energy_free =
       0.5 * (problem.load() * condensed.expand(s_free));
@@ -200,10 +199,9 @@ main()
   indefinite.set(1, 0, 2.);
   try
     {
-      Condensation(indefinite,
-                   dealii::Vector<double>(3),
-                   {2},
-                   [](const unsigned int) { return false; });
+      Condensation(indefinite, DofVector(3), {2}, [](const unsigned int) {
+        return false;
+      });
       std::cout << "accepted an indefinite matrix\n";
     }
   catch (const std::runtime_error &error)

@@ -16,7 +16,7 @@ using namespace Debond;
 
 namespace
 {
-  using Vector = dealii::Vector<double>;
+  using Vector = DofVector;
 
   constexpr unsigned int n = 12; ///< nodes in each direction
 

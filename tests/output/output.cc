@@ -273,12 +273,12 @@ namespace
     }
 
     /// The equilibrium with the normal displacement s at every contact node.
-    dealii::Vector<double>
+    DofVector
     equilibrium(const double s) const
     {
       dealii::FullMatrix<double> matrix;
       matrix.copy_from(problem->matrix());
-      dealii::Vector<double> rhs = problem->load();
+      DofVector rhs = problem->load();
       for (const auto dof : problem->unknowns().contact().normals())
         {
           for (unsigned int j = 0; j < matrix.n(); ++j)
@@ -287,7 +287,7 @@ namespace
           rhs(dof)         = s;
         }
       matrix.gauss_jordan();
-      dealii::Vector<double> u(rhs.size());
+      DofVector u(rhs.size());
       matrix.vmult(u, rhs);
       return u;
     }
@@ -304,11 +304,11 @@ namespace
     }
 
     Verification<dim>
-    check_law(const dealii::Vector<double> &u,
-              const std::string            &name,
-              const double                  a,
-              const double                  M,
-              const std::string            &rule = "nodal") const
+    check_law(const DofVector   &u,
+              const std::string &name,
+              const double       a,
+              const double       M,
+              const std::string &rule = "nodal") const
     {
       const AdhesiveLaw law(
         (name == "none" ? no_adhesion() : winkler_law(a, M)).branches);
@@ -484,7 +484,7 @@ namespace
     // ones.
     check("without adhesion, on the graph",
           pressed.check_law(at_zero, "none", 0., 1.).law_violation == 0.);
-    const dealii::Vector<double> penetrating = pressed.equilibrium(1e-5);
+    const DofVector penetrating = pressed.equilibrium(1e-5);
     const auto off_by_little = pressed.check_law(penetrating, "none", 0., 1.);
     check("without adhesion, off the graph",
           near(pulled.check_law(u, "none", 0., 1.).law_violation, 1.) &&
@@ -505,10 +505,10 @@ namespace
     const ElasticProblem<dim>  &problem = *body.problem;
     const ContactBoundary<dim> &boundary =
       problem.unknowns().contact().boundary();
-    const double                 M      = 1e-3;
-    const double                 a      = young_modulus / 10.;
-    const dealii::Vector<double> u      = body.equilibrium(-M / 2.);
-    const Verification<dim>      result = body.check_law(u, "winkler", a, M);
+    const double            M      = 1e-3;
+    const double            a      = young_modulus / 10.;
+    const DofVector         u      = body.equilibrium(-M / 2.);
+    const Verification<dim> result = body.check_law(u, "winkler", a, M);
 
     // The top has a length (area) of 2.
     dealii::Tensor<1, dim> applied;
@@ -523,7 +523,7 @@ namespace
           (result.clamped_reaction + result.contact_reaction + applied).norm() <
               1e-12 * applied.norm() &&
             result.force_imbalance < 1e-13);
-    const dealii::Vector<double> reactions_at_vertices =
+    const DofVector reactions_at_vertices =
       problem.unknowns().cartesian_forces(problem.fields().residual(u));
     dealii::Tensor<1, dim> at_clamped_ends;
     std::vector<bool>      visited(problem.unknowns().n_dofs(), false);
@@ -564,16 +564,16 @@ namespace
       supported[i] = supported[i] || problem.unknowns().is_constrained(i);
     const unsigned int dof =
       std::find(supported.begin(), supported.end(), false) - supported.begin();
-    dealii::Vector<double> wrong = u;
+    DofVector wrong = u;
     wrong(dof) += 1e-2 * M;
     const Verification<dim> off = body.check_law(wrong, "winkler", a, M);
 
-    dealii::Vector<double> forces(problem.unknowns().n_dofs());
+    DofVector forces(problem.unknowns().n_dofs());
     problem.matrix().vmult(forces, wrong);
     forces -= problem.load();
-    const dealii::Vector<double> reactions = problem.fields().residual(wrong);
-    double                       largest_free     = 0.;
-    double                       largest_reaction = 0.;
+    const DofVector reactions        = problem.fields().residual(wrong);
+    double          largest_free     = 0.;
+    double          largest_reaction = 0.;
     for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
       if (supported[i])
         largest_reaction = std::max(largest_reaction, std::abs(reactions(i)));
@@ -676,8 +676,8 @@ namespace
     const Material material = {69., 0.3, Material::Hypothesis::plane_strain};
     problem.assemble(material, {});
 
-    const double           e = 1e-2, g = -3e-2;
-    dealii::Vector<double> u(problem.unknowns().n_dofs());
+    const double e = 1e-2, g = -3e-2;
+    DofVector    u(problem.unknowns().n_dofs());
     for (const auto &cell :
          problem.unknowns().dof_handler().active_cell_iterators())
       for (const unsigned int v : cell->vertex_indices())

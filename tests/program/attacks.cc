@@ -496,11 +496,10 @@ namespace
               const std::string         &directory,
               const OwnCheck::Body<dim> &body)
   {
-    const Scene<dim>             scene(parameters);
-    const dealii::Vector<double> u =
-      scene.problem().unknowns().cartesian_displacement(
-        read_displacement(directory + "/displacement.txt",
-                          scene.problem().unknowns().n_dofs()));
+    const Scene<dim> scene(parameters);
+    const DofVector  u = scene.problem().unknowns().cartesian_displacement(
+      read_displacement(directory + "/displacement.txt",
+                        scene.problem().unknowns().n_dofs()));
     VectorX own = VectorX::Zero(body.n_dofs());
     for (const auto &cell :
          scene.problem().unknowns().dof_handler().active_cell_iterators())

@@ -20,7 +20,7 @@ using namespace Debond;
 
 namespace
 {
-  dealii::Vector<double>
+  DofVector
   solution(const Values &values)
   {
     const Parameters parameters = parameters_of(values);
@@ -56,13 +56,13 @@ namespace
     unsigned int n_certain = 0, n_wrong = 0;
     for (const std::string &load : loads)
       {
-        const dealii::Vector<double> u = solution(scene_values + Values{load});
-        const Certificate            certificate =
+        const DofVector   u = solution(scene_values + Values{load});
+        const Certificate certificate =
           certifier.certify(*scene, u, {}, []() { return true; });
         is_below = is_below && certificate.lower < certificate.upper;
 
-        std::map<double, double>     displacements;
-        const dealii::Vector<double> s = contact.trace(u);
+        std::map<double, double> displacements;
+        const DofVector          s = contact.trace(u);
         for (unsigned int i = 0; i < s.size(); ++i)
           displacements[contact.boundary().nodes[i].position[0]] = s(i);
         for (const CertifiedSide &side : certificate.sides)

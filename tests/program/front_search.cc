@@ -19,7 +19,7 @@ using namespace Debond;
 
 namespace
 {
-  using Vector = dealii::Vector<double>;
+  using Vector = DofVector;
 
 
 

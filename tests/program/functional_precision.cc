@@ -84,7 +84,7 @@ namespace
     Real value;
     Real value_at_u; ///< J(u) of the result, evaluated in extended precision
 
-    dealii::Vector<double> rounded; ///< the minimiser, rounded to double
+    DofVector rounded; ///< the minimiser, rounded to double
   };
 
 
@@ -92,9 +92,9 @@ namespace
   /// The work of the exact load on u: q in the left half of the top, -q/2 in
   /// the right one. The jump is at a vertex.
   Real
-  exact_work(const ElasticProblem<2>      &problem,
-             const double                  q,
-             const dealii::Vector<double> &u)
+  exact_work(const ElasticProblem<2> &problem,
+             const double             q,
+             const DofVector         &u)
   {
     Real work = 0;
     for (const auto &cell :
@@ -116,9 +116,9 @@ namespace
 
   /// For a contact boundary "bottom" with the normal (0, -1).
   ExtendedMinimum
-  extended_minimum(const Parameters             &parameters,
-                   const Scene<2>               &scene,
-                   const dealii::Vector<double> &u)
+  extended_minimum(const Parameters &parameters,
+                   const Scene<2>   &scene,
+                   const DofVector  &u)
   {
     const ElasticProblem<2> &problem = scene.problem();
     const Real               E  = parameters.materials.everywhere.young_modulus;
@@ -221,7 +221,7 @@ namespace
     A.setFromTriplets(entries.begin(), entries.end());
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<Real>> factor(A);
     const VectorX                                          x = factor.solve(f);
-    dealii::Vector<double>                                 rounded(n);
+    DofVector                                              rounded(n);
     for (unsigned int i = 0; i < n; ++i)
       if (place[i] >= 0)
         rounded(i) = x(place[i]);
@@ -231,7 +231,7 @@ namespace
 
 
   double
-  law_violation(const Scene<2> &scene, const dealii::Vector<double> &u)
+  law_violation(const Scene<2> &scene, const DofVector &u)
   {
     return verify(scene.problem(), scene.adhesion(), scene.law(), u)
       .law_violation;

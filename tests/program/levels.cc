@@ -86,12 +86,12 @@ namespace
     dealii::Timer    timer;
     {
       const auto levels = ElasticLevels<dim>::make(scene.body(), problem);
-      dealii::Vector<double> u(problem.unknowns().n_dofs());
-      dealii::SolverControl  control(1000, 1e-10 * problem.load().l2_norm());
-      dealii::SolverCG<dealii::Vector<double>>(control).solve(problem.matrix(),
-                                                              u,
-                                                              problem.load(),
-                                                              levels->cycle());
+      DofVector  u(problem.unknowns().n_dofs());
+      dealii::SolverControl control(1000, 1e-10 * problem.load().l2_norm());
+      dealii::SolverCG<DofVector>(control).solve(problem.matrix(),
+                                                 u,
+                                                 problem.load(),
+                                                 levels->cycle());
       outcome.linear_cycles = control.last_step();
       if (print_figures)
         std::cout << "    " << levels->n_levels() << " levels, "

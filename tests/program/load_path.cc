@@ -591,9 +591,9 @@ namespace
     const Parameters single = parameters_of(benchmark({"Solver/Search=none"}));
     const MethodChoice choice =
       choose_method(single, single.solver, single.accuracy);
-    const Scene<2>         scene(single, matrix_storage(choice));
-    const SolveResult      result     = solve(choice, single.solver, scene);
-    dealii::Vector<double> difference = result.u;
+    const Scene<2>    scene(single, matrix_storage(choice));
+    const SolveResult result     = solve(choice, single.solver, scene);
+    DofVector         difference = result.u;
     difference -= path.result.u;
     check("  the same number of iterations as a single run",
           result.iterations == path.result.iterations);

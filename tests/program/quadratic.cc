@@ -51,10 +51,9 @@ namespace
     double
     penetration() const
     {
-      const auto                  &unknowns = scene.problem().unknowns();
-      const dealii::Vector<double> displacement =
-        unknowns.cartesian_displacement(result.u);
-      double largest = -1e300;
+      const auto     &unknowns     = scene.problem().unknowns();
+      const DofVector displacement = unknowns.cartesian_displacement(result.u);
+      double          largest      = -1e300;
       for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
         for (const unsigned int f : cell->face_indices())
           {
@@ -171,16 +170,16 @@ namespace
   void
   check_subgradient()
   {
-    const Solved<2>        solved(with(quadratic, {"Mesh/Cells=10, 1"}));
-    const auto            &J = solved.scene.functional();
-    dealii::Vector<double> u = solved.result.u, d(u.size()), eta(u.size());
+    const Solved<2> solved(with(quadratic, {"Mesh/Cells=10, 1"}));
+    const auto     &J = solved.scene.functional();
+    DofVector       u = solved.result.u, d(u.size()), eta(u.size());
     for (unsigned int i = 0; i < u.size(); ++i)
       if (!solved.scene.problem().unknowns().is_constrained(i))
         d(i) = 1e-4 * (std::fmod(0.618 * i, 1.) - 0.5);
     u.add(0.3, d);
     J.subgradient(u, eta);
-    const double           h     = 1e-4;
-    dealii::Vector<double> right = u, left = u;
+    const double h     = 1e-4;
+    DofVector    right = u, left = u;
     right.add(h, d);
     left.add(-h, d);
     check("subgradient of J against differences",

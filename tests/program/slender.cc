@@ -118,10 +118,10 @@ namespace
   /// The minimiser with the contact nodes and broken bonds of u, for nodal
   /// quadrature.
   template <int dim>
-  dealii::Vector<double>
-  extended_minimiser(const Parameters             &parameters,
-                     const Scene<dim>             &scene,
-                     const dealii::Vector<double> &u)
+  DofVector
+  extended_minimiser(const Parameters &parameters,
+                     const Scene<dim> &scene,
+                     const DofVector  &u)
   {
     const ElasticProblem<dim>      &problem  = scene.problem();
     const std::vector<Element<dim>> elements = make_elements(problem);
@@ -217,7 +217,7 @@ namespace
         x += factor.solve(r);
       }
 
-    dealii::Vector<double> rounded(n);
+    DofVector rounded(n);
     for (unsigned int i = 0; i < n; ++i)
       if (place[i] >= 0)
         rounded(i) = static_cast<double>(x(place[i]));
@@ -242,14 +242,13 @@ namespace
     const Scene<dim>  scene(parameters, matrix_storage(choice));
     const SolveResult result = solve(choice, parameters.solver, scene);
 
-    const dealii::Vector<double> reference =
-      extended_minimiser(parameters, scene, result.u);
-    const auto verified = [&](const dealii::Vector<double> &u) {
+    const DofVector reference = extended_minimiser(parameters, scene, result.u);
+    const auto      verified  = [&](const DofVector &u) {
       return verify(scene.problem(), scene.adhesion(), scene.law(), u);
     };
-    const Verification<dim> ours      = verified(result.u),
-                            best      = verified(reference);
-    dealii::Vector<double> difference = result.u;
+    const Verification<dim> ours = verified(result.u),
+                            best = verified(reference);
+    DofVector difference         = result.u;
     difference -= reference;
     const double error =
       difference.linfty_norm() / std::max(reference.linfty_norm(), 1e-300);

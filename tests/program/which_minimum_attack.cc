@@ -282,9 +282,8 @@ namespace
 
     const Condensation condensed =
       condense_to_contact(scene.problem(), scene.adhesion());
-    const dealii::Vector<double> s =
-      scene.problem().unknowns().contact().trace(result.u);
-    const unsigned int      n = s.size();
+    const DofVector    s = scene.problem().unknowns().contact().trace(result.u);
+    const unsigned int n = s.size();
     const SeparableBranches bonds =
       lumped_branches(scene.adhesion(), n, scene.law().branches());
     const double found =
@@ -395,7 +394,7 @@ namespace
         const Scene<2>     scene(parameters, MatrixStorage::serial);
         const Condensation condensed =
           condense_to_contact(scene.problem(), scene.adhesion());
-        dealii::Vector<double> s(condensed.load().size());
+        DofVector s(condensed.load().size());
         try
           {
             const WhichMinimum result = find_better_minimum(

@@ -3,16 +3,16 @@
 #define debond_benchmark_linear_baselines_h
 
 #include <deal.II/lac/sparse_matrix.h>
-#include <deal.II/lac/vector.h>
 
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 namespace Debond
 {
   /// One solve of A u = f, the elastic body without any contact.
   struct LinearSolve
   {
-    dealii::Vector<double> u;
+    DofVector u;
 
     /// Of an iterative method.
     unsigned int iterations = 0;
@@ -20,8 +20,7 @@ namespace Debond
 
   /// By one supernodal Cholesky factorisation (CHOLMOD) with the AMD ordering.
   LinearSolve
-  solve_by_cholesky(const dealii::SparseMatrix<double> &A,
-                    const dealii::Vector<double>       &f);
+  solve_by_cholesky(const dealii::SparseMatrix<double> &A, const DofVector &f);
 
   /// By conjugate gradients down to 1e-10 of the first residual, preconditioned
   /// by Multigrid. The problem's matrix has to be Trilinos'.

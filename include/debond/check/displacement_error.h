@@ -3,9 +3,9 @@
 #define debond_check_displacement_error_h
 
 #include <deal.II/base/function.h>
-#include <deal.II/lac/vector.h>
 
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 namespace Debond
 {
@@ -26,9 +26,9 @@ namespace Debond
   /// naming the point where @p exact is not finite.
   template <int dim>
   DisplacementError
-  displacement_error(const ElasticProblem<dim>    &problem,
-                     const dealii::Vector<double> &u,
-                     const dealii::Function<dim>  &exact);
+  displacement_error(const ElasticProblem<dim>   &problem,
+                     const DofVector             &u,
+                     const dealii::Function<dim> &exact);
 } // namespace Debond
 
 #endif

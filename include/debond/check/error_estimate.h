@@ -2,11 +2,10 @@
 #ifndef debond_check_error_estimate_h
 #define debond_check_error_estimate_h
 
-#include <deal.II/lac/vector.h>
-
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/problem_piece.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 #include <string>
 #include <vector>
@@ -73,16 +72,16 @@ namespace Debond
    */
   template <int dim>
   ErrorEstimate
-  estimate_error(const ElasticProblem<dim>    &problem,
-                 const AdhesionIntegral<dim>  &adhesion,
-                 const BoundaryConditions     &conditions,
-                 const Supports<dim>          &supports,
-                 const Loads<dim>             &loads,
-                 const dealii::Vector<double> &u,
-                 const double                  functional,
-                 const LoadFactors             factors    = 1.,
-                 const Loads<dim>             *dead_loads = nullptr,
-                 const ProblemPiece<dim>      *piece      = nullptr);
+  estimate_error(const ElasticProblem<dim>   &problem,
+                 const AdhesionIntegral<dim> &adhesion,
+                 const BoundaryConditions    &conditions,
+                 const Supports<dim>         &supports,
+                 const Loads<dim>            &loads,
+                 const DofVector             &u,
+                 const double                 functional,
+                 const LoadFactors            factors    = 1.,
+                 const Loads<dim>            *dead_loads = nullptr,
+                 const ProblemPiece<dim>     *piece      = nullptr);
 } // namespace Debond
 
 #endif

@@ -2,9 +2,8 @@
 #ifndef debond_check_largest_values_h
 #define debond_check_largest_values_h
 
-#include <deal.II/lac/vector.h>
-
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 namespace Debond
 {
@@ -20,9 +19,9 @@ namespace Debond
   /// corners grows with refinement.
   template <int dim>
   LargestValues
-  largest_values(const ElasticProblem<dim>    &problem,
-                 const dealii::Vector<double> &u,
-                 const LoadFactors             factors = 1.);
+  largest_values(const ElasticProblem<dim> &problem,
+                 const DofVector           &u,
+                 const LoadFactors          factors = 1.);
 } // namespace Debond
 
 #endif

@@ -4,6 +4,7 @@
 
 #include <debond/check/probes.h>
 #include <debond/check/verification.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 #include <string>
 #include <utility>
@@ -66,13 +67,13 @@ namespace Debond
   /// @p probes.
   template <int dim>
   LoadPathState<dim>
-  load_path_state(const ElasticProblem<dim>    &problem,
-                  const AdhesionIntegral<dim>  &adhesion,
-                  const Probes<dim>            &means,
-                  const Probes<dim>            &probes,
-                  const LoadFactors             factors,
-                  const dealii::Vector<double> &u,
-                  const Verification<dim>      &verification);
+  load_path_state(const ElasticProblem<dim>   &problem,
+                  const AdhesionIntegral<dim> &adhesion,
+                  const Probes<dim>           &means,
+                  const Probes<dim>           &probes,
+                  const LoadFactors            factors,
+                  const DofVector             &u,
+                  const Verification<dim>     &verification);
 } // namespace Debond
 
 #endif

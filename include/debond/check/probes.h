@@ -4,6 +4,7 @@
 
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/problem_piece.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/body.h>
 
 #include <map>
@@ -73,10 +74,10 @@ namespace Debond
     /// Ranks that share a problem, of which @p piece is this one's, call it
     /// together, and the first one has the values; they cannot ask for points.
     ProbeValues<dim>
-    values(const ElasticProblem<dim>    &problem,
-           const dealii::Vector<double> &u,
-           const LoadFactors             factors = 1.,
-           const ProblemPiece<dim>      *piece   = nullptr) const;
+    values(const ElasticProblem<dim> &problem,
+           const DofVector           &u,
+           const LoadFactors          factors = 1.,
+           const ProblemPiece<dim>   *piece   = nullptr) const;
 
   private:
     /// Of nodes, by their first unknowns, which all the others follow.

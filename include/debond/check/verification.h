@@ -3,11 +3,11 @@
 #define debond_check_verification_h
 
 #include <deal.II/base/tensor.h>
-#include <deal.II/lac/vector.h>
 
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/problem_piece.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 #include <map>
 #include <string>
@@ -164,13 +164,13 @@ namespace Debond
   /// the first one has the result, with the sums of one rank.
   template <int dim>
   Verification<dim>
-  verify(const ElasticProblem<dim>    &problem,
-         const AdhesionIntegral<dim>  &adhesion,
-         const AdhesiveLaw            &law,
-         const dealii::Vector<double> &u,
-         const LoadFactors             factors   = 1.,
-         const double                  tolerance = 1e-6,
-         const ProblemPiece<dim>      *piece     = nullptr);
+  verify(const ElasticProblem<dim>   &problem,
+         const AdhesionIntegral<dim> &adhesion,
+         const AdhesiveLaw           &law,
+         const DofVector             &u,
+         const LoadFactors            factors   = 1.,
+         const double                 tolerance = 1e-6,
+         const ProblemPiece<dim>     *piece     = nullptr);
 } // namespace Debond
 
 #endif

@@ -3,9 +3,9 @@
 #define debond_contact_contact_space_h
 
 #include <deal.II/base/types.h>
-#include <deal.II/lac/vector.h>
 
 #include <debond/contact/boundary.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/linear_algebra/views.h>
 #include <debond/optimization/objective.h>
 
@@ -43,12 +43,12 @@ namespace Debond
     normals() const;
 
     /// s = N'u.
-    dealii::Vector<double>
-    trace(const dealii::Vector<double> &u) const;
+    DofVector
+    trace(const DofVector &u) const;
 
     /// u += N s.
     void
-    add_normal(const VectorView &s, dealii::Vector<double> &u) const;
+    add_normal(const VectorView &s, DofVector &u) const;
 
     /// The unilateral constraint s <= 0 as bounds on degrees of freedom.
     UpperBounds
@@ -56,10 +56,10 @@ namespace Debond
 
     /// Whether u satisfies them.
     bool
-    is_admissible(const dealii::Vector<double> &u) const;
+    is_admissible(const DofVector &u) const;
 
     /// s of the body at rest, where u = 0: minus the gaps.
-    dealii::Vector<double>
+    DofVector
     at_rest() const;
 
     /// Whether bodies at rest have gaps.

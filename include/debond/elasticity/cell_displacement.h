@@ -2,10 +2,9 @@
 #ifndef debond_elasticity_cell_displacement_h
 #define debond_elasticity_cell_displacement_h
 
-#include <deal.II/lac/vector.h>
-
 #include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 #include <vector>
 
@@ -67,11 +66,9 @@ namespace Debond
 
   /// That of a problem, in the order of the active cells.
   inline std::vector<CellDisplacement>
-  cell_displacements(const ElasticProblem<2>      &problem,
-                     const dealii::Vector<double> &u)
+  cell_displacements(const ElasticProblem<2> &problem, const DofVector &u)
   {
-    const dealii::Vector<double> cartesian =
-      problem.unknowns().cartesian_displacement(u);
+    const DofVector cartesian = problem.unknowns().cartesian_displacement(u);
     std::vector<CellDisplacement> result;
     for (const auto &cell :
          problem.unknowns().dof_handler().active_cell_iterators())

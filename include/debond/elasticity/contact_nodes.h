@@ -2,12 +2,11 @@
 #ifndef debond_elasticity_contact_nodes_h
 #define debond_elasticity_contact_nodes_h
 
-#include <deal.II/lac/vector.h>
-
 #include <debond/contact/contact_space.h>
 #include <debond/elasticity/boundary_conditions.h>
 #include <debond/elasticity/boundary_face.h>
 #include <debond/elasticity/node_supports.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 #include <vector>
 
@@ -29,7 +28,7 @@ namespace Debond
                      const Supports<dim>                  &supports,
                      const double                          diameter,
                      NodeSupports<dim>                    &node_supports,
-                     dealii::Vector<double>               &gap);
+                     DofVector                            &gap);
 } // namespace Debond
 
 #endif

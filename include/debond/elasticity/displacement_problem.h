@@ -2,8 +2,7 @@
 #ifndef debond_elasticity_displacement_problem_h
 #define debond_elasticity_displacement_problem_h
 
-#include <deal.II/lac/vector.h>
-
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/majorise/majorant_problem.h>
 #include <debond/optimization/piecewise_quadratic.h>
@@ -34,56 +33,53 @@ namespace Debond
 
   protected:
     /// Keeps references; @p start is the current point, @p diagonal that of A.
-    DisplacementProblem(const dealii::Vector<double>    &load,
+    DisplacementProblem(const DofVector                 &load,
                         const PiecewiseQuadratic        &nonsmooth,
                         const std::vector<unsigned int> &normals,
-                        const dealii::Vector<double>    &diagonal,
-                        dealii::Vector<double>          &start,
+                        const DofVector                 &diagonal,
+                        DofVector                       &start,
                         const std::function<bool()>     &go_on);
 
     /// dst = A src.
     virtual void
-    multiply(dealii::Vector<double>       &dst,
-             const dealii::Vector<double> &src) const = 0;
+    multiply(DofVector &dst, const DofVector &src) const = 0;
 
     /// The entries of all normal displacements, and <a, b>: what ranks that
     /// share the unknowns have to do together.
-    virtual dealii::Vector<double>
-    trace(const dealii::Vector<double> &v) const;
+    virtual DofVector
+    trace(const DofVector &v) const;
 
     virtual double
-    product(const dealii::Vector<double> &a,
-            const dealii::Vector<double> &b) const;
+    product(const DofVector &a, const DofVector &b) const;
 
     double
-    norm(const dealii::Vector<double> &v) const;
+    norm(const DofVector &v) const;
 
     /// v += the entries of all normal displacements, as far as they are here.
     template <typename Entries>
     void
-    add_normal(const Entries &s, dealii::Vector<double> &v) const;
+    add_normal(const Entries &s, DofVector &v) const;
 
     /// Minus the majorant's gradient at u: a force for each unknown.
     void
-    majorant_force(dealii::Vector<double> &force) const;
+    majorant_force(DofVector &force) const;
 
     /// dst = (A + E) src on the unknowns that are not active, zero on the
     /// others.
     void
-    multiply_majorant(dealii::Vector<double>       &dst,
-                      const dealii::Vector<double> &src) const;
+    multiply_majorant(DofVector &dst, const DofVector &src) const;
 
     /// Sets the normals of active nodes to zero.
     void
-    restrict_to_free(dealii::Vector<double> &v) const;
+    restrict_to_free(DofVector &v) const;
 
-    const dealii::Vector<double> &f;
-    const PiecewiseQuadratic     &phi;
-    dealii::Vector<double>       &u;
+    const DofVector          &f;
+    const PiecewiseQuadratic &phi;
+    DofVector                &u;
     /// The unknowns s, dealii::numbers::invalid_unsigned_int for those that
     /// other ranks have.
     const std::vector<unsigned int> normals;
-    const dealii::Vector<double>    diagonal; ///< of A
+    const DofVector                 diagonal; ///< of A
     const std::function<bool()>     may_go_on;
 
     /// As of the last evaluate().
@@ -100,8 +96,7 @@ namespace Debond
 
   template <typename Entries>
   void
-  DisplacementProblem::add_normal(const Entries          &s,
-                                  dealii::Vector<double> &v) const
+  DisplacementProblem::add_normal(const Entries &s, DofVector &v) const
   {
     for (unsigned int i = 0; i < normals.size(); ++i)
       if (normals[i] != dealii::numbers::invalid_unsigned_int)

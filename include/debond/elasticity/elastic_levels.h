@@ -4,10 +4,10 @@
 
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
-#include <deal.II/lac/vector.h>
 
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/problem_piece.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/linear_algebra/multigrid/shared_trace.h>
 #include <debond/linear_algebra/multigrid/truncated_cycle.h>
 #include <debond/mesh/body.h>
@@ -78,24 +78,20 @@ namespace Debond
     const Eigen::SparseMatrix<double> &
     trace_prolongation(const unsigned int l) const;
 
-    const dealii::Vector<double> &
+    const DofVector &
     load(const unsigned int l) const;
 
     /// dst = A_l src.
     void
-    vmult(const unsigned int            l,
-          dealii::Vector<double>       &dst,
-          const dealii::Vector<double> &src) const;
+    vmult(const unsigned int l, DofVector &dst, const DofVector &src) const;
 
     /// The entries of all s_l.
-    dealii::Vector<double>
-    trace(const unsigned int l, const dealii::Vector<double> &v) const;
+    DofVector
+    trace(const unsigned int l, const DofVector &v) const;
 
     /// <a, b>.
     double
-    product(const unsigned int            l,
-            const dealii::Vector<double> &a,
-            const dealii::Vector<double> &b) const;
+    product(const unsigned int l, const DofVector &a, const DofVector &b) const;
 
     /// The rows and columns s_l of A_l; the column j has the row's entries.
     Eigen::SparseMatrix<double>
@@ -103,14 +99,14 @@ namespace Debond
 
     /// Makes the entries that other ranks have the same as there.
     void
-    update_ghosts(const unsigned int l, dealii::Vector<double> &v) const;
+    update_ghosts(const unsigned int l, DofVector &v) const;
 
     /// v += factor times the column of A_l.
     void
-    add_column(const unsigned int      l,
-               const unsigned int      column,
-               const double            factor,
-               dealii::Vector<double> &v) const;
+    add_column(const unsigned int l,
+               const unsigned int column,
+               const double       factor,
+               DofVector         &v) const;
 
     double
     diagonal_entry(const unsigned int l, const unsigned int i) const;
@@ -120,14 +116,14 @@ namespace Debond
     vertices(const unsigned int l) const;
 
     /// The unknowns of the level l > 0 for the displacements at its vertices.
-    dealii::Vector<double>
+    DofVector
     from_vertex_displacements(
       const unsigned int                         l,
       const std::vector<dealii::Tensor<1, dim>> &displacements) const;
 
     /// The same field on the next finer level.
-    dealii::Vector<double>
-    prolongate(const unsigned int l, const dealii::Vector<double> &u) const;
+    DofVector
+    prolongate(const unsigned int l, const DofVector &u) const;
 
   private:
     struct Level
@@ -137,7 +133,7 @@ namespace Debond
       std::vector<dealii::Point<dim>> vertices;
       std::vector<unsigned int>       normals;
       Eigen::SparseMatrix<double>     trace_prolongation;
-      dealii::Vector<double>          load;
+      DofVector                       load;
       unsigned int                    n_whole_unknowns = 0;
       std::unique_ptr<SharedTrace>    trace; ///< if ranks share the level
     };

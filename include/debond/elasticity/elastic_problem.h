@@ -6,12 +6,12 @@
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/sparsity_pattern.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
-#include <deal.II/lac/vector.h>
 
 #include <debond/elasticity/fields.h>
 #include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/material.h>
 #include <debond/elasticity/unknowns.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 #include <memory>
 #include <vector>
@@ -77,21 +77,21 @@ namespace Debond
 
     /// f - A G, what is applied together with what the lifting makes of it, at
     /// the free degrees of freedom.
-    const dealii::Vector<double> &
+    const DofVector &
     load() const;
 
     /// The part of load() that has no factor, from the gap and dead loads;
     /// empty if there is none.
-    const dealii::Vector<double> &
+    const DofVector &
     constant_load() const;
 
     /// The part of load() that grows with prescribed displacements; empty if
     /// there are none.
-    const dealii::Vector<double> &
+    const DofVector &
     displacement_load() const;
 
     /// For @p factors times what is applied and prescribed.
-    dealii::Vector<double>
+    DofVector
     load_at(const LoadFactors factors) const;
 
     /// J of w = 0 without bonds, 1/2 <A G, G> - <f, G>: what J is
@@ -113,9 +113,9 @@ namespace Debond
     dealii::SparseMatrix<double> system_matrix;
     // An empty one would need MPI already.
     std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix> distributed_matrix;
-    dealii::Vector<double>                                  system_load;
-    dealii::Vector<double>                                  load_without_factor;
-    dealii::Vector<double> load_of_displacements;
+    DofVector                                               system_load;
+    DofVector                                               load_without_factor;
+    DofVector load_of_displacements;
   };
 } // namespace Debond
 

@@ -5,13 +5,13 @@
 #include <deal.II/grid/tria.h>
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/sparsity_pattern.h>
-#include <deal.II/lac/vector.h>
 
 #include <debond/elasticity/cell_displacement.h>
 #include <debond/elasticity/equilibrium_element.h>
 #include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/unknowns.h>
 #include <debond/linear_algebra/condensation.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/by_region.h>
 
 #include <memory>
@@ -127,7 +127,7 @@ namespace Debond
     /// condensation without weights.
     std::vector<double>
     constitutive_gaps(const std::vector<CellDisplacement> &u,
-                      const dealii::Vector<double>        &unknowns) const;
+                      const DofVector                     &unknowns) const;
 
     /// What elimination may have lost of
     ///     c_0 - 1/2 s'S s = -1/2 int (sigma + p 1) : C^{-1} (sigma + p 1)
@@ -140,7 +140,7 @@ namespace Debond
 
     /// Of each active cell the mean of the same stress without p.
     std::vector<dealii::SymmetricTensor<2, 2>>
-    mean_stresses(const dealii::Vector<double> &unknowns) const;
+    mean_stresses(const DofVector &unknowns) const;
 
   private:
     struct Side
@@ -187,9 +187,9 @@ namespace Debond
 
     /// EquilibriumElement::stress() for all unknowns.
     Eigen::VectorXd
-    stress_of(const unsigned int            element,
-              const dealii::Vector<double> &unknowns,
-              const double                  weight = 1.) const;
+    stress_of(const unsigned int element,
+              const DofVector   &unknowns,
+              const double       weight = 1.) const;
 
     double
     thermal_stress(const dealii::Triangulation<2>::cell_iterator &cell) const;

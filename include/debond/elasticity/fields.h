@@ -4,11 +4,11 @@
 
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
-#include <deal.II/lac/vector.h>
 
 #include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/material.h>
 #include <debond/elasticity/unknowns.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/by_region.h>
 
 #include <vector>
@@ -31,18 +31,18 @@ namespace Debond
     /// @p thermal_stresses: of each point of BernsteinSimplex in each active
     /// cell the pressure that the change of temperature makes if the body
     /// cannot expand; none if empty.
-    ElasticFields(const ElasticUnknowns<dim>   &unknowns,
-                  const ByRegion<Material>     &materials,
-                  const dealii::Vector<double> &applied_forces,
-                  const std::vector<double>    &thermal_stresses = {},
-                  const dealii::Vector<double> &dead_forces      = {});
+    ElasticFields(const ElasticUnknowns<dim> &unknowns,
+                  const ByRegion<Material>   &materials,
+                  const DofVector            &applied_forces,
+                  const std::vector<double>  &thermal_stresses = {},
+                  const DofVector            &dead_forces      = {});
 
     const Material &
     material(const Cell &cell) const;
 
     /// The Cartesian nodal forces of all loads, at every degree of freedom, the
     /// constrained ones included.
-    dealii::Vector<double>
+    DofVector
     applied_nodal_forces(const LoadFactors factors = 1.) const;
 
     /// The resultant of all applied loads, in Cartesian components.
@@ -57,9 +57,8 @@ namespace Debond
      * of the support, at u_nu of a contact node minus the normal force of the
      * foundation.
      */
-    dealii::Vector<double>
-    residual(const dealii::Vector<double> &u,
-             const LoadFactors             factors = 1.) const;
+    DofVector
+    residual(const DofVector &u, const LoadFactors factors = 1.) const;
 
     /**
      * What the rounding of u to double precision can make of residual(u,
@@ -67,31 +66,30 @@ namespace Debond
      * norms of each cell's entries. No u can be expected to have a smaller
      * residual.
      */
-    dealii::Vector<double>
-    residual_rounding(const dealii::Vector<double> &u,
-                      const LoadFactors             factors = 1.) const;
+    DofVector
+    residual_rounding(const DofVector &u, const LoadFactors factors = 1.) const;
 
     /// Stress and displacement gradient are constant on each cell, linear of
     /// degree 2: the stress at a point of the active cell, by default its mean,
     /// in the units of E, with @p factors times the change of temperature.
     dealii::SymmetricTensor<2, dim>
-    stress(const Cell                   &cell,
-           const dealii::Vector<double> &cartesian_displacement,
-           const LoadFactors             factors,
-           const Barycentric            &point = middle()) const;
+    stress(const Cell        &cell,
+           const DofVector   &cartesian_displacement,
+           const LoadFactors  factors,
+           const Barycentric &point = middle()) const;
 
     /// The same with what the hypothesis of plane bodies implies.
     dealii::SymmetricTensor<2, 3>
-    solid_stress(const Cell                   &cell,
-                 const dealii::Vector<double> &cartesian_displacement,
-                 const LoadFactors             factors,
-                 const Barycentric            &point = middle()) const;
+    solid_stress(const Cell        &cell,
+                 const DofVector   &cartesian_displacement,
+                 const LoadFactors  factors,
+                 const Barycentric &point = middle()) const;
 
     /// The displacement gradient in the cell, its row d that of component d.
     dealii::Tensor<2, dim>
-    displacement_gradient(const Cell                   &cell,
-                          const dealii::Vector<double> &cartesian_displacement,
-                          const Barycentric            &point = middle()) const;
+    displacement_gradient(const Cell        &cell,
+                          const DofVector   &cartesian_displacement,
+                          const Barycentric &point = middle()) const;
 
     /**
      * 1/2 <A u, u> - <f, u>, f with @p factors, from the strains of the cells,
@@ -99,35 +97,32 @@ namespace Debond
      * rounding grows with the condition of A, in the strains it does not.
      */
     double
-    elastic_functional(const dealii::Vector<double> &u,
-                       const LoadFactors             factors = 1.) const;
+    elastic_functional(const DofVector  &u,
+                       const LoadFactors factors = 1.) const;
 
     /// What elastic_functional() sums up: the strain energies of the cells (of
     /// degree 2 at each point of a cell) in their order, and the loads and the
     /// displacements in the unknowns' frames.
     struct Terms
     {
-      std::vector<double>    energies;
-      dealii::Vector<double> load;
-      dealii::Vector<double> displacement;
+      std::vector<double> energies;
+      DofVector           load;
+      DofVector           displacement;
 
       double
       sum() const;
     };
 
     Terms
-    elastic_terms(const dealii::Vector<double> &u,
-                  const LoadFactors             factors = 1.) const;
+    elastic_terms(const DofVector &u, const LoadFactors factors = 1.) const;
 
     /// The strain energy 1/2 <A u, u>, likewise.
     double
-    strain_energy(const dealii::Vector<double> &u,
-                  const LoadFactors             factors = 1.) const;
+    strain_energy(const DofVector &u, const LoadFactors factors = 1.) const;
 
     /// <f, u>, the work of the whole load that grows with its factor.
     double
-    load_work(const dealii::Vector<double> &u,
-              const LoadFactors             factors = 1.) const;
+    load_work(const DofVector &u, const LoadFactors factors = 1.) const;
 
     /// The barycentric coordinates of a cell's middle.
     static Barycentric
@@ -135,21 +130,21 @@ namespace Debond
 
   private:
     /// u with its lifting, in the unknowns.
-    dealii::Vector<double>
-    lifted(const dealii::Vector<double> &u, const LoadFactors factors) const;
+    DofVector
+    lifted(const DofVector &u, const LoadFactors factors) const;
 
     /// With a load given in the unknowns' frames.
     Terms
-    terms(const dealii::Vector<double> &u,
-          const LoadFactors             factors,
-          const dealii::Vector<double> &load) const;
+    terms(const DofVector  &u,
+          const LoadFactors factors,
+          const DofVector  &load) const;
 
     /// The displacement gradient, of a cell that is known.
     static dealii::Tensor<2, dim>
-    gradient(const BernsteinSimplex<dim>  &simplex,
-             const CellNodes<dim>         &nodes,
-             const dealii::Vector<double> &cartesian_displacement,
-             const Barycentric            &point);
+    gradient(const BernsteinSimplex<dim> &simplex,
+             const CellNodes<dim>        &nodes,
+             const DofVector             &cartesian_displacement,
+             const Barycentric           &point);
 
     /// At a point of the cell, for the whole load.
     double
@@ -158,8 +153,8 @@ namespace Debond
     const ElasticUnknowns<dim>               &unknowns;
     ByRegion<Material>                        materials;
     ByRegion<dealii::SymmetricTensor<4, dim>> stiffness;
-    dealii::Vector<double>                    live_forces;
-    dealii::Vector<double>                    dead_forces; ///< or empty
+    DofVector                                 live_forces;
+    DofVector                                 dead_forces; ///< or empty
     std::vector<double>                       thermal_stresses;
   };
 } // namespace Debond

@@ -4,6 +4,7 @@
 
 #include <debond/elasticity/displacement_problem.h>
 #include <debond/elasticity/elastic_levels.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 namespace Debond
 {
@@ -30,7 +31,7 @@ namespace Debond
     LevelProblem(ElasticLevels<dim>          &levels,
                  const unsigned int           l,
                  const PiecewiseQuadratic    &phi,
-                 dealii::Vector<double>      &u,
+                 DofVector                   &u,
                  const std::function<bool()> &may_go_on = {});
 
     /// A cycle counts as a linear iteration.
@@ -39,19 +40,17 @@ namespace Debond
 
   private:
     void
-    multiply(dealii::Vector<double>       &dst,
-             const dealii::Vector<double> &src) const override;
+    multiply(DofVector &dst, const DofVector &src) const override;
 
-    dealii::Vector<double>
-    trace(const dealii::Vector<double> &v) const override;
+    DofVector
+    trace(const DofVector &v) const override;
 
     double
-    product(const dealii::Vector<double> &a,
-            const dealii::Vector<double> &b) const override;
+    product(const DofVector &a, const DofVector &b) const override;
 
     /// Minimises the majorant in one normal displacement after the other.
     void
-    smooth_contact(dealii::Vector<double> &force);
+    smooth_contact(DofVector &force);
 
     ElasticLevels<dim> &levels;
     const unsigned int  l;

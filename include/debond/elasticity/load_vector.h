@@ -4,8 +4,8 @@
 
 #include <deal.II/base/function.h>
 #include <deal.II/dofs/dof_handler.h>
-#include <deal.II/lac/vector.h>
 
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/body.h>
 
 #include <map>
@@ -84,7 +84,7 @@ namespace Debond
    * not dim; and if the mesh has no boundary of that number.
    */
   template <int dim>
-  dealii::Vector<double>
+  DofVector
   load_vector(const dealii::DoFHandler<dim> &dof_handler,
               const Loads<dim>              &loads);
 } // namespace Debond

@@ -2,9 +2,8 @@
 #ifndef debond_elasticity_mesh_transfer_h
 #define debond_elasticity_mesh_transfer_h
 
-#include <deal.II/lac/vector.h>
-
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/body.h>
 
 #include <vector>
@@ -14,14 +13,13 @@ namespace Debond
   /// The displacement that belongs to u, by vertex index.
   template <int dim>
   std::vector<dealii::Tensor<1, dim>>
-  vertex_displacements(const ElasticProblem<dim>    &problem,
-                       const dealii::Vector<double> &u);
+  vertex_displacements(const ElasticProblem<dim> &problem, const DofVector &u);
 
   /// The vector of unknowns of the displacement with these values, but for what
   /// the supports prescribe and, if there are gaps, for what would enter the
   /// foundation.
   template <int dim>
-  dealii::Vector<double>
+  DofVector
   from_vertex_displacements(
     const std::vector<dealii::Tensor<1, dim>> &displacements,
     const ElasticProblem<dim>                 &problem);
@@ -31,9 +29,9 @@ namespace Debond
   /// but for what the target's supports prescribe. @p ancestors: of each cell
   /// of the target's the one that it is a part of.
   template <int dim>
-  dealii::Vector<double>
+  DofVector
   divided_displacement(const ElasticProblem<dim>       &source,
-                       const dealii::Vector<double>    &u,
+                       const DofVector                 &u,
                        const std::vector<unsigned int> &ancestors,
                        const ElasticProblem<dim>       &target);
 
@@ -47,11 +45,11 @@ namespace Debond
    * @p body must be the one that made the source's triangulation.
    */
   template <int dim>
-  dealii::Vector<double>
-  interpolate_displacement(const Body<dim>              &body,
-                           const ElasticProblem<dim>    &source,
-                           const dealii::Vector<double> &u,
-                           const ElasticProblem<dim>    &target);
+  DofVector
+  interpolate_displacement(const Body<dim>           &body,
+                           const ElasticProblem<dim> &source,
+                           const DofVector           &u,
+                           const ElasticProblem<dim> &target);
 } // namespace Debond
 
 #endif

@@ -3,9 +3,9 @@
 #define debond_elasticity_multigrid_h
 
 #include <deal.II/lac/trilinos_precondition.h>
-#include <deal.II/lac/vector.h>
 
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 namespace Debond
 {
@@ -28,7 +28,7 @@ namespace Debond
       const std::vector<dealii::types::global_dof_index> &held = {});
 
     void
-    vmult(dealii::Vector<double> &dst, const dealii::Vector<double> &src) const;
+    vmult(DofVector &dst, const DofVector &src) const;
 
   private:
     dealii::TrilinosWrappers::PreconditionAMG cycle;

@@ -7,6 +7,7 @@
 #include <debond/elasticity/displacement_problem.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/multigrid.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 namespace Debond
 {
@@ -29,7 +30,7 @@ namespace Debond
     MultigridProblem(const ElasticProblem<dim>   &problem,
                      const PiecewiseQuadratic    &phi,
                      const Multigrid             &multigrid,
-                     dealii::Vector<double>      &u,
+                     DofVector                   &u,
                      const std::function<bool()> &may_go_on = {});
 
     Minimisation
@@ -40,8 +41,7 @@ namespace Debond
     class Preconditioner;
 
     void
-    multiply(dealii::Vector<double>       &dst,
-             const dealii::Vector<double> &src) const override;
+    multiply(DofVector &dst, const DofVector &src) const override;
 
     const dealii::TrilinosWrappers::SparseMatrix &A;
     const Multigrid                              &multigrid;

@@ -5,11 +5,11 @@
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/vector.h>
 
 #include <debond/elasticity/boundary_conditions.h>
 #include <debond/elasticity/boundary_face.h>
 #include <debond/elasticity/rigid_motions.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 #include <array>
 #include <map>
@@ -130,7 +130,7 @@ namespace Debond
     constraints() const;
 
     /// The prescribed displacements for the whole load; empty if they are zero.
-    const dealii::Vector<double> &
+    const DofVector &
     displacements() const;
 
     const std::vector<DisplacementFrame<dim>> &
@@ -160,7 +160,7 @@ namespace Debond
     std::vector<unsigned int>           frame_of_node;
     std::vector<DisplacementFrame<dim>> node_frames;
     dealii::AffineConstraints<double>   fixed;
-    dealii::Vector<double>              prescribed;
+    DofVector                           prescribed;
     std::vector<std::string>            support_names;
     std::vector<SupportedDof>           supported_dofs;
 

@@ -3,11 +3,11 @@
 #define debond_elasticity_problem_piece_h
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/lac/vector.h>
 
 #include <debond/contact/boundary.h>
 #include <debond/elasticity/fields.h>
 #include <debond/elasticity/unknowns.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/linear_algebra/multigrid/shared_nodes.h>
 #include <debond/linear_algebra/multigrid/shared_trace.h>
 #include <debond/mesh/box_piece.h>
@@ -71,13 +71,13 @@ namespace Debond
     normal_numbers() const;
 
     /// The entries of all contact nodes, on all ranks.
-    dealii::Vector<double>
-    trace(const dealii::Vector<double> &v) const;
+    DofVector
+    trace(const DofVector &v) const;
 
     /// The entries of all unknowns in the order of their numbers, on the root;
     /// empty elsewhere.
-    dealii::Vector<double>
-    gather(const dealii::Vector<double> &v) const;
+    DofVector
+    gather(const DofVector &v) const;
 
     /// A number for each active cell of the piece gives those of all cells in
     /// the order of the whole mesh, on the root; empty elsewhere.
@@ -87,8 +87,8 @@ namespace Debond
     /// ElasticFields::elastic_functional() of the whole, on the root; zero
     /// elsewhere.
     double
-    elastic_functional(const ElasticFields<dim>     &fields,
-                       const dealii::Vector<double> &u) const;
+    elastic_functional(const ElasticFields<dim> &fields,
+                       const DofVector          &u) const;
 
   private:
     /// What the root gathers: how much of each rank, one after the other, and

@@ -3,12 +3,12 @@
 #define debond_elasticity_refinement_h
 
 #include <deal.II/lac/lapack_full_matrix.h>
-#include <deal.II/lac/vector.h>
 
 #include <debond/elasticity/elastic_levels.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/multigrid.h>
 #include <debond/linear_algebra/condensation.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
@@ -35,8 +35,8 @@ namespace Debond
     prepare(const Eigen::SparseMatrix<double> &E, const ActiveSet &held) = 0;
 
     /// The correction for the forces @p r, zero where held.
-    virtual dealii::Vector<double>
-    solve(const dealii::Vector<double> &r) const = 0;
+    virtual DofVector
+    solve(const DofVector &r) const = 0;
   };
 
 
@@ -52,8 +52,8 @@ namespace Debond
     prepare(const Eigen::SparseMatrix<double> &E,
             const ActiveSet                   &held) override;
 
-    dealii::Vector<double>
-    solve(const dealii::Vector<double> &r) const override;
+    DofVector
+    solve(const DofVector &r) const override;
 
   private:
     const Condensation              &condensed;
@@ -77,8 +77,8 @@ namespace Debond
     prepare(const Eigen::SparseMatrix<double> &E,
             const ActiveSet                   &held) override;
 
-    dealii::Vector<double>
-    solve(const dealii::Vector<double> &r) const override;
+    DofVector
+    solve(const DofVector &r) const override;
 
   private:
     const Multigrid                             &multigrid;
@@ -100,8 +100,8 @@ namespace Debond
     prepare(const Eigen::SparseMatrix<double> &E,
             const ActiveSet                   &held) override;
 
-    dealii::Vector<double>
-    solve(const dealii::Vector<double> &r) const override;
+    DofVector
+    solve(const DofVector &r) const override;
 
   private:
     ElasticLevels<dim> &levels;
@@ -134,10 +134,10 @@ namespace Debond
    */
   template <int dim>
   double
-  energy_rounding(const ElasticProblem<dim>    &problem,
-                  const PiecewiseQuadratic     &phi,
-                  const LoadFactors             factors,
-                  const dealii::Vector<double> &u);
+  energy_rounding(const ElasticProblem<dim> &problem,
+                  const PiecewiseQuadratic  &phi,
+                  const LoadFactors          factors,
+                  const DofVector           &u);
 
 
 
@@ -159,7 +159,7 @@ namespace Debond
          const LoadFactors            factors,
          CorrectionSolver            &solver,
          const std::function<bool()> &may_go_on,
-         dealii::Vector<double>      &u);
+         DofVector                   &u);
 
 
 
@@ -182,7 +182,7 @@ namespace Debond
                       const LoadFactors            factors,
                       CorrectionSolver            &solver,
                       const std::function<bool()> &may_go_on,
-                      dealii::Vector<double>      &u);
+                      DofVector                   &u);
 } // namespace Debond
 
 #endif

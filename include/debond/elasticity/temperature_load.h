@@ -3,10 +3,10 @@
 #define debond_elasticity_temperature_load_h
 
 #include <deal.II/dofs/dof_handler.h>
-#include <deal.II/lac/vector.h>
 
 #include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/material.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/by_region.h>
 
 #include <stdexcept>
@@ -41,7 +41,7 @@ namespace Debond
   void
   add_thermal_forces(const dealii::DoFHandler<dim> &dof_handler,
                      const std::vector<double>     &thermal_stresses,
-                     dealii::Vector<double>        &forces);
+                     DofVector                     &forces);
 } // namespace Debond
 
 #endif

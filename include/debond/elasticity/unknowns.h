@@ -8,13 +8,13 @@
 #include <deal.II/fe/mapping_fe.h>
 #include <deal.II/grid/tria.h>
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/vector.h>
 
 #include <debond/contact/contact_space.h>
 #include <debond/elasticity/boundary_conditions.h>
 #include <debond/elasticity/load_factors.h>
 #include <debond/elasticity/node_supports.h>
 #include <debond/elasticity/rigid_motions.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 #include <string>
 #include <vector>
@@ -126,43 +126,43 @@ namespace Debond
     has_gap() const;
 
     /// G, with @p factors times the prescribed displacements and the gap.
-    dealii::Vector<double>
+    DofVector
     lifting(const LoadFactors factors = 1.) const;
 
     /// The Cartesian components of the displacement u = w + G, at every vertex
     /// and of the coefficient of every edge.
-    dealii::Vector<double>
-    cartesian_displacement(const dealii::Vector<double> &w,
-                           const LoadFactors             factors = 1.) const;
+    DofVector
+    cartesian_displacement(const DofVector  &w,
+                           const LoadFactors factors = 1.) const;
 
     /// The same displacement's values at vertices and in the middles of edges,
     /// from such coefficients: deal.II's degrees of freedom.
-    dealii::Vector<double>
-    nodal_values(const dealii::Vector<double> &cartesian_displacement) const;
+    DofVector
+    nodal_values(const DofVector &cartesian_displacement) const;
 
     /// The vector w of a displacement that is given by its Cartesian
     /// components; constrained degrees of freedom are zero.
-    dealii::Vector<double>
-    from_cartesian(const dealii::Vector<double> &cartesian_displacement) const;
+    DofVector
+    from_cartesian(const DofVector &cartesian_displacement) const;
 
     /// Cartesian forces as forces in the unknowns' frames.
-    dealii::Vector<double>
-    in_frames(const dealii::Vector<double> &forces) const;
+    DofVector
+    in_frames(const DofVector &forces) const;
 
     /// The forces in the unknowns' frames (such as a residual) as Cartesian
     /// components.
-    dealii::Vector<double>
-    cartesian_forces(const dealii::Vector<double> &forces) const;
+    DofVector
+    cartesian_forces(const DofVector &forces) const;
 
     /// Translations and rotations about the origin in the unknowns, zero where
     /// constrained: the near null space of A.
-    std::vector<dealii::Vector<double>>
+    std::vector<DofVector>
     rigid_body_modes() const;
 
   private:
     /// The unknowns of Cartesian components.
-    dealii::Vector<double>
-    to_frames(const dealii::Vector<double> &cartesian) const;
+    DofVector
+    to_frames(const DofVector &cartesian) const;
 
     const dealii::MappingFE<dim> mapping_p1;
     const dealii::FESystem<dim>  fe;
@@ -173,7 +173,7 @@ namespace Debond
     FreeRigidMotions<dim> free_motions;
 
     // G is what supports prescribe and this, which is empty if it is zero.
-    dealii::Vector<double> gap;
+    DofVector gap;
   };
 } // namespace Debond
 

@@ -4,7 +4,8 @@
 
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/sparse_matrix.h>
-#include <deal.II/lac/vector.h>
+
+#include <debond/linear_algebra/dof_vector.h>
 
 #include <functional>
 #include <memory>
@@ -15,8 +16,8 @@ namespace Debond
   /// What Condensation::scale_load() does not scale by the first factor.
   struct OtherParts
   {
-    dealii::Vector<double> constant_load = {}; ///< a part of f, empty for none
-    dealii::Vector<double> second_load   = {}; ///< that has the second factor
+    DofVector constant_load = {}; ///< a part of f, empty for none
+    DofVector second_load   = {}; ///< that has the second factor
 
     /// A part of the energy, by both factors; none for null.
     std::function<double(double, double)> energy = {};
@@ -51,7 +52,7 @@ namespace Debond
     /// Throws std::runtime_error if A is not positive definite, std::bad_alloc
     /// if the factor does not fit into memory.
     Condensation(const dealii::SparseMatrix<double>      &A,
-                 const dealii::Vector<double>            &f,
+                 const DofVector                         &f,
                  const std::vector<unsigned int>         &kept,
                  const std::function<bool(unsigned int)> &is_excluded,
                  const OtherParts                        &others = {},
@@ -76,7 +77,7 @@ namespace Debond
     schur_complement() const;
 
     /// g.
-    const dealii::Vector<double> &
+    const DofVector &
     load() const;
 
     /// c_0 with the other part, the energy of s = 0.
@@ -100,31 +101,30 @@ namespace Debond
     condition_estimate() const;
 
     /// u at equilibrium for given s, with the size of f.
-    dealii::Vector<double>
-    expand(const dealii::Vector<double> &s) const;
+    DofVector
+    expand(const DofVector &s) const;
 
     /// u at equilibrium under another load, for the s that @p kept_unknowns
     /// returns for the g of this load.
-    dealii::Vector<double>
-    solve(const dealii::Vector<double>       &other_f,
-          const std::function<dealii::Vector<double>(
-            const dealii::Vector<double> &)> &kept_unknowns) const;
+    DofVector
+    solve(
+      const DofVector                                   &other_f,
+      const std::function<DofVector(const DofVector &)> &kept_unknowns) const;
 
   private:
     class Factor;
 
     /// L^{-1} P f.
     std::vector<double>
-    forward(const dealii::Vector<double> &f) const;
+    forward(const DofVector &f) const;
 
     /// L_ss y_s.
-    dealii::Vector<double>
+    DofVector
     condensed_load(const std::vector<double> &y) const;
 
     /// u for y in the eliminated unknowns.
-    dealii::Vector<double>
-    backward(const std::vector<double>    &y,
-             const dealii::Vector<double> &s) const;
+    DofVector
+    backward(const std::vector<double> &y, const DofVector &s) const;
 
     unsigned int              n;        ///< size of f
     std::vector<unsigned int> unknowns; ///< rows of A, the kept ones last
@@ -137,7 +137,7 @@ namespace Debond
     double                                constant_part = 0.; ///< of the energy
     dealii::FullMatrix<double>            L_ss;
     dealii::FullMatrix<double>            S;
-    dealii::Vector<double>                g;
+    DofVector                             g;
   };
 } // namespace Debond
 

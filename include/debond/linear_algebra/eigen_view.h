@@ -3,7 +3,8 @@
 #define debond_linear_algebra_eigen_view_h
 
 #include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/vector.h>
+
+#include <debond/linear_algebra/dof_vector.h>
 
 #include <Eigen/Core>
 
@@ -22,15 +23,15 @@ namespace Debond
 
   /// A view of the vector, valid as long as it.
   inline Eigen::Map<const Eigen::VectorXd>
-  eigen_view(const dealii::Vector<double> &vector)
+  eigen_view(const DofVector &vector)
   {
     return {vector.begin(), static_cast<Eigen::Index>(vector.size())};
   }
 
-  inline dealii::Vector<double>
+  inline DofVector
   from_eigen(const Eigen::VectorXd &vector)
   {
-    return dealii::Vector<double>(vector.begin(), vector.end());
+    return DofVector(vector.begin(), vector.end());
   }
 } // namespace Debond
 

@@ -4,7 +4,8 @@
 
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/sparsity_pattern.h>
-#include <deal.II/lac/vector.h>
+
+#include <debond/linear_algebra/dof_vector.h>
 
 #include <functional>
 #include <vector>
@@ -19,8 +20,8 @@ namespace Debond
     /// The unknowns that are at most @p n_rings couplings of the symmetric A
     /// away from @p center, but for those that @p is_excluded tells.
     Window(const dealii::SparseMatrix<double>      &A,
-           const dealii::Vector<double>            &f,
-           const dealii::Vector<double>            &u,
+           const DofVector                         &f,
+           const DofVector                         &u,
            const unsigned int                       center,
            const unsigned int                       n_rings,
            const std::function<bool(unsigned int)> &is_excluded);
@@ -41,7 +42,7 @@ namespace Debond
     matrix() const;
 
     /// b.
-    const dealii::Vector<double> &
+    const DofVector &
     load() const;
 
   private:
@@ -49,7 +50,7 @@ namespace Debond
     bool                         has_outside = false;
     dealii::SparsityPattern      sparsity;
     dealii::SparseMatrix<double> M;
-    dealii::Vector<double>       b;
+    DofVector                    b;
   };
 } // namespace Debond
 

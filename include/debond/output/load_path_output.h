@@ -4,6 +4,7 @@
 
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/input/output_parameters.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/output/output_file.h>
 #include <debond/solve/load_path_steps.h>
 
@@ -36,9 +37,9 @@ namespace Debond
     /// Writes the files of one factor. A file that cannot be written ends
     /// no path: the last of files() throws for it.
     void
-    add(const LoadPathStep<dim>      &step,
-        const dealii::Vector<double> &u,
-        const Verification<dim>      &verification);
+    add(const LoadPathStep<dim> &step,
+        const DofVector         &u,
+        const Verification<dim> &verification);
 
     /// All but those in load_path/: the table, the records of the files above
     /// and the plots.

@@ -5,6 +5,7 @@
 #include <debond/check/error_estimate.h>
 #include <debond/check/verification.h>
 #include <debond/elasticity/problem_piece.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 #include <string>
 #include <utility>
@@ -28,7 +29,7 @@ namespace Debond
   template <int dim>
   void
   write_body_vtu(const ElasticProblem<dim>    &problem,
-                 const dealii::Vector<double> &u,
+                 const DofVector              &u,
                  const std::string            &file_name,
                  const LoadFactors             factors  = 1.,
                  const ErrorEstimate          *estimate = nullptr,
@@ -39,11 +40,11 @@ namespace Debond
   /// the paths of what the rank has written; throws as above.
   template <int dim>
   std::vector<std::string>
-  write_body_pieces(const ElasticProblem<dim>    &problem,
-                    const ProblemPiece<dim>      &piece,
-                    const dealii::Vector<double> &u,
-                    const ErrorEstimate          *estimate,
-                    const std::string            &directory);
+  write_body_pieces(const ElasticProblem<dim> &problem,
+                    const ProblemPiece<dim>   &piece,
+                    const DofVector           &u,
+                    const ErrorEstimate       *estimate,
+                    const std::string         &directory);
 
   /**
    * Writes the contact boundary as VTU: displacement, u_nu, gap (-u_nu),

@@ -3,6 +3,7 @@
 #define debond_program_check_result_h
 
 #include <debond/input/verification_parameters.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/output/run_result.h>
 #include <debond/solve/scene.h>
 
@@ -16,9 +17,9 @@ namespace Debond
   /// throws BadInput if it is not finite somewhere.
   template <int dim>
   std::optional<DisplacementError>
-  error_of(const std::string            &exact_displacement,
-           const Scene<dim>             &scene,
-           const dealii::Vector<double> &u);
+  error_of(const std::string &exact_displacement,
+           const Scene<dim>  &scene,
+           const DofVector   &u);
 
   /// What the verification has against the result, or against the first
   /// step of a load path that it has something against; empty if nothing.

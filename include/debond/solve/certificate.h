@@ -4,6 +4,7 @@
 
 #include <debond/elasticity/equilibrium_problem.h>
 #include <debond/input/certificate_parameters.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/solve/global_bound.h>
 #include <debond/solve/scene.h>
@@ -101,7 +102,7 @@ namespace Debond
     /// EquilibriumError if no bound was found.
     Certificate
     certify(const Scene<2>                 &solved,
-            const dealii::Vector<double>   &u,
+            const DofVector                &u,
             const BranchAndBoundParameters &proof,
             const std::function<bool()>    &may_go_on) const;
 

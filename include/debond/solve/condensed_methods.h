@@ -4,6 +4,7 @@
 
 #include <debond/base/checkpoints.h>
 #include <debond/input/solver_parameters.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve_result.h>
 #include <debond/solve/watch.h>
@@ -17,13 +18,13 @@ namespace Debond
   /// majorise-minimise, from @p start unless it is null.
   template <int dim>
   void
-  solve_condensed(const std::string            &method,
-                  const SolverParameters       &parameters,
-                  const Scene<dim>             &scene,
-                  Checkpoints                  *checkpoints,
-                  const dealii::Vector<double> *start,
-                  Watch                        &watch,
-                  SolveResult                  &result);
+  solve_condensed(const std::string      &method,
+                  const SolverParameters &parameters,
+                  const Scene<dim>       &scene,
+                  Checkpoints            *checkpoints,
+                  const DofVector        *start,
+                  Watch                  &watch,
+                  SolveResult            &result);
 } // namespace Debond
 
 #endif

@@ -2,7 +2,7 @@
 #ifndef debond_solve_displacement_h
 #define debond_solve_displacement_h
 
-#include <deal.II/lac/vector.h>
+#include <debond/linear_algebra/dof_vector.h>
 
 #include <string>
 
@@ -11,12 +11,11 @@ namespace Debond
   /// Writes all degrees of freedom as text, a line each, with all digits.
   /// Throws std::runtime_error naming the file if it cannot be written.
   void
-  write_displacement(const dealii::Vector<double> &u,
-                     const std::string            &file_name);
+  write_displacement(const DofVector &u, const std::string &file_name);
 
   /// Reads what write_displacement() wrote. Throws std::invalid_argument
   /// naming the file if it has not @p n_dofs numbers and nothing else.
-  dealii::Vector<double>
+  DofVector
   read_displacement(const std::string &file_name, const unsigned int n_dofs);
 } // namespace Debond
 

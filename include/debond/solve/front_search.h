@@ -2,6 +2,7 @@
 #ifndef debond_solve_front_search_h
 #define debond_solve_front_search_h
 
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/solve/scene.h>
 
@@ -35,7 +36,7 @@ namespace Debond
   search_fronts(const Scene<dim>            &scene,
                 const MajoriseMinimise      &method,
                 const std::function<bool()> &may_go_on,
-                dealii::Vector<double>      &u);
+                DofVector                   &u);
 } // namespace Debond
 
 #endif

@@ -5,6 +5,7 @@
 #include <debond/input/load_path_parameters.h>
 #include <debond/input/solver_parameters.h>
 #include <debond/linear_algebra/condensation.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/which_minimum.h>
 
@@ -17,9 +18,9 @@ namespace Debond
   /// A minimum of the condensed problem under a multiple of the loads.
   struct BranchPoint
   {
-    dealii::Vector<double> s;
-    double                 functional; ///< without the energy at s = 0
-    WhichMinimum           which;
+    DofVector    s;
+    double       functional; ///< without the energy at s = 0
+    WhichMinimum which;
   };
 
   /// By the factor of the loads.
@@ -48,9 +49,9 @@ namespace Debond
 
   /// 1/2 s'S s - g's + Phi(s).
   double
-  condensed_functional(const Condensation           &condensed,
-                       const PiecewiseQuadratic     &adhesion,
-                       const dealii::Vector<double> &s);
+  condensed_functional(const Condensation       &condensed,
+                       const PiecewiseQuadratic &adhesion,
+                       const DofVector          &s);
 } // namespace Debond
 
 #endif

@@ -4,6 +4,7 @@
 
 #include <debond/input/load_path_parameters.h>
 #include <debond/input/solver_parameters.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/solve/load_path_steps.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve.h>
@@ -18,7 +19,7 @@ namespace Debond
   /// bonds as they are.
   template <int dim>
   using LoadPathObserver = std::function<void(const LoadPathStep<dim> &,
-                                              const dealii::Vector<double> &,
+                                              const DofVector &,
                                               const Verification<dim> &,
                                               const AdhesionIntegral<dim> &)>;
 

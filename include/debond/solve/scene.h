@@ -2,13 +2,12 @@
 #ifndef debond_solve_scene_h
 #define debond_solve_scene_h
 
-#include <deal.II/lac/vector.h>
-
 #include <debond/check/probes.h>
 #include <debond/contact/functional.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/problem_piece.h>
 #include <debond/input/problem_parameters.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/by_region.h>
 
 #include <memory>
@@ -61,8 +60,8 @@ namespace Debond
     const ContactBoundary<dim> &
     contact_boundary() const;
 
-    dealii::Vector<double>
-    contact_trace(const dealii::Vector<double> &u) const;
+    DofVector
+    contact_trace(const DofVector &u) const;
 
     const ElasticProblem<dim> &
     problem() const;
@@ -91,11 +90,11 @@ namespace Debond
     adhesion() const;
 
     /// J, on vectors of problem().unknowns().n_dofs() entries.
-    const Objective<dealii::Vector<double>> &
+    const Objective<DofVector> &
     functional() const;
 
     /// The first iterate for methods on all degrees of freedom.
-    const dealii::Vector<double> &
+    const DofVector &
     start() const;
 
     /// What the scene wants to know by name.
@@ -147,27 +146,27 @@ namespace Debond
     void
     add_contact(const MatrixStorage storage);
 
-    const ProblemParameters                            given;
-    std::shared_ptr<const Body<dim>>                   elastic_body;
-    dealii::Triangulation<dim>                         triangulation;
-    std::vector<std::string>                           body_notes;
-    Probes<dim>                                        named_probes;
-    Probes<dim>                                        piece_means;
-    BoundaryConditions                                 boundary_conditions;
-    Supports<dim>                                      body_supports;
-    Loads<dim>                                         body_loads;
-    Loads<dim>                                         body_dead_loads;
-    ByRegion<Material>                                 body_materials;
-    std::unique_ptr<ElasticProblem<dim>>               elastic_problem;
-    std::unique_ptr<const ProblemPiece<dim>>           problem_piece;
-    std::unique_ptr<AdhesiveLaw>                       adhesive_law;
-    std::unique_ptr<ContactQuadrature<dim>>            quadrature;
-    std::unique_ptr<BondField<dim>>                    bond_field;
-    std::unique_ptr<AdhesionIntegral<dim>>             adhesion_integral;
-    std::unique_ptr<Objective<dealii::Vector<double>>> energy;
-    dealii::Vector<double>                             first_iterate;
-    double                                             seconds_for_mesh;
-    double                                             seconds_for_assembly;
+    const ProblemParameters                  given;
+    std::shared_ptr<const Body<dim>>         elastic_body;
+    dealii::Triangulation<dim>               triangulation;
+    std::vector<std::string>                 body_notes;
+    Probes<dim>                              named_probes;
+    Probes<dim>                              piece_means;
+    BoundaryConditions                       boundary_conditions;
+    Supports<dim>                            body_supports;
+    Loads<dim>                               body_loads;
+    Loads<dim>                               body_dead_loads;
+    ByRegion<Material>                       body_materials;
+    std::unique_ptr<ElasticProblem<dim>>     elastic_problem;
+    std::unique_ptr<const ProblemPiece<dim>> problem_piece;
+    std::unique_ptr<AdhesiveLaw>             adhesive_law;
+    std::unique_ptr<ContactQuadrature<dim>>  quadrature;
+    std::unique_ptr<BondField<dim>>          bond_field;
+    std::unique_ptr<AdhesionIntegral<dim>>   adhesion_integral;
+    std::unique_ptr<Objective<DofVector>>    energy;
+    DofVector                                first_iterate;
+    double                                   seconds_for_mesh;
+    double                                   seconds_for_assembly;
   };
 } // namespace Debond
 

@@ -3,6 +3,7 @@
 #define debond_solve_solve_h
 
 #include <debond/input/solver_parameters.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve_result.h>
@@ -19,13 +20,13 @@ namespace Debond
   /// levels; the first one has J and the notes.
   template <int dim>
   SolveResult
-  solve(const MethodChoice           &choice,
-        const SolverParameters       &parameters,
-        const Scene<dim>             &scene,
-        std::ostream                 *out         = nullptr,
-        const bool                    terminal    = false,
-        Checkpoints                  *checkpoints = nullptr,
-        const dealii::Vector<double> *start       = nullptr);
+  solve(const MethodChoice     &choice,
+        const SolverParameters &parameters,
+        const Scene<dim>       &scene,
+        std::ostream           *out         = nullptr,
+        const bool              terminal    = false,
+        Checkpoints            *checkpoints = nullptr,
+        const DofVector        *start       = nullptr);
 
   /// Throws BadInput if the method cannot do with a body that only its bonds
   /// and the foundation hold.

@@ -2,9 +2,8 @@
 #ifndef debond_solve_solve_result_h
 #define debond_solve_solve_result_h
 
-#include <deal.II/lac/vector.h>
-
 #include <debond/elasticity/load_factors.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/solve/scene.h>
@@ -23,9 +22,9 @@ namespace Debond
     SolverStatus status = SolverStatus::success;
     std::string  message;
 
-    dealii::Vector<double> u;                ///< of all degrees of freedom
-    LoadFactors            load_factor = 1.; ///< of the loads that u belongs to
-    double                 functional;       ///< J(u), from the strains of u
+    DofVector   u;                ///< of all degrees of freedom
+    LoadFactors load_factor = 1.; ///< of the loads that u belongs to
+    double      functional;       ///< J(u), from the strains of u
 
     /// The first factor of a load path at which the body comes off; the rest is
     /// of the one before.
@@ -80,7 +79,7 @@ namespace Debond
   /// J(u), from the strains, on the first of several ranks.
   template <int dim>
   double
-  functional_of(const Scene<dim> &scene, const dealii::Vector<double> &u);
+  functional_of(const Scene<dim> &scene, const DofVector &u);
 } // namespace Debond
 
 #endif

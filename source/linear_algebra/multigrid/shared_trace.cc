@@ -29,8 +29,8 @@ namespace Debond
 
 
 
-  dealii::Vector<double>
-  SharedTrace::operator()(const dealii::Vector<double> &v) const
+  DofVector
+  SharedTrace::operator()(const DofVector &v) const
   {
     // deal.II's all_gather() compresses what it sends.
     std::vector<double> sent, received(places.size());
@@ -46,7 +46,7 @@ namespace Debond
                                      MPI_DOUBLE,
                                      ranks);
     AssertThrowMPI(error);
-    dealii::Vector<double> result(static_cast<unsigned int>(places.size()));
+    DofVector result(static_cast<unsigned int>(places.size()));
     for (std::size_t i = 0; i < places.size(); ++i)
       result(places[i]) = received[i];
     return result;

@@ -773,8 +773,7 @@ namespace Debond
 
   template <int dim>
   void
-  TruncatedCycle<dim>::vmult(dealii::Vector<double>       &dst,
-                             const dealii::Vector<double> &src) const
+  TruncatedCycle<dim>::vmult(DofVector &dst, const DofVector &src) const
   {
     const Level &level = levels[first];
     // Single precision has a smaller range, too.

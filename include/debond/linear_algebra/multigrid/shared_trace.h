@@ -2,8 +2,7 @@
 #ifndef debond_linear_algebra_multigrid_shared_trace_h
 #define debond_linear_algebra_multigrid_shared_trace_h
 
-#include <deal.II/lac/vector.h>
-
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/linear_algebra/multigrid/shared_nodes.h>
 
 #include <vector>
@@ -22,8 +21,8 @@ namespace Debond
                 const std::vector<unsigned int> &unknowns);
 
     /// In the order of the unknowns.
-    dealii::Vector<double>
-    operator()(const dealii::Vector<double> &v) const;
+    DofVector
+    operator()(const DofVector &v) const;
 
   private:
     const MPI_Comm            ranks;

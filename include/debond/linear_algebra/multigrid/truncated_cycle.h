@@ -3,8 +3,8 @@
 #define debond_linear_algebra_multigrid_truncated_cycle_h
 
 #include <deal.II/lac/sparse_matrix.h>
-#include <deal.II/lac/vector.h>
 
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/linear_algebra/multigrid/root_level.h>
 #include <debond/linear_algebra/multigrid/shared_nodes.h>
 #include <debond/linear_algebra/multigrid/shared_rows.h>
@@ -95,7 +95,7 @@ namespace Debond
 
     /// dst = B src, on the level of truncate().
     void
-    vmult(dealii::Vector<double> &dst, const dealii::Vector<double> &src) const;
+    vmult(DofVector &dst, const DofVector &src) const;
 
     /// Bytes.
     std::size_t

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_linear_algebra_dof_vector_h
+#define debond_linear_algebra_dof_vector_h
+
+#include <deal.II/lac/vector.h>
+
+namespace Debond
+{
+  /// An entry for each degree of freedom: displacements u, loads f, residuals.
+  /// What has an entry for each contact node is an Eigen vector.
+  using DofVector = dealii::Vector<double>;
+} // namespace Debond
+
+#endif
