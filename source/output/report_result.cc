@@ -3,6 +3,7 @@
 #include <debond/output/report.h>
 
 #include <cmath>
+#include <iomanip>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,37 @@ namespace Debond
           scientific(*solve.functional_from_start, 10) +
             ", of the state that loading leads to; the lower one above was found"
             " beside it");
+    }
+
+
+
+    template <int dim>
+    void
+    report_coming_off(const ComingOff<dim> &off, Record &record)
+    {
+      const RigidMotion<dim> &motion = off.motion;
+      const auto list = [&](const std::string &name, const auto &tensor) {
+        Record::Json             numbers = Record::Json::array();
+        std::vector<std::string> texts;
+        for (unsigned int i = 0; i < tensor.dimension; ++i)
+          {
+            numbers.push_back(tensor[i]);
+            texts.push_back(words(std::setprecision(3), tensor[i]));
+          }
+        record.add("/comes_off/" + name, numbers);
+        return "(" + join(texts, ", ") + ")";
+      };
+      const std::string centre      = list("centre", motion.centre);
+      const std::string translation = list("translation", motion.translation);
+      const std::string rotation    = list("rotation", motion.rotation);
+      record.add("/comes_off/work", off.work);
+      record.add("/comes_off/towards_foundation", off.towards_foundation);
+      record.line("comes off by",
+                  "translation " + translation + " of " + centre +
+                    " and rotation " + rotation +
+                    " for a largest opening of 1");
+      record.line("work of the loads",
+                  words(std::setprecision(3), off.work, " for that"));
     }
 
 
@@ -391,6 +423,8 @@ namespace Debond
                    scene.problem().unknowns().contact().size());
       }
     report_status(result, record);
+    if (result.coming_off)
+      report_coming_off(*result.coming_off, record);
     if (result.estimate)
       report_estimate(*result.estimate, record);
     report_minimum(result.solve.minimum,

@@ -64,8 +64,8 @@ namespace Debond
 
     result.status  = to_string(solve.status);
     result.message = solve.message;
-    // The solver is content, but its result is not a solution.
-    if (solve.status == SolverStatus::success && !failure.empty())
+    // The solver is content, but its result is not what it says.
+    if (result.is_answer() && !failure.empty())
       {
         result.status  = "not verified";
         result.message = failure;
@@ -128,10 +128,22 @@ namespace Debond
     append(result.solve.minimum.notes, result.notes);
     append(notes, result.notes);
     append(scene.notes(), result.notes);
-    if (result.solve.status == SolverStatus::comes_off && result.path.empty())
+    std::string not_off;
+    if (result.solve.status == SolverStatus::comes_off)
       {
-        judge("", "", result);
-        return;
+        result.coming_off = coming_off(scene.problem(),
+                                       scene.law(),
+                                       result.solve.comes_off_at.value_or(1.));
+        if (!result.coming_off)
+          not_off =
+            "the solver says that the body comes off, but no rigid motion away "
+            "from the foundation is found along which the loads do more work "
+            "than rounding. Hold the body by a support, or change the loads.";
+        if (result.path.empty())
+          {
+            judge(not_off, "", result);
+            return;
+          }
       }
 
     dealii::Timer timer;
@@ -149,7 +161,9 @@ namespace Debond
                                         result.solve.u,
                                         result.solve.load_factor);
     result.times.emplace_back("verification", timer.wall_time());
-    judge(verification_message(verification.tolerance, result),
+    judge(not_off.empty() ?
+            verification_message(verification.tolerance, result) :
+            not_off,
           shortfall,
           result);
 

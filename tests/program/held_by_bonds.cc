@@ -2,9 +2,11 @@
 // Bodies that only their bonds and the foundation hold, against closed forms:
 // columns pulled and pressed, pulled off and tilted.
 
+#include <debond/check/coming_off.h>
 #include <debond/input/parameters.h>
 #include <debond/program/exit_code.h>
 #include <debond/program/run.h>
+#include <debond/solve/scene.h>
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -144,6 +146,48 @@ namespace
 
 
 
+  /// The motion is a translation in y and a rotation about z, from the middle
+  /// of the pad's lower side, with what the loads do along it.
+  void
+  check_coming_off(const Json        &summary,
+                   const unsigned int dim,
+                   const double       translation,
+                   const double       rotation,
+                   const double       work)
+  {
+    const Json &off   = summary["comes_off"];
+    double      error = 0.;
+    for (unsigned int d = 0; d < dim; ++d)
+      error = std::max(error,
+                       std::abs(off["translation"][d].get<double>() -
+                                (d == 1 ? translation : 0.)));
+    check("translation", error, 1e-9);
+    check("rotation",
+          std::abs(off["rotation"].back().get<double>() - rotation),
+          1e-9 * std::max(1., std::abs(rotation)));
+    check("work", relative(off["work"], work), 1e-9);
+  }
+
+
+
+  /// What coming_off() says of the scene.
+  bool
+  comes_off(const Values &assignments)
+  {
+    SceneTable table;
+    for (const std::string &assignment : assignments)
+      table.assign(assignment);
+    const Parameters parameters = table.parameters("scene.prm");
+    const auto       is_off     = [&](const auto &scene) {
+      return coming_off(scene.problem(), scene.law(), 1.).has_value();
+    };
+    return parameters.dimension == 2 ?
+             is_off(Scene<2>(parameters, MatrixStorage::serial)) :
+             is_off(Scene<3>(parameters, MatrixStorage::serial));
+  }
+
+
+
   void
   test_column(const unsigned int dim, const Units &units, const bool may_widen)
   {
@@ -186,6 +230,7 @@ namespace
     const Json off = solve_scene(scene + pulled(dim, text(1.0000001 * a * M)));
     check("just above", off["status"] == "comes off" && off["exit_code"] == 0);
     check("which has no J", off["functional"].is_null());
+    check_coming_off(off, dim, 1., 0., 1.0000001 * a * M * area);
     check("and without bonds",
           solve_scene(scene + pulled(dim, text(1e-9 * a * M)) +
                       Values{"Contact law/Law=none"})["status"] == "comes off");
@@ -201,6 +246,7 @@ namespace
     check("load path", path["status"] == "comes off");
     check("at factor 1.2", path["load_path"]["comes_off_at"] == 1.2);
     check("after 0.8", path["load_path"]["last_factor"] == 0.8);
+    check_coming_off(path, dim, 1., 0., 1.2 * a * M * area);
     check("where J is",
           relative(path["functional"],
                    -0.32 * a * M * a * M * area * (H / E + 1. / a)),
@@ -231,9 +277,27 @@ namespace
                 result["bond_states"]["contact"] > 0 &&
                 (part < 0.6 || result["bond_states"]["free"] > 0));
       }
+    // It turns about the end beyond which the resultant is.
+    const double depth = dim == 3 ? 0.1 * units.length : 1.;
     for (const double part : {1.01, 1.5, -1.01})
-      check("resultant at " + text(part),
-            solve_scene(at(part))["status"] == "comes off");
+      {
+        const Json result = solve_scene(at(part));
+        check("resultant at " + text(part), result["status"] == "comes off");
+        check_coming_off(result,
+                         dim,
+                         0.5,
+                         (part < 0. ? 1. : -1.) / L,
+                         0.5e-3 * units.modulus * L * depth *
+                           (std::abs(part) - 1.));
+      }
+    // Without the solver, close to where it begins; bonds do not count.
+    for (const double part : {0.999999, -0.999999, 1.000001})
+      check("resultant at " + text(part) + ", of loads and foundation alone",
+            comes_off(at(part)) == (std::abs(part) > 1.));
+    check("bonds do not count",
+          comes_off(pad(dim, units, false) + pulled(dim, "1e-12")));
+    check("without a load there is no work",
+          !comes_off(pad(dim, units, false)));
   }
 
 

@@ -2,6 +2,7 @@
 #ifndef debond_output_run_result_h
 #define debond_output_run_result_h
 
+#include <debond/check/coming_off.h>
 #include <debond/check/displacement_error.h>
 #include <debond/check/error_estimate.h>
 #include <debond/check/largest_values.h>
@@ -36,6 +37,9 @@ namespace Debond
 
     /// Of what the solver found, if it has come to its end.
     std::optional<ErrorEstimate> estimate;
+
+    /// If the solver says that the body comes off, and it does.
+    std::optional<ComingOff<dim>> coming_off;
 
     /// If the mesh was refined; all the rest is of the last one.
     std::vector<AdaptiveLevel> levels;
@@ -77,7 +81,7 @@ namespace Debond
     bool
     has_displacement() const
     {
-      return !comes_off() || !path.empty();
+      return solve.status != SolverStatus::comes_off || !path.empty();
     }
   };
 } // namespace Debond

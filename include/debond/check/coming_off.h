@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_check_coming_off_h
+#define debond_check_coming_off_h
+
+#include <debond/contact/law.h>
+#include <debond/elasticity/elastic_problem.h>
+#include <debond/elasticity/rigid_motions.h>
+
+#include <optional>
+
+namespace Debond
+{
+  /// A rigid motion along which J falls without end: no contact node goes
+  /// towards the foundation, the loads do work, and what bonds take of it ends.
+  template <int dim>
+  struct ComingOff
+  {
+    /// About the mean of the contact nodes, whose largest normal displacement
+    /// is 1.
+    RigidMotion<dim> motion;
+
+    /// Of the loads, for each unit of that displacement: a force.
+    double work;
+
+    /// The largest normal displacement of a contact node towards the
+    /// foundation: rounding.
+    double towards_foundation;
+  };
+
+  /**
+   * Whether the loads times @p factors pull the body off, from loads, supports
+   * and law, without the solver: the motion is the projection of the loads'
+   * resultant on the rigid motions that supports and foundation allow. Far
+   * enough along it all bonds that move are on the last piece of the law, where
+   * they do not pull.
+   *
+   * None if the foundation alone balances the loads, if what is left is
+   * rounding, or if the law never stops to pull: then the body does not come
+   * off, or it cannot be told.
+   */
+  template <int dim>
+  std::optional<ComingOff<dim>>
+  coming_off(const ElasticProblem<dim> &problem,
+             const AdhesiveLaw         &law,
+             const LoadFactors          factors);
+} // namespace Debond
+
+#endif

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/optimization/polar_cone.h>
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Directions that differ by less are the same or opposite.
+    constexpr double dependent = 1e-12;
+  } // namespace
+
+
+
+  Eigen::VectorXd
+  project_on_polar_cone(const MatrixView &B, const Eigen::VectorXd &f)
+  {
+    Eigen::MatrixXd directions = B;
+    for (auto direction : directions.colwise())
+      direction.normalize();
+    const double rounding =
+      16. * std::numeric_limits<double>::epsilon() * f.norm();
+
+    std::vector<Eigen::Index> active;
+    Eigen::VectorXd           lambda; // of the active columns
+    Eigen::VectorXd           p = f;
+    // Columns that rounding keeps from bringing p closer to 0.
+    std::vector<bool> is_useless(directions.cols(), false);
+    // Else each change of the active set does; this is far above what scenes
+    // need.
+    for (Eigen::Index step = 0; step < 100 * (B.cols() + B.rows()); ++step)
+      {
+        Eigen::Index next    = -1;
+        double       largest = rounding;
+        for (Eigen::Index i = 0; i < directions.cols(); ++i)
+          if (const double product = directions.col(i).dot(p);
+              product > largest && !is_useless[i])
+            {
+              largest = product;
+              next    = i;
+            }
+        if (next < 0)
+          return p;
+        const double length = p.norm();
+        active.push_back(next);
+        lambda.conservativeResize(lambda.size() + 1);
+        lambda.tail<1>().setZero();
+
+        for (;;)
+          {
+            const Eigen::MatrixXd A = directions(Eigen::all, active);
+            Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+            qr.setThreshold(dependent);
+            const Eigen::VectorXd least_squares = qr.compute(A).solve(f);
+            // As far towards it as no multiplier becomes negative.
+            double       part   = 1.;
+            Eigen::Index leaves = -1;
+            for (Eigen::Index i = 0; i < lambda.size(); ++i)
+              if (least_squares[i] <= 0.)
+                {
+                  const double until =
+                    lambda[i] / (lambda[i] - least_squares[i]);
+                  if (leaves < 0 || until < part)
+                    {
+                      part   = until;
+                      leaves = i;
+                    }
+                }
+            if (leaves < 0)
+              {
+                lambda = least_squares;
+                p      = f - A * lambda;
+                break;
+              }
+            lambda += part * (least_squares - lambda);
+            active.erase(active.begin() + leaves);
+            const Eigen::Index behind      = lambda.size() - leaves - 1;
+            lambda.segment(leaves, behind) = lambda.tail(behind).eval();
+            lambda.conservativeResize(lambda.size() - 1);
+            if (active.empty())
+              {
+                p = f;
+                break;
+              }
+          }
+        if (p.norm() < length)
+          std::fill(is_useless.begin(), is_useless.end(), false);
+        else
+          is_useless[next] = true;
+      }
+    throw std::runtime_error("The projection on a cone does not end: its "
+                             "directions differ by rounding only.");
+  }
+} // namespace Debond
