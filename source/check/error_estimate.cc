@@ -5,7 +5,6 @@
 #include <debond/check/error_estimate.h>
 #include <debond/contact/field_value.h>
 #include <debond/elasticity/linear_simplex.h>
-#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -155,7 +154,8 @@ namespace Debond
         , s(problem.unknowns().contact().trace(u))
         , dead_loads(dead_loads)
         , load_factor(factors.loads)
-        , largest_s(largest(piece == nullptr ? s : piece->trace(u)))
+        , largest_s((piece == nullptr ? s : piece->trace(u))
+                      .template lpNorm<Eigen::Infinity>())
       {
         const DofVector displacement =
           problem.unknowns().cartesian_displacement(u, factors);
@@ -255,12 +255,6 @@ namespace Debond
         /// ContactBoundary's faces.
         std::array<unsigned int, dim> in_cell;
       };
-
-      static double
-      largest(const DofVector &s)
-      {
-        return s.size() > 0 ? s.linfty_norm() : 0.;
-      }
 
       /// Loads are evaluated where load_vector() and thermal_stresses() do it:
       /// there they are finite.
@@ -548,9 +542,8 @@ namespace Debond
       {
         // Displacements of iterative methods may be off by so much.
         constexpr double tolerance = 1e-6;
-        double           r_nu =
-          r * normal - adhesion.traction(face, barycentric, eigen_view(s));
-        bool is_closed = true;
+        double r_nu      = r * normal - adhesion.traction(face, barycentric, s);
+        bool   is_closed = true;
         for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
           is_closed = is_closed &&
                       (face.node(k) == dealii::numbers::invalid_unsigned_int ||
@@ -587,7 +580,7 @@ namespace Debond
       const BoundaryConditions                                &conditions;
       const Supports<dim>                                     &supports;
       const Loads<dim>                                        &loads;
-      const DofVector                                          s;
+      const Eigen::VectorXd                                    s;
       const Loads<dim>                                        *dead_loads;
       const double                                             load_factor;
       const double                                             largest_s;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/check/load_path_state.h>
-#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
 #include <cctype>
@@ -31,7 +30,7 @@ namespace Debond
                      const AdhesionIntegral<dim> &adhesion,
                      const LoadFactors            factors,
                      const DofVector             &u,
-                     const DofVector             &s)
+                     const VectorView            &s)
     {
       const ElasticUnknowns<dim> &unknowns = problem.unknowns();
       if (!unknowns.has_prescribed_displacements())
@@ -39,7 +38,7 @@ namespace Debond
       DofVector displacement = unknowns.lifting({0., 1.});
       displacement -= unknowns.lifting({0., 0.});
       double sum = problem.fields().residual(u, factors) * displacement;
-      const std::vector<double> forces = adhesion.held_forces(eigen_view(s));
+      const std::vector<double> forces = adhesion.held_forces(s);
       const auto &held = unknowns.contact().boundary().held_vertices;
       for (unsigned int k = 0; k < held.size(); ++k)
         sum += forces[k] * held[k].normal_displacement;
@@ -60,7 +59,7 @@ namespace Debond
                   const Verification<dim>     &verification)
   {
     const auto        &nodes = problem.unknowns().contact().boundary().nodes;
-    DofVector          s(problem.unknowns().contact().size());
+    Eigen::VectorXd    s(problem.unknowns().contact().size());
     LoadPathState<dim> state   = {};
     double             measure = 0.;
 
@@ -100,10 +99,9 @@ namespace Debond
       state.largest_gap = verification.largest_opening;
     else
       for (const auto &face : boundary.faces)
-        state.largest_gap = std::max(
-          state.largest_gap,
-          -range_on_simplex<dim>(adhesion.trace_on(face, eigen_view(s)), 2)
-             .first);
+        state.largest_gap =
+          std::max(state.largest_gap,
+                   -range_on_simplex<dim>(adhesion.trace_on(face, s), 2).first);
     if (measure > 0.)
       {
         for (double *number : {&state.contact_part,
@@ -116,7 +114,7 @@ namespace Debond
       }
 
     state.elastic_energy  = problem.fields().strain_energy(u, factors);
-    state.adhesion_energy = adhesion.energy(eigen_view(s));
+    state.adhesion_energy = adhesion.energy(s);
     state.unit_load_work  = problem.fields().load_work(u, factors);
     state.unit_displacement_work =
       work_of_supports(problem, adhesion, factors, u, s);

@@ -2,7 +2,6 @@
 #include <debond/check/broken_zone.h>
 #include <debond/check/verification.h>
 #include <debond/elasticity/cell_nodes.h>
-#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -93,7 +92,7 @@ namespace Debond
                const AdhesionIntegral<dim>         &adhesion,
                const ContactBoundary<dim>          &boundary,
                const std::vector<ContactNodeState> &nodes,
-               const DofVector                     &rounding,
+               const VectorView                    &rounding,
                const double                         largest_reaction,
                const double                         largest_displacement)
     {
@@ -217,7 +216,7 @@ namespace Debond
     template <int dim>
     void
     compute_violations(const AdhesionIntegral<dim>   &adhesion,
-                       const DofVector               &s,
+                       const VectorView              &s,
                        const std::vector<LawScale>   &scales,
                        std::vector<ContactNodeState> &nodes)
     {
@@ -250,7 +249,7 @@ namespace Debond
               radius[i] = delta[i] * scales[i].length;
             }
           const std::vector<Interval> intervals =
-            adhesion.force_intervals(eigen_view(s), radius);
+            adhesion.force_intervals(s, radius);
           for (unsigned int i = 0; i < n; ++i)
             {
               const Interval allowed =
@@ -486,16 +485,15 @@ namespace Debond
     };
     const DofVector residual = problem.fields().residual(u, factors);
 
-    const DofVector             s               = trace(u);
-    const DofVector             normal_residual = trace(residual);
-    const std::vector<Interval> forces =
-      adhesion.force_intervals(eigen_view(s), 0.);
+    const Eigen::VectorXd       s               = trace(u);
+    const Eigen::VectorXd       normal_residual = trace(residual);
+    const std::vector<Interval> forces = adhesion.force_intervals(s, 0.);
 
     Verification<dim> result;
     result.state_names     = state_names(law);
     result.penetration     = 0.;
     result.largest_opening = 0.;
-    result.broken_zone = broken_zone(boundary, law, adhesion, eigen_view(s));
+    result.broken_zone     = broken_zone(boundary, law, adhesion, s);
     for (unsigned int i = 0; i < s.size(); ++i)
       {
         ContactNodeState node;
@@ -528,7 +526,8 @@ namespace Debond
                                                     largest_displacement);
     compute_violations(adhesion, s, scales, result.nodes);
 
-    result.law_violation = 0.;
+    const double largest_s = s.lpNorm<Eigen::Infinity>();
+    result.law_violation   = 0.;
     for (unsigned int i = 0; i < result.nodes.size(); ++i)
       {
         ContactNodeState &node = result.nodes[i];
@@ -537,7 +536,7 @@ namespace Debond
                   adhesion.bonds_at(i),
                   adhesion.least_piece(i),
                   scales[i],
-                  s.linfty_norm(),
+                  largest_s,
                   tolerance,
                   node);
         result.law_violation = std::max(result.law_violation, node.violation);
@@ -550,7 +549,7 @@ namespace Debond
         0.;
     compute_force_balance(problem,
                           residual,
-                          adhesion.held_forces(eigen_view(s)),
+                          adhesion.held_forces(s),
                           factors,
                           resolved,
                           piece,

@@ -46,10 +46,10 @@ namespace Debond
 
 
   template <int dim>
-  DofVector
+  Eigen::VectorXd
   ContactSpace<dim>::trace(const DofVector &u) const
   {
-    DofVector s(size());
+    Eigen::VectorXd s(size());
     for (unsigned int i = 0; i < size(); ++i)
       s(i) = u(normal_dofs[i]);
     return s;
@@ -91,10 +91,10 @@ namespace Debond
 
 
   template <int dim>
-  DofVector
+  Eigen::VectorXd
   ContactSpace<dim>::at_rest() const
   {
-    DofVector s(size());
+    Eigen::VectorXd s(size());
     for (unsigned int i = 0; i < size(); ++i)
       s(i) = 0. - nodes_and_faces.nodes[i].gap;
     return s;

@@ -6,7 +6,6 @@
 #include <deal.II/lac/vector_memory.h>
 
 #include <debond/contact/functional.h>
-#include <debond/linear_algebra/eigen_view.h>
 
 namespace Debond
 {
@@ -21,8 +20,8 @@ namespace Debond
       : functional(functional)
       , gradient(memory)
       , A_d(memory)
-      , s(eigen_view(functional.contact.trace(x)))
-      , s_d(eigen_view(functional.contact.trace(d)))
+      , s(functional.contact.trace(x))
+      , s_d(functional.contact.trace(d))
       , adhesion_at_x(functional.adhesion.value(s))
     {
       gradient->reinit(x, true);
@@ -93,8 +92,7 @@ namespace Debond
   {
     VectorType A_v(v);
     A.vmult(A_v, v);
-    return 0.5 * (A_v * v) - f * v +
-           adhesion.value(eigen_view(contact.trace(v)));
+    return 0.5 * (A_v * v) - f * v + adhesion.value(contact.trace(v));
   }
 
 
@@ -106,7 +104,7 @@ namespace Debond
   {
     A.vmult(eta, v);
     eta -= f;
-    contact.add_normal(adhesion.subgradient(eigen_view(contact.trace(v))), eta);
+    contact.add_normal(adhesion.subgradient(contact.trace(v)), eta);
   }
 
 

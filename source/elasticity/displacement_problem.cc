@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/elasticity/displacement_problem.h>
-#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,13 +29,23 @@ namespace Debond
 
 
 
-  DofVector
+  Eigen::VectorXd
   DisplacementProblem::trace(const DofVector &v) const
   {
-    DofVector s(static_cast<unsigned int>(normals.size()));
+    Eigen::VectorXd s(normals.size());
     for (unsigned int i = 0; i < normals.size(); ++i)
       s(i) = v(normals[i]);
     return s;
+  }
+
+
+
+  void
+  DisplacementProblem::add_normal(const VectorView &s, DofVector &v) const
+  {
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      if (normals[i] != dealii::numbers::invalid_unsigned_int)
+        v(normals[i]) += s(i);
   }
 
 
@@ -62,13 +71,13 @@ namespace Debond
   {
     DofVector internal(u.size());
     multiply(internal, u);
-    const DofVector       s  = trace(u);
-    const Eigen::VectorXd xi = phi.subgradient(eigen_view(s));
+    const Eigen::VectorXd s  = trace(u);
+    const Eigen::VectorXd xi = phi.subgradient(s);
 
     State        state;
     const double energy   = 0.5 * product(internal, u);
     const double work     = product(f, u);
-    const double adhesion = phi.value(eigen_view(s));
+    const double adhesion = phi.value(s);
     state.functional      = energy - work + adhesion;
 
     // The terms of a row of A u are as large as diagonal times displacement,
@@ -106,8 +115,7 @@ namespace Debond
   DisplacementProblem::majorise()
   {
     // Phi <= Phi(s_k) + xi'(s - s_k) + 1/2 (s - s_k)'E (s - s_k).
-    const DofVector                   point        = trace(u);
-    const auto                        s            = eigen_view(point);
+    const Eigen::VectorXd             s            = trace(u);
     const Eigen::SparseMatrix<double> previous_E   = E;
     const Eigen::VectorXd             previous_b_c = b_c;
     E                                              = phi.curvature(s);
@@ -127,9 +135,8 @@ namespace Debond
   {
     multiply(force, u);
     force.sadd(-1., 1., f);
-    const DofVector       s   = trace(u);
-    const Eigen::VectorXd E_s = E * eigen_view(s);
-    add_normal(Eigen::VectorXd(b_c - E_s), force);
+    const Eigen::VectorXd E_s = E * trace(u);
+    add_normal(b_c - E_s, force);
   }
 
 
@@ -139,8 +146,7 @@ namespace Debond
                                          const DofVector &src) const
   {
     multiply(dst, src);
-    const DofVector s = trace(src);
-    add_normal(Eigen::VectorXd(E * eigen_view(s)), dst);
+    add_normal(E * trace(src), dst);
     restrict_to_free(dst);
   }
 

@@ -431,14 +431,14 @@ namespace Debond
 
 
   template <int dim>
-  DofVector
+  Eigen::VectorXd
   ElasticLevels<dim>::trace(const unsigned int l, const DofVector &v) const
   {
     if (l == 0 && piece != nullptr)
       return piece->trace(v);
     if (is_shared(l))
       return (*levels[l].trace)(v);
-    DofVector s(static_cast<unsigned int>(levels[l].normals.size()));
+    Eigen::VectorXd s(levels[l].normals.size());
     for (unsigned int i = 0; i < s.size(); ++i)
       s(i) = v(levels[l].normals[i]);
     return s;

@@ -5,7 +5,6 @@
 #include <debond/contact/field_value.h>
 #include <debond/elasticity/equilibrium_problem.h>
 #include <debond/elasticity/linear_simplex.h>
-#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -700,9 +699,8 @@ namespace Debond
                                   const Eigen::VectorXd     &kept,
                                   const std::vector<double> &weights) const
   {
-    const DofVector unknowns =
-      condensed.expand(DofVector(kept.begin(), kept.end()));
-    double energy = 0.;
+    const DofVector unknowns = condensed.expand(kept);
+    double          energy   = 0.;
     for (unsigned int element = 0; element < places.size(); ++element)
       {
         const Place          &place  = places[element];
@@ -723,7 +721,7 @@ namespace Debond
                                    materials(cell->material_id()));
           }
       }
-    const auto S = symmetric_view(condensed.schur_complement());
+    const auto S = condensed.schur_complement();
     // It may be more at other displacements.
     return 4. * std::abs(condensed.energy_at_zero() - 0.5 * kept.dot(S * kept) +
                          energy);

@@ -4,7 +4,6 @@
 #include <deal.II/lac/vector_memory.templates.h>
 
 #include <debond/elasticity/level_problem.h>
-#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -127,7 +126,7 @@ namespace Debond
 
 
   template <int dim>
-  DofVector
+  Eigen::VectorXd
   LevelProblem<dim>::trace(const DofVector &v) const
   {
     return levels.trace(l, v);
@@ -150,10 +149,10 @@ namespace Debond
   {
     // Each rank goes through all nodes, and then adds what that does to its
     // unknowns.
-    using Entry             = Eigen::SparseMatrix<double>::InnerIterator;
-    DofVector       s       = trace(u);
-    const DofVector old_s   = s;
-    DofVector       force_s = trace(force);
+    using Entry                   = Eigen::SparseMatrix<double>::InnerIterator;
+    Eigen::VectorXd       s       = trace(u);
+    const Eigen::VectorXd old_s   = s;
+    Eigen::VectorXd       force_s = trace(force);
     for (unsigned int i = 0; i < normals.size(); ++i)
       {
         const double stiffness = contact_rows.coeff(i, i) + E.coeff(i, i);
@@ -161,11 +160,9 @@ namespace Debond
         if (s(i) == old_s(i))
           continue;
         for (Entry entry(contact_rows, i); entry; ++entry)
-          force_s(static_cast<unsigned int>(entry.row())) +=
-            (old_s(i) - s(i)) * entry.value();
+          force_s(entry.row()) += (old_s(i) - s(i)) * entry.value();
         for (Entry entry(E, i); entry; ++entry)
-          force_s(static_cast<unsigned int>(entry.row())) +=
-            (old_s(i) - s(i)) * entry.value();
+          force_s(entry.row()) += (old_s(i) - s(i)) * entry.value();
       }
 
     constexpr unsigned int elsewhere = dealii::numbers::invalid_unsigned_int;
@@ -209,8 +206,8 @@ namespace Debond
           return interrupted();
         ++result.active_set_steps;
         smooth_contact(force);
-        const DofVector s       = trace(u);
-        const DofVector force_s = trace(force);
+        const Eigen::VectorXd s       = trace(u);
+        const Eigen::VectorXd force_s = trace(force);
         for (unsigned int i = 0; i < normals.size(); ++i)
           active[i] = s(i) == 0. && force_s(i) >= 0.;
         free_force = force;
@@ -278,8 +275,8 @@ namespace Debond
           }
 
         // Onto s <= 0, and then as far as the majorant falls.
-        double    longest = std::numeric_limits<double>::infinity();
-        DofVector c       = trace(correction);
+        double          longest = std::numeric_limits<double>::infinity();
+        Eigen::VectorXd c       = trace(correction);
         for (unsigned int i = 0; i < normals.size(); ++i)
           {
             c(i) = std::min(c(i), -s(i));
@@ -289,7 +286,7 @@ namespace Debond
               correction(normals[i]) = c(i);
           }
         multiply(image, correction);
-        add_normal(Eigen::VectorXd(E * eigen_view(c)), image);
+        add_normal(E * c, image);
         const double slope     = product(force, correction);
         const double curvature = product(image, correction);
         if (!(slope > 0.) || !(curvature > 0.))

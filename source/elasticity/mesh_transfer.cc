@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/mesh_transfer.h>
-#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
 #include <vector>
@@ -54,10 +53,7 @@ namespace Debond
       {
         // Between nodes a gap is not what a coarser mesh sees.
         const ContactSpace<dim> &contact = problem.unknowns().contact();
-        DofVector                excess  = contact.trace(result);
-        for (double &s : excess)
-          s = -std::max(s, 0.);
-        contact.add_normal(eigen_view(excess), result);
+        contact.add_normal(-contact.trace(result).cwiseMax(0.), result);
       }
     return result;
   }

@@ -254,7 +254,7 @@ namespace Debond
 
 
   template <int dim>
-  DofVector
+  Eigen::VectorXd
   ProblemPiece<dim>::trace(const DofVector &v) const
   {
     return (*shared_trace)(v);

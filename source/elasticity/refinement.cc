@@ -3,7 +3,6 @@
 
 #include <debond/elasticity/extended_operator.h>
 #include <debond/elasticity/refinement.h>
-#include <debond/linear_algebra/eigen_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +50,7 @@ namespace Debond
     if (free.empty())
       return;
 
-    const dealii::FullMatrix<double> &S = condensed.schur_complement();
+    const MatrixView   S = condensed.schur_complement();
     const unsigned int n = static_cast<unsigned int>(free.size());
     // Where rounding has made S + E indefinite a larger diagonal mends it.
     for (double shift = 0.; shift < 1e-3;
@@ -90,11 +89,11 @@ namespace Debond
   DofVector
   CondensedCorrection::solve(const DofVector &r) const
   {
-    return condensed.solve(r, [this](const DofVector &g) {
-      DofVector s(g.size());
+    return condensed.solve(r, [this](const Eigen::VectorXd &g) {
+      Eigen::VectorXd s = Eigen::VectorXd::Zero(g.size());
       if (free.empty())
         return s;
-      DofVector s_free(static_cast<unsigned int>(free.size()));
+      dealii::Vector<double> s_free(static_cast<unsigned int>(free.size()));
       for (unsigned int k = 0; k < free.size(); ++k)
         s_free(k) = g(free[k]);
       factor.solve(s_free);
@@ -199,8 +198,8 @@ namespace Debond
       }
     double energy = problem.load_at(factors) * u;
 
-    const DofVector       s  = problem.unknowns().contact().trace(u);
-    const Eigen::VectorXd xi = phi.subgradient(eigen_view(s));
+    const Eigen::VectorXd s  = problem.unknowns().contact().trace(u);
+    const Eigen::VectorXd xi = phi.subgradient(s);
     for (unsigned int i = 0; i < s.size(); ++i)
       energy -= xi(i) * s(i);
     // Where nothing of the energy is known there is every reason to refine.

@@ -3,7 +3,6 @@
 
 #include <debond/elasticity/equilibrium_problem.h>
 #include <debond/elasticity/trace_constant.h>
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/mesh/box.h>
 
 #include <Eigen/Eigenvalues>
@@ -58,8 +57,8 @@ namespace Debond
           springs.emplace_back(sides[i].mean, spring * mass(i));
           springs.emplace_back(sides[i].slope, spring * mass(n + i));
         }
-      const auto condensed    = problem.condense(true, weights, springs);
-      const Eigen::MatrixXd S = symmetric_view(condensed->schur_complement());
+      const auto condensed       = problem.condense(true, weights, springs);
+      const Eigen::MatrixXd S    = condensed->schur_complement();
       const Eigen::VectorXd root = mass.cwiseSqrt();
       const Eigen::HouseholderQR<Eigen::MatrixXd> qr(root.asDiagonal() *
                                                      linear);

@@ -290,15 +290,19 @@ namespace Debond
 
 
 
-  const dealii::FullMatrix<double> &
+  MatrixView
   Condensation::schur_complement() const
   {
-    return S;
+    // deal.II's matrices have contiguous rows, Eigen's contiguous columns,
+    // which for a symmetric one is the same.
+    return Eigen::Map<const Eigen::MatrixXd>(S.empty() ? nullptr : &S(0, 0),
+                                             S.m(),
+                                             S.n());
   }
 
 
 
-  const DofVector &
+  const Eigen::VectorXd &
   Condensation::load() const
   {
     return g;
@@ -378,13 +382,13 @@ namespace Debond
 
 
 
-  DofVector
+  Eigen::VectorXd
   Condensation::condensed_load(const std::vector<double> &reduced) const
   {
     const unsigned int n_kept = static_cast<unsigned int>(L_ss.m());
     const unsigned int n_eliminated =
       static_cast<unsigned int>(unknowns.size()) - n_kept;
-    DofVector result(n_kept);
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(n_kept);
     for (unsigned int i = 0; i < n_kept; ++i)
       for (unsigned int j = 0; j <= i; ++j)
         result(i) += L_ss(i, j) * reduced[n_eliminated + j];
@@ -395,10 +399,10 @@ namespace Debond
 
   DofVector
   Condensation::backward(const std::vector<double> &reduced,
-                         const DofVector           &s) const
+                         const VectorView          &s) const
   {
     const unsigned int n_eliminated =
-      static_cast<unsigned int>(unknowns.size()) - s.size();
+      static_cast<unsigned int>(unknowns.size() - s.size());
     std::vector<double> x(unknowns.size());
     for (unsigned int i = 0; i < n_eliminated; ++i)
       x[i] = reduced[i];
@@ -422,7 +426,7 @@ namespace Debond
 
 
   DofVector
-  Condensation::expand(const DofVector &s) const
+  Condensation::expand(const VectorView &s) const
   {
     return backward(y, s);
   }
@@ -431,8 +435,9 @@ namespace Debond
 
   DofVector
   Condensation::solve(
-    const DofVector                                   &other_f,
-    const std::function<DofVector(const DofVector &)> &kept_unknowns) const
+    const DofVector &other_f,
+    const std::function<Eigen::VectorXd(const Eigen::VectorXd &)>
+      &kept_unknowns) const
   {
     const std::vector<double> reduced = forward(other_f);
     return backward(reduced, kept_unknowns(condensed_load(reduced)));

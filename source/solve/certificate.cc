@@ -3,7 +3,6 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/elasticity/temperature_load.h>
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/global/rounded_branches.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/solve/certificate.h>
@@ -64,7 +63,7 @@ namespace Debond
     Eigen::VectorXd
     side_means(const EquilibriumProblem &equilibrium,
                const ContactBoundary<2> &boundary,
-               const DofVector          &trace)
+               const VectorView         &trace)
     {
       const auto     &sides = equilibrium.contact_sides();
       Eigen::VectorXd means = Eigen::VectorXd::Zero(sides.size());
@@ -213,8 +212,8 @@ namespace Debond
       const std::vector<ContactSide> &sides = equilibrium.contact_sides();
       const Eigen::Index    n         = static_cast<Eigen::Index>(sides.size());
       const auto            condensed = equilibrium.condense(true);
-      const Eigen::MatrixXd S = symmetric_view(condensed->schur_complement());
-      const Eigen::VectorXd g = eigen_view(condensed->load());
+      const Eigen::MatrixXd S         = condensed->schur_complement();
+      const Eigen::VectorXd g         = condensed->load();
 
       // Means and slopes from mean +- slope / 3, which are <= 0 if the
       // displacement is, as linear tractions <= 0 see it.
@@ -259,8 +258,7 @@ namespace Debond
       certificate.lower   = condensed->energy_at_zero() - 0.5 * x.dot(S * x);
       certificate.reserve = equilibrium.rounding_of(*condensed, x);
       certificate.upper   = equilibrium.elastic_functional(displacement);
-      const DofVector kept(x.begin(), x.end());
-      const DofVector unknowns = condensed->expand(kept);
+      const DofVector unknowns = condensed->expand(x);
       certificate.gaps = equilibrium.constitutive_gaps(displacement, unknowns);
       certificate.stresses = equilibrium.mean_stresses(unknowns);
       for (Eigen::Index i = 0; i < n; ++i)
@@ -392,7 +390,7 @@ namespace Debond
         certificate.upper =
           elastic_functional(solved, displacement) +
           AdhesionIntegral<2>(contact.boundary(), scene->law(), quadrature)
-            .energy(eigen_view(contact.trace(u)));
+            .energy(contact.trace(u));
         const double own = rounding();
         certificate.upper += own;
         std::vector<double> side_energies(certificate.n_sides, 0.);

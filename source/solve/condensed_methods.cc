@@ -36,32 +36,33 @@ namespace Debond
                            const Condensation      &condensed,
                            Checkpoints             *checkpoints,
                            Watch                   &watch,
-                           Vector                  &s,
+                           Eigen::VectorXd         &s,
                            SolveResult             &result)
     {
       // The condensed functional has the same form on the normals alone.
       const ContactSpace<dim> contact =
         scene.problem().unknowns().contact().condensed();
+      const MatrixView                 S = condensed.schur_complement();
+      const dealii::FullMatrix<double> matrix(S.rows(), S.cols(), S.data());
+      const Vector load(condensed.load().begin(), condensed.load().end());
       const Functional<dim, dealii::FullMatrix<double>, Vector> functional(
-        condensed.schur_complement(),
-        condensed.load(),
-        contact,
-        scene.adhesion());
+        matrix, load, contact, scene.adhesion());
 
       // Without loads any tolerance will do.
       bundle.epsilon_s =
         std::max(bundle.epsilon_s * condensed.energy_without_contact(),
                  std::numeric_limits<double>::min());
-      MetricDirection<Vector> direction(symmetric_view(
-                                          condensed.schur_complement()),
+      MetricDirection<Vector> direction(S,
                                         scene.adhesion(),
                                         bundle.bundle_size);
+      Vector                  x(s.begin(), s.end());
       add_bundle_result(ProximalBundle<Vector>(bundle).minimize(functional,
                                                                 direction,
-                                                                s,
+                                                                x,
                                                                 std::ref(watch),
                                                                 checkpoints),
                         result);
+      s = eigen_view(x);
       // The functional differs from J by the energy at s = 0.
       for (BundleIteration &iteration : result.bundle_history)
         iteration.functional += condensed.energy_at_zero();
@@ -76,7 +77,7 @@ namespace Debond
                                const Condensation     &condensed,
                                const bool              has_start,
                                Watch                  &watch,
-                               Vector                 &s,
+                               Eigen::VectorXd        &s,
                                SolveResult            &result)
     {
       // Coarser spaces do not know the gaps of bodies at rest, and what only
@@ -84,32 +85,30 @@ namespace Debond
       const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
       const bool                  is_loose =
         unknowns.has_gap() || !unknowns.held_by_contact().motions.empty();
-      const MatrixView S     = symmetric_view(condensed.schur_complement());
-      const VectorView g     = eigen_view(condensed.load());
-      Eigen::VectorXd  point = eigen_view(s);
+      const MatrixView S = condensed.schur_complement();
+      const VectorView g = condensed.load();
       if (!has_start && is_loose)
-        point = eigen_view(unknowns.contact().at_rest());
+        s = unknowns.contact().at_rest();
       else if (!has_start)
-        point = coarse_start(S,
-                             g,
-                             scene.adhesion(),
-                             coarsen(unknowns.contact().boundary(),
-                                     coarsest_contact_nodes),
-                             method,
-                             result.notes,
-                             [&watch](const MajoriseMinimiseIteration &) {
-                               return watch.may_go_on();
-                             });
+        s = coarse_start(S,
+                         g,
+                         scene.adhesion(),
+                         coarsen(unknowns.contact().boundary(),
+                                 coarsest_contact_nodes),
+                         method,
+                         result.notes,
+                         [&watch](const MajoriseMinimiseIteration &) {
+                           return watch.may_go_on();
+                         });
       CondensedProblem problem(S,
                                g,
                                scene.adhesion(),
-                               point,
+                               s,
                                free_motions_of_contact(unknowns),
                                stiffness_at_contact(scene.problem()));
       add_majorise_result(method.minimize(problem, std::ref(watch)),
                           condensed.energy_at_zero(),
                           result);
-      s = from_eigen(point);
     }
   } // namespace
 
@@ -143,13 +142,10 @@ namespace Debond
       }
     watch.add_energy(condensed.energy_at_zero());
     timer.restart();
-    Vector s(problem.unknowns().contact().size());
+    Eigen::VectorXd s =
+      Eigen::VectorXd::Zero(problem.unknowns().contact().size());
     if (start != nullptr)
-      {
-        s = problem.unknowns().contact().trace(*start);
-        for (double &opening : s)
-          opening = std::min(opening, 0.);
-      }
+      s = problem.unknowns().contact().trace(*start).cwiseMin(0.);
     // If no contact node is free, there is no metric either.
     if (method == SolverMethod::energy_bundle && s.size() > 0)
       solve_by_energy_bundle(parameters.energy_bundle,
@@ -176,8 +172,8 @@ namespace Debond
     else if (can_be_verified(result.status))
       {
         timer.restart();
-        const Vector followed = s;
-        result.minimum        = find_better_minimum(
+        const Eigen::VectorXd followed = s;
+        result.minimum                 = find_better_minimum(
           parameters,
           problem.unknowns().contact().boundary(),
           scene.law(),

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/contact/boundary_graph.h>
 #include <debond/linear_algebra/condensation.h>
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/linear_algebra/window.h>
 #include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/majorise/partial_function.h>
@@ -93,8 +92,8 @@ namespace Debond
       search()
       {
         std::set<unsigned int> covered;
-        for (const unsigned int node : front_nodes(
-               lumped, graph, eigen_view(unknowns.contact().trace(u))))
+        for (const unsigned int node :
+             front_nodes(lumped, graph, unknowns.contact().trace(u)))
           if (covered.count(node) == 0)
             {
               if (result.windows == most_windows || !may_go_on())
@@ -144,7 +143,7 @@ namespace Debond
             if (const auto found = local.find(j); found != local.end())
               local_graph[i].insert(found->second);
 
-        const Eigen::VectorXd s = eigen_view(unknowns.contact().trace(u));
+        const Eigen::VectorXd s = unknowns.contact().trace(u);
         Eigen::VectorXd       part(nodes.size());
         for (unsigned int i = 0; i < nodes.size(); ++i)
           part(i) = s(nodes[i]);
@@ -159,8 +158,8 @@ namespace Debond
         moves.flips         = false;
         moves.splits        = false;
         const BranchSearchResult search =
-          search_branches(symmetric_view(condensed.schur_complement()),
-                          eigen_view(condensed.load()),
+          search_branches(condensed.schur_complement(),
+                          condensed.load(),
                           PartialFunction(scene.adhesion(), s, nodes),
                           SeparableBranches(f),
                           local_graph,
@@ -180,7 +179,7 @@ namespace Debond
         result.complete = result.complete && search.complete;
         if (improvements == 0)
           return;
-        const DofVector v = condensed.expand(from_eigen(part));
+        const DofVector v = condensed.expand(part);
         for (unsigned int k = 0; k < v.size(); ++k)
           u(window.unknowns()[k]) = v(k);
       }

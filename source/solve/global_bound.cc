@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/elasticity/trace_constant.h>
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/global/growth.h>
 #include <debond/optimization/global/node_bound.h>
@@ -310,8 +309,8 @@ namespace Debond
         {
           return {};
         }
-      Eigen::MatrixXd A = symmetric_view(condensed->schur_complement());
-      Eigen::VectorXd b = eigen_view(condensed->load());
+      Eigen::MatrixXd A = condensed->schur_complement();
+      Eigen::VectorXd b = condensed->load();
 
       MeanProblem result;
       result.shifts   = D;

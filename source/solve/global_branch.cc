@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/solve/global_branch.h>
@@ -58,9 +57,9 @@ namespace Debond
                  BranchPoint       &point)
       {
         scale_load(factor);
-        Eigen::VectorXd  s = eigen_view(neighbour.s);
-        CondensedProblem problem(symmetric_view(condensed.schur_complement()),
-                                 eigen_view(condensed.load()),
+        Eigen::VectorXd              s = neighbour.s;
+        CondensedProblem             problem(condensed.schur_complement(),
+                                 condensed.load(),
                                  adhesion,
                                  s);
         const MajoriseMinimiseResult minimum =
@@ -69,7 +68,7 @@ namespace Debond
         if (!can_be_verified(minimum.status) ||
             minimum.functional >= point.functional - rounding)
           return false;
-        point.s          = from_eigen(s);
+        point.s          = s;
         point.functional = minimum.functional;
         return true;
       }
@@ -113,11 +112,11 @@ namespace Debond
   double
   condensed_functional(const Condensation       &condensed,
                        const PiecewiseQuadratic &adhesion,
-                       const DofVector          &s)
+                       const VectorView         &s)
   {
-    Eigen::VectorXd point = eigen_view(s);
-    return CondensedProblem(symmetric_view(condensed.schur_complement()),
-                            eigen_view(condensed.load()),
+    Eigen::VectorXd point = s;
+    return CondensedProblem(condensed.schur_complement(),
+                            condensed.load(),
                             adhesion,
                             point)
       .evaluate()

@@ -4,7 +4,6 @@
 #include <debond/base/interrupt.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/elasticity/refinement.h>
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/stationary_path.h>
 #include <debond/solve/global_branch.h>
@@ -162,13 +161,13 @@ namespace Debond
         const Eigen::VectorXd load = load_at(factors_at(varied[0]));
         const Eigen::VectorXd slope =
           (load_at(factors_at(*other)) - load) / std::abs(*other - varied[0]);
-        StationaryPath path(symmetric_view(condensed.schur_complement()),
+        StationaryPath path(condensed.schur_complement(),
                             load,
                             slope,
                             scene.law().branches(),
                             bonds_of_nodes(bonds),
                             parameters.bonds_heal,
-                            eigen_view(points[0]),
+                            points[0],
                             sign * varied[0]);
         const auto     add = [&](const bool is_stable) {
           const LoadFactors factors = factors_at(sign * path.t() + 0.); // no -0
@@ -176,7 +175,7 @@ namespace Debond
           if (!parameters.bonds_heal)
             bonds.break_for_good(path.point_before_kinks());
           scale_load(factors);
-          const DofVector u = condensed.expand(from_eigen(path.point()));
+          const DofVector         u = condensed.expand(path.point());
           const Verification<dim> verification =
             Debond::verify(scene.problem(), bonds, scene.law(), u, factors);
           LoadPathStep<dim> step = {};
@@ -203,7 +202,7 @@ namespace Debond
 
         using Event                 = StationaryPath::Event;
         Event              last     = Event::contact;
-        const unsigned int most     = 100 + 20 * s.size();
+        const Eigen::Index most     = 100 + 20 * s.size();
         bool               is_going = add(true);
         for (unsigned int k = 0; is_going && last != Event::end; ++k)
           {
@@ -266,21 +265,19 @@ namespace Debond
       bool
       solve(const LoadFactors factors, const LoadPathObserver<dim> &observer)
       {
-        const DofVector last   = s;
-        const double    factor = factors.loads;
+        const Eigen::VectorXd last   = s;
+        const double          factor = factors.loads;
 
         scale_load(factors);
-        Eigen::VectorXd  point = eigen_view(s);
-        CondensedProblem problem(symmetric_view(condensed.schur_complement()),
-                                 eigen_view(condensed.load()),
+        CondensedProblem             problem(condensed.schur_complement(),
+                                 condensed.load(),
                                  adhesion,
-                                 point,
+                                 s,
                                  free_motions,
                                  stiffness_at_contact(scene.problem()));
         const MajoriseMinimiseResult minimum =
           MajoriseMinimise(solver_parameters.majorise_minimise)
             .minimize(problem);
-        s                = from_eigen(point);
         result.status    = minimum.status;
         result.criterion = minimum.residual;
         for (MajoriseMinimiseIteration iteration : minimum.history)
@@ -311,7 +308,7 @@ namespace Debond
             change_factor(steps.back().factors(), last, factors);
         if (!parameters.bonds_heal)
           {
-            adhesion.break_for_good(eigen_view(s));
+            adhesion.break_for_good(s);
             scale_load(factors);
           }
         const DofVector         u            = displacement(factors, s);
@@ -348,7 +345,7 @@ namespace Debond
 
       /// Of all unknowns, refined where rounding has a say in it.
       DofVector
-      displacement(const LoadFactors factors, const DofVector &point)
+      displacement(const LoadFactors factors, const VectorView &point)
       {
         DofVector           u = condensed.expand(point);
         CondensedCorrection solver(condensed);
@@ -413,7 +410,7 @@ namespace Debond
       load_at(const LoadFactors factors)
       {
         condensed.scale_load(factors.loads, factors.displacements);
-        return eigen_view(condensed.load());
+        return condensed.load();
       }
 
       std::vector<StationaryPath::Bond>
@@ -435,7 +432,7 @@ namespace Debond
       /// See LoadPathStep::change_factor.
       std::optional<double>
       change_factor(const LoadFactors last_factors,
-                    const DofVector  &last,
+                    const VectorView &last,
                     const LoadFactors factors)
       {
         const BranchMinimum &branches  = scene.law().branches();
@@ -460,13 +457,13 @@ namespace Debond
 
         const Eigen::VectorXd load  = load_at(last_factors);
         const Eigen::VectorXd slope = load_at(factors) - load;
-        StationaryPath        path(symmetric_view(condensed.schur_complement()),
+        StationaryPath        path(condensed.schur_complement(),
                             load,
                             slope,
                             branches,
                             bonds_of_nodes(adhesion),
                             parameters.bonds_heal,
-                            eigen_view(last),
+                            last,
                             0.);
         // Contact that comes and goes. Changes at the end of the step count.
         using Event = StationaryPath::Event;
@@ -496,10 +493,9 @@ namespace Debond
       std::optional<double>
       change_between_nodes(const bool        is_proportional,
                            const LoadFactors last_factors,
-                           const DofVector  &last,
+                           const VectorView &start,
                            const LoadFactors factors)
       {
-        const Eigen::VectorXd start = eigen_view(last);
         // What is prescribed on the contact boundary changes the springs'
         // forces.
         if (!scene.problem()
@@ -522,8 +518,7 @@ namespace Debond
         const Eigen::VectorXd             load  = load_at(last_factors);
         const Eigen::VectorXd             slope = load_at(factors) - load;
         const Eigen::SparseMatrix<double> bonds = adhesion.curvature(start);
-        Eigen::MatrixXd                   stiffness =
-          symmetric_view(condensed.schur_complement());
+        Eigen::MatrixXd stiffness               = condensed.schur_complement();
         stiffness += bonds;
         const BranchMinimum   no_law({{0., 0., 0., ""}});
         const Eigen::VectorXd spring_load =
@@ -532,7 +527,7 @@ namespace Debond
                             spring_load,
                             slope,
                             no_law,
-                            std::vector<StationaryPath::Bond>(last.size(),
+                            std::vector<StationaryPath::Bond>(start.size(),
                                                               {0., 1., 0}),
                             true,
                             start,
@@ -561,9 +556,9 @@ namespace Debond
 
       /// The same if displacements are proportional to the factor.
       std::optional<double>
-      proportional_change(const double     last_factor,
-                          const DofVector &last,
-                          const double     factor) const
+      proportional_change(const double      last_factor,
+                          const VectorView &last,
+                          const double      factor) const
       {
         const BranchMinimum &branches  = scene.law().branches();
         double               first     = factor / last_factor;
@@ -662,12 +657,12 @@ namespace Debond
       AdhesionIntegral<dim>           adhesion;
       Condensation                    condensed;
       const Eigen::MatrixXd           free_motions;
-      DofVector                       s;
+      Eigen::VectorXd                 s;
       SolveResult                     result;
 
       /// By step.
-      std::vector<DofVector>   points;
-      std::vector<MinimumKind> kinds;
+      std::vector<Eigen::VectorXd> points;
+      std::vector<MinimumKind>     kinds;
     };
   } // namespace
 

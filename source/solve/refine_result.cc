@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/solve/refine_result.h>
 
 #include <limits>
@@ -28,10 +27,10 @@ namespace Debond
         terms(i) *= scene.problem().unknowns().is_constrained(i) ?
                       0. :
                       scene.problem().diagonal_entry(i);
-      const Vector s = scene.contact_trace(u);
-      const double energy =
+      const Eigen::VectorXd s = scene.contact_trace(u);
+      const double          energy =
         piece.nodes().product(scene.problem().load().begin(), u.begin()) -
-        scene.adhesion().subgradient(eigen_view(s)).dot(eigen_view(s));
+        scene.adhesion().subgradient(s).dot(s);
       const double rounding = std::numeric_limits<double>::epsilon() *
                               piece.nodes().product(terms.begin(), u.begin());
       if (rounding <= largest_energy_rounding * energy)
@@ -69,8 +68,9 @@ namespace Debond
           result.notes.push_back(note);
         return !note.empty();
       }
-    const dealii::Timer timer;
-    const Vector  before = scene.problem().unknowns().contact().trace(result.u);
+    const dealii::Timer   timer;
+    const Eigen::VectorXd before =
+      scene.problem().unknowns().contact().trace(result.u);
     const Refined refined = refine_where_needed(
       scene.problem(),
       scene.adhesion(),
@@ -91,11 +91,11 @@ namespace Debond
           "precision from where it ended.");
       }
     // The search knows other bonds than the result has.
-    const Vector after = scene.problem().unknowns().contact().trace(result.u);
-    if (after.size() > 0 &&
-        (has_failed || (scene.adhesion().curvature(eigen_view(after)) -
-                        scene.adhesion().curvature(eigen_view(before)))
-                           .norm() > 0.))
+    const Eigen::VectorXd after =
+      scene.problem().unknowns().contact().trace(result.u);
+    if (after.size() > 0 && (has_failed || (scene.adhesion().curvature(after) -
+                                            scene.adhesion().curvature(before))
+                                               .norm() > 0.))
       result.minimum.kind =
         kind_without_search(scene.law(), scene.adhesion(), after);
     result.parts["refinement"] = timer.wall_time();

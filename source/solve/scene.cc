@@ -5,7 +5,6 @@
 #include <debond/elasticity/temperature_load.h>
 #include <debond/input/bad_input.h>
 #include <debond/input/probe_parameters.h>
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/solve/displacement.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/scene_conditions.h>
@@ -224,7 +223,7 @@ namespace Debond
         const ContactSpace<dim> &contact =
           elastic_problem->unknowns().contact();
         first_iterate.reinit(elastic_problem->unknowns().n_dofs());
-        contact.add_normal(eigen_view(contact.at_rest()), first_iterate);
+        contact.add_normal(contact.at_rest(), first_iterate);
       }
     else
       first_iterate = read_start(file, *elastic_problem);
@@ -427,7 +426,7 @@ namespace Debond
 
 
   template <int dim>
-  DofVector
+  Eigen::VectorXd
   Scene<dim>::contact_trace(const DofVector &u) const
   {
     return problem_piece ? problem_piece->trace(u) :

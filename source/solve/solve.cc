@@ -4,7 +4,6 @@
 #include <debond/base/interrupt.h>
 #include <debond/base/text.h>
 #include <debond/input/bad_input.h>
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/solve/condensed_methods.h>
 #include <debond/solve/levels_method.h>
 #include <debond/solve/multigrid_method.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/solve/solve_result.h>
 
 namespace Debond
@@ -50,7 +49,7 @@ namespace Debond
     return (scene.piece() == nullptr ?
               problem.fields().elastic_functional(u) :
               scene.piece()->elastic_functional(problem.fields(), u)) +
-           scene.adhesion().energy(eigen_view(scene.contact_trace(u)));
+           scene.adhesion().energy(scene.contact_trace(u));
   }
 
 

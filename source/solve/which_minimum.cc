@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/global/guided_search.h>
 #include <debond/optimization/majorise/coarse_start.h>
@@ -180,8 +179,8 @@ namespace Debond
         , law(law)
         , adhesion(adhesion)
         , condensed(condensed)
-        , S(symmetric_view(condensed.schur_complement()))
-        , g(eigen_view(condensed.load()))
+        , S(condensed.schur_complement())
+        , g(condensed.load())
         , may_go_on(may_go_on)
         , s(s)
         , result(result)
@@ -380,7 +379,7 @@ namespace Debond
           const AdhesionIntegral<dim> &adhesion,
           const Condensation          &condensed,
           const std::function<bool()> &may_go_on,
-          DofVector                   &s,
+          Eigen::VectorXd             &s,
           WhichMinimum                &result)
     {
       const SeparableBranches lumped = lumped_bonds(law, adhesion);
@@ -390,10 +389,10 @@ namespace Debond
       proof_parameters.maximum_bytes = memory_left(parameters.memory_limit);
       const BranchAndBoundResult proof =
         BranchAndBound(proof_parameters)
-          .minimize(symmetric_view(condensed.schur_complement()),
-                    eigen_view(condensed.load()),
+          .minimize(condensed.schur_complement(),
+                    condensed.load(),
                     lumped,
-                    eigen_view(s),
+                    s,
                     [&](const ProofProgress &) { return may_go_on(); });
       add_proof(proof, lumped, condensed, result);
       result.proof_history = proof.history;
@@ -404,7 +403,7 @@ namespace Debond
         }
       // A rounding in J is no better minimum.
       if (proof.upper < functional - proof_parameters.tolerance)
-        s = from_eigen(proof.s);
+        s = proof.s;
     }
   } // namespace
 
@@ -455,16 +454,15 @@ namespace Debond
   MinimumKind
   kind_without_search(const AdhesiveLaw           &law,
                       const AdhesionIntegral<dim> &adhesion,
-                      const DofVector             &s)
+                      const VectorView            &s)
   {
     if (law.branches().size() == 1 || s.size() == 0)
       return MinimumKind::global;
 
     // No quadrature point is so close to the kink that it changes its branch.
-    const auto                        point = eigen_view(s);
     const Eigen::SparseMatrix<double> difference =
-      adhesion.curvature((1. + kink_width) * point) -
-      adhesion.curvature((1. - kink_width) * point);
+      adhesion.curvature((1. + kink_width) * s) -
+      adhesion.curvature((1. - kink_width) * s);
     return difference.norm() == 0. ? MinimumKind::local_minimum :
                                      MinimumKind::stationary;
   }
@@ -479,7 +477,7 @@ namespace Debond
                       const AdhesionIntegral<dim> &adhesion,
                       const Condensation          &condensed,
                       const std::function<bool()> &may_go_on,
-                      DofVector                   &s)
+                      Eigen::VectorXd             &s)
   {
     WhichMinimum result;
     result.kind = kind_without_search(law, adhesion, s);
@@ -501,22 +499,14 @@ namespace Debond
 
     if (wants_search(parameters))
       {
-        Eigen::VectorXd    point = eigen_view(s);
-        MinimumSearch<dim> search(parameters,
-                                  boundary,
-                                  law,
-                                  adhesion,
-                                  condensed,
-                                  may_go_on,
-                                  point,
-                                  result);
+        MinimumSearch<dim> search(
+          parameters, boundary, law, adhesion, condensed, may_go_on, s, result);
         if (parameters.search != BondSearchChoice::automatic)
           search.search_nodes(search_parameters(parameters));
         else if (s.size() <= largest_automatic_search)
           search.search_all_nodes();
         else
           search.search_coarse_nodes();
-        s = from_eigen(point);
         if (result.kind != MinimumKind::best_known &&
             result.kind != MinimumKind::global)
           result.kind = kind_without_search(law, adhesion, s);
@@ -536,11 +526,11 @@ namespace Debond
   template MinimumKind
   kind_without_search(const AdhesiveLaw &,
                       const AdhesionIntegral<2> &,
-                      const DofVector &);
+                      const VectorView &);
   template MinimumKind
   kind_without_search(const AdhesiveLaw &,
                       const AdhesionIntegral<3> &,
-                      const DofVector &);
+                      const VectorView &);
   template WhichMinimum
   find_better_minimum(const SolverParameters &,
                       const ContactBoundary<2> &,
@@ -548,7 +538,7 @@ namespace Debond
                       const AdhesionIntegral<2> &,
                       const Condensation &,
                       const std::function<bool()> &,
-                      DofVector &);
+                      Eigen::VectorXd &);
   template WhichMinimum
   find_better_minimum(const SolverParameters &,
                       const ContactBoundary<3> &,
@@ -556,5 +546,5 @@ namespace Debond
                       const AdhesionIntegral<3> &,
                       const Condensation &,
                       const std::function<bool()> &,
-                      DofVector &);
+                      Eigen::VectorXd &);
 } // namespace Debond

@@ -133,7 +133,7 @@ namespace
                                  [&](const unsigned int i) {
                                    return problem.unknowns().is_constrained(i);
                                  });
-    const DofVector    u = condensed.expand(DofVector());
+    const DofVector    u = condensed.expand(Eigen::VectorXd());
 
     const Displacement      exact;
     const DisplacementError error = displacement_error(problem, u, exact);

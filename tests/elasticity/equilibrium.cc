@@ -9,7 +9,6 @@
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/equilibrium_problem.h>
 #include <debond/elasticity/trace_constant.h>
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/mesh/box.h>
 
 #include <Eigen/Eigenvalues>
@@ -263,7 +262,7 @@ namespace
       },
       {},
       true);
-    const Eigen::MatrixXd S    = symmetric_view(condensed.schur_complement());
+    const Eigen::MatrixXd S    = condensed.schur_complement();
     const Eigen::Index    size = S.rows();
     Eigen::MatrixXd       mass = Eigen::MatrixXd::Zero(size, size);
     Eigen::MatrixXd       linear(size, 2);

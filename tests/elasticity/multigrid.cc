@@ -14,7 +14,6 @@
 #include <debond/elasticity/multigrid.h>
 #include <debond/elasticity/multigrid_problem.h>
 #include <debond/linear_algebra/condensation.h>
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/mesh/box.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
@@ -175,8 +174,8 @@ namespace
             return serial.problem->unknowns().is_constrained(i);
           });
         Eigen::VectorXd  s = Eigen::VectorXd::Zero(normals.size());
-        CondensedProblem small(symmetric_view(condensed.schur_complement()),
-                               eigen_view(condensed.load()),
+        CondensedProblem small(condensed.schur_complement(),
+                               condensed.load(),
                                adhesion,
                                s);
         const auto       exact = MajoriseMinimise({}).minimize(small);
@@ -191,7 +190,7 @@ namespace
         check("  difference of the functionals",
               std::abs(iterated.functional / J - 1.),
               1e-11);
-        DofVector    difference = condensed.expand(from_eigen(s));
+        DofVector    difference = condensed.expand(s);
         const double size       = difference.linfty_norm();
         difference -= u;
         check("  difference of the displacements",

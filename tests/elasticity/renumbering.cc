@@ -8,7 +8,6 @@
 #include <debond/contact/laws/winkler.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/condensation.h>
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/mesh/box.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
@@ -114,15 +113,14 @@ namespace
                                  });
     Minimum            result;
     result.s.setZero(normals.size());
-    CondensedProblem condensed_problem(symmetric_view(
-                                         condensed.schur_complement()),
-                                       eigen_view(condensed.load()),
+    CondensedProblem condensed_problem(condensed.schur_complement(),
+                                       condensed.load(),
                                        adhesion,
                                        result.s);
     MajoriseMinimise(MajoriseMinimiseParameters()).minimize(condensed_problem);
-    result.value = problem.fields().elastic_functional(
-                     condensed.expand(from_eigen(result.s))) +
-                   adhesion.value(result.s);
+    result.value =
+      problem.fields().elastic_functional(condensed.expand(result.s)) +
+      adhesion.value(result.s);
     return result;
   }
 

@@ -62,7 +62,7 @@ namespace
         is_below = is_below && certificate.lower < certificate.upper;
 
         std::map<double, double> displacements;
-        const DofVector          s = contact.trace(u);
+        const Eigen::VectorXd    s = contact.trace(u);
         for (unsigned int i = 0; i < s.size(); ++i)
           displacements[contact.boundary().nodes[i].position[0]] = s(i);
         for (const CertifiedSide &side : certificate.sides)

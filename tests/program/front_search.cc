@@ -4,7 +4,6 @@
 // on all contact nodes does.
 
 #include <debond/contact/boundary_graph.h>
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/solve/front_search.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/solve.h>
@@ -29,7 +28,7 @@ namespace
   {
     return scene.problem().fields().elastic_functional(u) +
            scene.adhesion().energy(
-             eigen_view(scene.problem().unknowns().contact().trace(u)));
+             scene.problem().unknowns().contact().trace(u));
   }
 
 
@@ -52,7 +51,7 @@ namespace
     Vector                  u     = best.u;
     for (int k = 0; k < std::abs(shift); ++k)
       {
-        const Vector s = contact.trace(u);
+        const Eigen::VectorXd s = contact.trace(u);
         for (unsigned int i = 0; i < s.size(); ++i)
           for (const unsigned int j : graph[i])
             if (bonds.f[j].index(s(j)) == piece &&

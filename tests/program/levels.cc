@@ -14,7 +14,6 @@
 #include <debond/check/verification.h>
 #include <debond/elasticity/elastic_levels.h>
 #include <debond/input/parameters.h>
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve.h>
 
@@ -123,8 +122,8 @@ namespace
       std::abs(outcome.result.functional / direct.functional - 1.);
     const auto s = problem.unknowns().contact().trace(outcome.result.u);
     const auto r = problem.unknowns().contact().trace(direct.u);
-    const auto E = scene.adhesion().curvature(eigen_view(s));
-    const auto F = scene.adhesion().curvature(eigen_view(r));
+    const auto E = scene.adhesion().curvature(s);
+    const auto F = scene.adhesion().curvature(r);
     for (unsigned int i = 0; i < s.size(); ++i)
       outcome.other_nodes +=
         (s(i) == 0.) != (r(i) == 0.) || E.coeff(i, i) != F.coeff(i, i);

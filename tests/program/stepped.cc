@@ -60,9 +60,9 @@ namespace
     Condensation condensed =
       condense_to_contact(scene.problem(), scene.adhesion());
     condensed.scale_load(factor);
-    const unsigned int      n = condensed.load().size();
-    LongMatrix              S(n, n);
-    LongVector              g(n), where(n);
+    const unsigned int n = static_cast<unsigned int>(condensed.load().size());
+    LongMatrix         S(n, n);
+    LongVector         g(n), where(n);
     std::vector<BranchList> branches(n);
     for (unsigned int i = 0; i < n; ++i)
       {

@@ -7,7 +7,6 @@
 
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/input/parameters.h>
-#include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/global/guided_search.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve.h>
@@ -250,9 +249,9 @@ namespace
       const unsigned int n = condensed.load().size();
       if (n == 0 || (!many_patches && n > most_nodes))
         return;
-      const auto S = symmetric_view(condensed.schur_complement());
-      const auto g = eigen_view(condensed.load());
-      largest      = -S.llt().solve(g).minCoeff();
+      const MatrixView S = condensed.schur_complement();
+      const VectorView g = condensed.load();
+      largest            = -S.llt().solve(g).minCoeff();
       stiffness =
         S.diagonal().mean() /
         scene.adhesion().curvature(Eigen::VectorXd::Zero(n)).diagonal().mean() *
@@ -282,13 +281,14 @@ namespace
 
     const Condensation condensed =
       condense_to_contact(scene.problem(), scene.adhesion());
-    const DofVector    s = scene.problem().unknowns().contact().trace(result.u);
-    const unsigned int n = s.size();
+    const Eigen::VectorXd s =
+      scene.problem().unknowns().contact().trace(result.u);
+    const unsigned int      n = static_cast<unsigned int>(s.size());
     const SeparableBranches bonds =
       lumped_branches(scene.adhesion(), n, scene.law().branches());
     const double found =
-      0.5 * condensed.schur_complement().matrix_norm_square(s) -
-      condensed.load() * s + bonds.value(eigen_view(s));
+      s.dot(0.5 * condensed.schur_complement() * s - condensed.load()) +
+      bonds.value(s);
     double minimum;
     if (many_patches)
       {
@@ -297,10 +297,7 @@ namespace
         proof_parameters.maximum_nodes = 3000;
         const BranchAndBoundResult proof =
           BranchAndBound(proof_parameters)
-            .minimize(symmetric_view(condensed.schur_complement()),
-                      eigen_view(condensed.load()),
-                      bonds,
-                      eigen_view(s));
+            .minimize(condensed.schur_complement(), condensed.load(), bonds, s);
         minimum = proof.upper;
         counts.unknown += proof.upper - proof.lower > allowed * std::abs(found);
       }
@@ -394,7 +391,7 @@ namespace
         const Scene<2>     scene(parameters, MatrixStorage::serial);
         const Condensation condensed =
           condense_to_contact(scene.problem(), scene.adhesion());
-        DofVector s(condensed.load().size());
+        Eigen::VectorXd s = Eigen::VectorXd::Zero(condensed.load().size());
         try
           {
             const WhichMinimum result = find_better_minimum(

@@ -43,7 +43,7 @@ namespace Debond
     normals() const;
 
     /// s = N'u.
-    DofVector
+    Eigen::VectorXd
     trace(const DofVector &u) const;
 
     /// u += N s.
@@ -59,7 +59,7 @@ namespace Debond
     is_admissible(const DofVector &u) const;
 
     /// s of the body at rest, where u = 0: minus the gaps.
-    DofVector
+    Eigen::VectorXd
     at_rest() const;
 
     /// Whether bodies at rest have gaps.

@@ -3,6 +3,7 @@
 #define debond_elasticity_displacement_problem_h
 
 #include <debond/linear_algebra/dof_vector.h>
+#include <debond/linear_algebra/views.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/majorise/majorant_problem.h>
 #include <debond/optimization/piecewise_quadratic.h>
@@ -46,7 +47,7 @@ namespace Debond
 
     /// The entries of all normal displacements, and <a, b>: what ranks that
     /// share the unknowns have to do together.
-    virtual DofVector
+    virtual Eigen::VectorXd
     trace(const DofVector &v) const;
 
     virtual double
@@ -56,9 +57,8 @@ namespace Debond
     norm(const DofVector &v) const;
 
     /// v += the entries of all normal displacements, as far as they are here.
-    template <typename Entries>
     void
-    add_normal(const Entries &s, DofVector &v) const;
+    add_normal(const VectorView &s, DofVector &v) const;
 
     /// Minus the majorant's gradient at u: a force for each unknown.
     void
@@ -92,16 +92,6 @@ namespace Debond
     ActiveSet                   active;
   };
 
-
-
-  template <typename Entries>
-  void
-  DisplacementProblem::add_normal(const Entries &s, DofVector &v) const
-  {
-    for (unsigned int i = 0; i < normals.size(); ++i)
-      if (normals[i] != dealii::numbers::invalid_unsigned_int)
-        v(normals[i]) += s(i);
-  }
 } // namespace Debond
 
 #endif

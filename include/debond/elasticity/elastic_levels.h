@@ -86,7 +86,7 @@ namespace Debond
     vmult(const unsigned int l, DofVector &dst, const DofVector &src) const;
 
     /// The entries of all s_l.
-    DofVector
+    Eigen::VectorXd
     trace(const unsigned int l, const DofVector &v) const;
 
     /// <a, b>.

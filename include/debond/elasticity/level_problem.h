@@ -42,7 +42,7 @@ namespace Debond
     void
     multiply(DofVector &dst, const DofVector &src) const override;
 
-    DofVector
+    Eigen::VectorXd
     trace(const DofVector &v) const override;
 
     double

@@ -71,7 +71,7 @@ namespace Debond
     normal_numbers() const;
 
     /// The entries of all contact nodes, on all ranks.
-    DofVector
+    Eigen::VectorXd
     trace(const DofVector &v) const;
 
     /// The entries of all unknowns in the order of their numbers, on the root;

@@ -6,6 +6,7 @@
 #include <deal.II/lac/sparse_matrix.h>
 
 #include <debond/linear_algebra/dof_vector.h>
+#include <debond/linear_algebra/views.h>
 
 #include <functional>
 #include <memory>
@@ -72,12 +73,12 @@ namespace Debond
     void
     scale_load(const double factor);
 
-    /// S, symmetric, a row for each kept unknown.
-    const dealii::FullMatrix<double> &
+    /// S, symmetric, a row for each kept unknown. Valid as long as this object.
+    MatrixView
     schur_complement() const;
 
     /// g.
-    const DofVector &
+    const Eigen::VectorXd &
     load() const;
 
     /// c_0 with the other part, the energy of s = 0.
@@ -102,14 +103,14 @@ namespace Debond
 
     /// u at equilibrium for given s, with the size of f.
     DofVector
-    expand(const DofVector &s) const;
+    expand(const VectorView &s) const;
 
     /// u at equilibrium under another load, for the s that @p kept_unknowns
     /// returns for the g of this load.
     DofVector
-    solve(
-      const DofVector                                   &other_f,
-      const std::function<DofVector(const DofVector &)> &kept_unknowns) const;
+    solve(const DofVector &other_f,
+          const std::function<Eigen::VectorXd(const Eigen::VectorXd &)>
+            &kept_unknowns) const;
 
   private:
     class Factor;
@@ -119,12 +120,12 @@ namespace Debond
     forward(const DofVector &f) const;
 
     /// L_ss y_s.
-    DofVector
+    Eigen::VectorXd
     condensed_load(const std::vector<double> &y) const;
 
     /// u for y in the eliminated unknowns.
     DofVector
-    backward(const std::vector<double> &y, const DofVector &s) const;
+    backward(const std::vector<double> &y, const VectorView &s) const;
 
     unsigned int              n;        ///< size of f
     std::vector<unsigned int> unknowns; ///< rows of A, the kept ones last
@@ -137,7 +138,7 @@ namespace Debond
     double                                constant_part = 0.; ///< of the energy
     dealii::FullMatrix<double>            L_ss;
     dealii::FullMatrix<double>            S;
-    DofVector                             g;
+    Eigen::VectorXd                       g;
   };
 } // namespace Debond
 

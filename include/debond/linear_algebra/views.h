@@ -6,8 +6,8 @@
 
 namespace Debond
 {
-  /// To read small vectors and matrices, of Eigen or seen by eigen_view() or
-  /// symmetric_view(), without a copy. Valid as long as what they show.
+  /// To read small vectors and matrices, of Eigen or seen by  or
+  /// , without a copy. Valid as long as what they show.
   using VectorView = Eigen::Ref<const Eigen::VectorXd>;
   using MatrixView = Eigen::Ref<const Eigen::MatrixXd>;
 } // namespace Debond

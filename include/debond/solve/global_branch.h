@@ -5,7 +5,7 @@
 #include <debond/input/load_path_parameters.h>
 #include <debond/input/solver_parameters.h>
 #include <debond/linear_algebra/condensation.h>
-#include <debond/linear_algebra/dof_vector.h>
+#include <debond/linear_algebra/views.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/which_minimum.h>
 
@@ -18,9 +18,9 @@ namespace Debond
   /// A minimum of the condensed problem under a multiple of the loads.
   struct BranchPoint
   {
-    DofVector    s;
-    double       functional; ///< without the energy at s = 0
-    WhichMinimum which;
+    Eigen::VectorXd s;
+    double          functional; ///< without the energy at s = 0
+    WhichMinimum    which;
   };
 
   /// By the factor of the loads.
@@ -51,7 +51,7 @@ namespace Debond
   double
   condensed_functional(const Condensation       &condensed,
                        const PiecewiseQuadratic &adhesion,
-                       const DofVector          &s);
+                       const VectorView         &s);
 } // namespace Debond
 
 #endif

@@ -60,7 +60,7 @@ namespace Debond
     const ContactBoundary<dim> &
     contact_boundary() const;
 
-    DofVector
+    Eigen::VectorXd
     contact_trace(const DofVector &u) const;
 
     const ElasticProblem<dim> &

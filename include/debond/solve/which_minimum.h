@@ -5,7 +5,7 @@
 #include <debond/contact/adhesion_integral.h>
 #include <debond/input/solver_parameters.h>
 #include <debond/linear_algebra/condensation.h>
-#include <debond/linear_algebra/dof_vector.h>
+#include <debond/linear_algebra/views.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/separable_branches.h>
 
@@ -79,7 +79,7 @@ namespace Debond
   MinimumKind
   kind_without_search(const AdhesiveLaw           &law,
                       const AdhesionIntegral<dim> &adhesion,
-                      const DofVector             &s);
+                      const VectorView            &s);
 
   /// The search and the proof that are asked for, from the stationary point
   /// @p s, which moves if they find a better one. Throws BadInput if they
@@ -92,7 +92,7 @@ namespace Debond
                       const AdhesionIntegral<dim> &adhesion,
                       const Condensation          &condensed,
                       const std::function<bool()> &may_go_on,
-                      DofVector                   &s);
+                      Eigen::VectorXd             &s);
 } // namespace Debond
 
 #endif

@@ -29,7 +29,7 @@ namespace Debond
 
 
 
-  DofVector
+  Eigen::VectorXd
   SharedTrace::operator()(const DofVector &v) const
   {
     // deal.II's all_gather() compresses what it sends.
@@ -46,7 +46,7 @@ namespace Debond
                                      MPI_DOUBLE,
                                      ranks);
     AssertThrowMPI(error);
-    DofVector result(static_cast<unsigned int>(places.size()));
+    Eigen::VectorXd result(places.size());
     for (std::size_t i = 0; i < places.size(); ++i)
       result(places[i]) = received[i];
     return result;

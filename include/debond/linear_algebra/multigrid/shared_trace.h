@@ -5,6 +5,8 @@
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/linear_algebra/multigrid/shared_nodes.h>
 
+#include <Eigen/Core>
+
 #include <vector>
 
 namespace Debond
@@ -21,7 +23,7 @@ namespace Debond
                 const std::vector<unsigned int> &unknowns);
 
     /// In the order of the unknowns.
-    DofVector
+    Eigen::VectorXd
     operator()(const DofVector &v) const;
 
   private:
