@@ -5,6 +5,7 @@
 #include <deal.II/lac/sparse_matrix.h>
 
 #include <debond/linear_algebra/dof_vector.h>
+#include <debond/linear_algebra/multigrid/cycle_level.h>
 #include <debond/linear_algebra/multigrid/root_level.h>
 #include <debond/linear_algebra/multigrid/shared_nodes.h>
 #include <debond/linear_algebra/multigrid/shared_rows.h>
@@ -26,9 +27,9 @@ namespace Debond
    * left out of the finest prolongation (truncation; Kornhuber, Krause, Comput.
    * Vis. Sci. 4, 2001; Graeser, Sack, Sander, 2009): they differ from those of
    * A only next to these unknowns and those of E, where they are made anew.
-   * Smoothers are Chebyshev polynomials of degree 2 in D^{-1}A with the blocks
-   * of the diagonal D; the coarsest matrix is factorised. Numbers are in single
-   * precision, but for the products that make the matrices.
+   * Levels are smoothed by CycleLevel, the coarsest matrix is factorised.
+   * Numbers are in single precision, but for the products that make the
+   * matrices.
    *
    * Where ranks share levels, all of them call what concerns these; the others
    * are the root's.
@@ -115,22 +116,11 @@ namespace Debond
     bool
     is_shared(const unsigned int l) const;
 
-    /// D^{-1} and the largest eigenvalue of D^{-1}A.
-    void
-    prepare_smoother(const unsigned int l);
-
     /// P'BP of a matrix of the level l, on the next coarser one; nothing where
     /// the process does not have that.
     template <typename Matrix>
     BlockMatrix<dim, double>
     coarser_matrix(const unsigned int l, const Matrix &B) const;
-
-    static void
-    invert_diagonal(Level &level, const unsigned int node);
-
-    /// Adds the changes to the matrix of the level.
-    static void
-    change(Level &level, const BlockMatrix<dim, double> &changes);
 
     void
     cycle(const unsigned int l) const;
@@ -138,6 +128,7 @@ namespace Debond
     const dealii::SparseMatrix<double> &A;
     const RootLevel<dim> *const         root; ///< or null
     std::vector<Level>                  levels;
+    std::vector<CycleLevel<dim>>        truncated; ///< by level
     std::unique_ptr<CoarseSolver>       coarse_solver;
     unsigned int                        first = 0; ///< level of the cycle
     std::vector<unsigned int>           held_unknowns;
