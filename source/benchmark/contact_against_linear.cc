@@ -178,12 +178,8 @@ namespace Debond
 
 
 
-  template BenchmarkRow
-  measure_contact_against_linear<2>(const std::string &,
-                                    const Parameters &,
-                                    const BenchmarkStudy &);
-  template BenchmarkRow
-  measure_contact_against_linear<3>(const std::string &,
-                                    const Parameters &,
-                                    const BenchmarkStudy &);
+  template decltype(measure_contact_against_linear<2>)
+    measure_contact_against_linear<2>;
+  template decltype(measure_contact_against_linear<3>)
+    measure_contact_against_linear<3>;
 } // namespace Debond

@@ -111,8 +111,6 @@ namespace Debond
 
 
 
-  template LinearSolve
-  solve_by_multigrid(const ElasticProblem<2> &);
-  template LinearSolve
-  solve_by_multigrid(const ElasticProblem<3> &);
+  template decltype(solve_by_multigrid<2>) solve_by_multigrid<2>;
+  template decltype(solve_by_multigrid<3>) solve_by_multigrid<3>;
 } // namespace Debond

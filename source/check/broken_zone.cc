@@ -155,14 +155,6 @@ namespace Debond
 
 
 
-  template double
-  broken_zone(const ContactBoundary<2> &,
-              const AdhesiveLaw &,
-              const AdhesionIntegral<2> &,
-              const VectorView &);
-  template double
-  broken_zone(const ContactBoundary<3> &,
-              const AdhesiveLaw &,
-              const AdhesionIntegral<3> &,
-              const VectorView &);
+  template decltype(broken_zone<2>) broken_zone<2>;
+  template decltype(broken_zone<3>) broken_zone<3>;
 } // namespace Debond

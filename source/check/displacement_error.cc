@@ -157,12 +157,6 @@ namespace Debond
 
 
 
-  template DisplacementError
-  displacement_error(const ElasticProblem<2> &,
-                     const DofVector &,
-                     const dealii::Function<2> &);
-  template DisplacementError
-  displacement_error(const ElasticProblem<3> &,
-                     const DofVector &,
-                     const dealii::Function<3> &);
+  template decltype(displacement_error<2>) displacement_error<2>;
+  template decltype(displacement_error<3>) displacement_error<3>;
 } // namespace Debond

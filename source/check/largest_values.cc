@@ -41,12 +41,6 @@ namespace Debond
 
 
 
-  template LargestValues
-  largest_values(const ElasticProblem<2> &,
-                 const DofVector &,
-                 const LoadFactors);
-  template LargestValues
-  largest_values(const ElasticProblem<3> &,
-                 const DofVector &,
-                 const LoadFactors);
+  template decltype(largest_values<2>) largest_values<2>;
+  template decltype(largest_values<3>) largest_values<3>;
 } // namespace Debond

@@ -139,20 +139,6 @@ namespace Debond
   }
 
 
-  template LoadPathState<2>
-  load_path_state(const ElasticProblem<2> &,
-                  const AdhesionIntegral<2> &,
-                  const Probes<2> &,
-                  const Probes<2> &,
-                  const LoadFactors,
-                  const DofVector &,
-                  const Verification<2> &);
-  template LoadPathState<3>
-  load_path_state(const ElasticProblem<3> &,
-                  const AdhesionIntegral<3> &,
-                  const Probes<3> &,
-                  const Probes<3> &,
-                  const LoadFactors,
-                  const DofVector &,
-                  const Verification<3> &);
+  template decltype(load_path_state<2>) load_path_state<2>;
+  template decltype(load_path_state<3>) load_path_state<3>;
 } // namespace Debond

@@ -181,8 +181,6 @@ namespace Debond
 
   template class Probes<2>;
   template class Probes<3>;
-  template std::vector<Probe<2>>
-  means_of_pieces(const PieceNames &);
-  template std::vector<Probe<3>>
-  means_of_pieces(const PieceNames &);
+  template decltype(means_of_pieces<2>) means_of_pieces<2>;
+  template decltype(means_of_pieces<3>) means_of_pieces<3>;
 } // namespace Debond

@@ -583,20 +583,6 @@ namespace Debond
 
   template struct Verification<2>;
   template struct Verification<3>;
-  template Verification<2>
-  verify(const ElasticProblem<2> &,
-         const AdhesionIntegral<2> &,
-         const AdhesiveLaw &,
-         const DofVector &,
-         const LoadFactors,
-         const double,
-         const ProblemPiece<2> *);
-  template Verification<3>
-  verify(const ElasticProblem<3> &,
-         const AdhesionIntegral<3> &,
-         const AdhesiveLaw &,
-         const DofVector &,
-         const LoadFactors,
-         const double,
-         const ProblemPiece<3> *);
+  template decltype(verify<2>) verify<2>;
+  template decltype(verify<3>) verify<3>;
 } // namespace Debond

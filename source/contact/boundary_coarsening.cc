@@ -131,8 +131,6 @@ namespace Debond
 
 
 
-  template std::vector<Eigen::SparseMatrix<double>>
-  coarsen(const ContactBoundary<2> &, const unsigned int);
-  template std::vector<Eigen::SparseMatrix<double>>
-  coarsen(const ContactBoundary<3> &, const unsigned int);
+  template decltype(coarsen<2>) coarsen<2>;
+  template decltype(coarsen<3>) coarsen<3>;
 } // namespace Debond

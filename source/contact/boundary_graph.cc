@@ -22,8 +22,6 @@ namespace Debond
 
 
 
-  template std::vector<std::set<unsigned int>>
-  neighbours(const ContactBoundary<2> &);
-  template std::vector<std::set<unsigned int>>
-  neighbours(const ContactBoundary<3> &);
+  template decltype(neighbours<2>) neighbours<2>;
+  template decltype(neighbours<3>) neighbours<3>;
 } // namespace Debond

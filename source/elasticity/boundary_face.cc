@@ -74,14 +74,6 @@ namespace Debond
 
   template struct BoundaryFace<2>;
   template struct BoundaryFace<3>;
-  template std::vector<BoundaryFace<2>>
-  boundary_faces(const dealii::DoFHandler<2> &,
-                 const std::set<dealii::types::boundary_id> &,
-                 const BoundaryNames &,
-                 const bool);
-  template std::vector<BoundaryFace<3>>
-  boundary_faces(const dealii::DoFHandler<3> &,
-                 const std::set<dealii::types::boundary_id> &,
-                 const BoundaryNames &,
-                 const bool);
+  template decltype(boundary_faces<2>) boundary_faces<2>;
+  template decltype(boundary_faces<3>) boundary_faces<3>;
 } // namespace Debond

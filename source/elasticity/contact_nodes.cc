@@ -354,20 +354,6 @@ namespace Debond
 
 
 
-  template ContactSpace<2>
-  make_contact_space(const std::vector<BoundaryFace<2>> &,
-                     const unsigned int,
-                     const BoundaryConditions &,
-                     const Supports<2> &,
-                     const double,
-                     NodeSupports<2> &,
-                     DofVector &);
-  template ContactSpace<3>
-  make_contact_space(const std::vector<BoundaryFace<3>> &,
-                     const unsigned int,
-                     const BoundaryConditions &,
-                     const Supports<3> &,
-                     const double,
-                     NodeSupports<3> &,
-                     DofVector &);
+  template decltype(make_contact_space<2>) make_contact_space<2>;
+  template decltype(make_contact_space<3>) make_contact_space<3>;
 } // namespace Debond

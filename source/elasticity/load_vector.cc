@@ -658,8 +658,6 @@ namespace Debond
 
 
 
-  template DofVector
-  load_vector(const dealii::DoFHandler<2> &, const Loads<2> &);
-  template DofVector
-  load_vector(const dealii::DoFHandler<3> &, const Loads<3> &);
+  template decltype(load_vector<2>) load_vector<2>;
+  template decltype(load_vector<3>) load_vector<3>;
 } // namespace Debond

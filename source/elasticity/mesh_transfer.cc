@@ -139,34 +139,12 @@ namespace Debond
 
 
 
-  template std::vector<dealii::Tensor<1, 2>>
-  vertex_displacements(const ElasticProblem<2> &, const DofVector &);
-  template std::vector<dealii::Tensor<1, 3>>
-  vertex_displacements(const ElasticProblem<3> &, const DofVector &);
-  template DofVector
-  from_vertex_displacements(const std::vector<dealii::Tensor<1, 2>> &,
-                            const ElasticProblem<2> &);
-  template DofVector
-  from_vertex_displacements(const std::vector<dealii::Tensor<1, 3>> &,
-                            const ElasticProblem<3> &);
-  template DofVector
-  divided_displacement(const ElasticProblem<2> &,
-                       const DofVector &,
-                       const std::vector<unsigned int> &,
-                       const ElasticProblem<2> &);
-  template DofVector
-  divided_displacement(const ElasticProblem<3> &,
-                       const DofVector &,
-                       const std::vector<unsigned int> &,
-                       const ElasticProblem<3> &);
-  template DofVector
-  interpolate_displacement(const Body<2> &,
-                           const ElasticProblem<2> &,
-                           const DofVector &,
-                           const ElasticProblem<2> &);
-  template DofVector
-  interpolate_displacement(const Body<3> &,
-                           const ElasticProblem<3> &,
-                           const DofVector &,
-                           const ElasticProblem<3> &);
+  template decltype(vertex_displacements<2>)      vertex_displacements<2>;
+  template decltype(vertex_displacements<3>)      vertex_displacements<3>;
+  template decltype(from_vertex_displacements<2>) from_vertex_displacements<2>;
+  template decltype(from_vertex_displacements<3>) from_vertex_displacements<3>;
+  template decltype(divided_displacement<2>)      divided_displacement<2>;
+  template decltype(divided_displacement<3>)      divided_displacement<3>;
+  template decltype(interpolate_displacement<2>)  interpolate_displacement<2>;
+  template decltype(interpolate_displacement<3>)  interpolate_displacement<3>;
 } // namespace Debond

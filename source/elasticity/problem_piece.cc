@@ -391,14 +391,10 @@ namespace Debond
 
 
 
-  template std::vector<dealii::Point<2>>
-  node_points(const ElasticUnknowns<2> &);
-  template std::vector<dealii::Point<3>>
-  node_points(const ElasticUnknowns<3> &);
-  template std::vector<unsigned int>
-  node_order(const BoxPiece<2> &, const dealii::Triangulation<2> &);
-  template std::vector<unsigned int>
-  node_order(const BoxPiece<3> &, const dealii::Triangulation<3> &);
+  template decltype(node_points<2>) node_points<2>;
+  template decltype(node_points<3>) node_points<3>;
+  template decltype(node_order<2>)  node_order<2>;
+  template decltype(node_order<3>)  node_order<3>;
   template class ProblemPiece<2>;
   template class ProblemPiece<3>;
 } // namespace Debond

@@ -497,44 +497,12 @@ namespace Debond
 
 
 
-  template double
-  energy_rounding(const ElasticProblem<2> &,
-                  const PiecewiseQuadratic &,
-                  const LoadFactors,
-                  const DofVector &);
-  template double
-  energy_rounding(const ElasticProblem<3> &,
-                  const PiecewiseQuadratic &,
-                  const LoadFactors,
-                  const DofVector &);
-  template Refined
-  refine_where_needed(const ElasticProblem<2> &,
-                      const PiecewiseQuadratic &,
-                      const LoadFactors,
-                      CorrectionSolver &,
-                      const std::function<bool()> &,
-                      DofVector &);
-  template Refined
-  refine_where_needed(const ElasticProblem<3> &,
-                      const PiecewiseQuadratic &,
-                      const LoadFactors,
-                      CorrectionSolver &,
-                      const std::function<bool()> &,
-                      DofVector &);
-  template RefinementResult
-  refine(const ElasticProblem<2> &,
-         const PiecewiseQuadratic &,
-         const LoadFactors,
-         CorrectionSolver &,
-         const std::function<bool()> &,
-         DofVector &);
-  template RefinementResult
-  refine(const ElasticProblem<3> &,
-         const PiecewiseQuadratic &,
-         const LoadFactors,
-         CorrectionSolver &,
-         const std::function<bool()> &,
-         DofVector &);
+  template decltype(energy_rounding<2>)     energy_rounding<2>;
+  template decltype(energy_rounding<3>)     energy_rounding<3>;
+  template decltype(refine_where_needed<2>) refine_where_needed<2>;
+  template decltype(refine_where_needed<3>) refine_where_needed<3>;
+  template decltype(refine<2>)              refine<2>;
+  template decltype(refine<3>)              refine<3>;
   template class LevelCorrection<2>;
   template class LevelCorrection<3>;
 } // namespace Debond

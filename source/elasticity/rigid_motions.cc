@@ -107,8 +107,6 @@ namespace Debond
 
   template struct RigidMotion<2>;
   template struct RigidMotion<3>;
-  template FreeRigidMotions<2>
-  free_rigid_motions(const std::vector<Support<2>> &, const double);
-  template FreeRigidMotions<3>
-  free_rigid_motions(const std::vector<Support<3>> &, const double);
+  template decltype(free_rigid_motions<2>) free_rigid_motions<2>;
+  template decltype(free_rigid_motions<3>) free_rigid_motions<3>;
 } // namespace Debond

@@ -101,20 +101,8 @@ namespace Debond
 
 
 
-  template std::vector<double>
-  thermal_stresses(const dealii::DoFHandler<2> &,
-                   const ByRegion<Material> &,
-                   const Loads<2> &);
-  template std::vector<double>
-  thermal_stresses(const dealii::DoFHandler<3> &,
-                   const ByRegion<Material> &,
-                   const Loads<3> &);
-  template void
-  add_thermal_forces(const dealii::DoFHandler<2> &,
-                     const std::vector<double> &,
-                     DofVector &);
-  template void
-  add_thermal_forces(const dealii::DoFHandler<3> &,
-                     const std::vector<double> &,
-                     DofVector &);
+  template decltype(thermal_stresses<2>)   thermal_stresses<2>;
+  template decltype(thermal_stresses<3>)   thermal_stresses<3>;
+  template decltype(add_thermal_forces<2>) add_thermal_forces<2>;
+  template decltype(add_thermal_forces<3>) add_thermal_forces<3>;
 } // namespace Debond

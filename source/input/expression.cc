@@ -76,12 +76,6 @@ namespace Debond
 
 
 
-  template std::shared_ptr<const dealii::Function<2>>
-  make_function<2>(const std::string &,
-                   const std::map<std::string, double> &,
-                   const unsigned int);
-  template std::shared_ptr<const dealii::Function<3>>
-  make_function<3>(const std::string &,
-                   const std::map<std::string, double> &,
-                   const unsigned int);
+  template decltype(make_function<2>) make_function<2>;
+  template decltype(make_function<3>) make_function<3>;
 } // namespace Debond

@@ -118,8 +118,6 @@ namespace Debond
 
 
 
-  template std::vector<Probe<2>>
-  make_probes(const std::map<std::string, std::string> &);
-  template std::vector<Probe<3>>
-  make_probes(const std::map<std::string, std::string> &);
+  template decltype(make_probes<2>) make_probes<2>;
+  template decltype(make_probes<3>) make_probes<3>;
 } // namespace Debond

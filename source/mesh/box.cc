@@ -360,18 +360,12 @@ namespace Debond
 
 
 
-  template const std::map<std::string, dealii::types::boundary_id> &
-  box_sides<2>();
-  template const std::map<std::string, dealii::types::boundary_id> &
-  box_sides<3>();
-  template BoundaryNames
-  box_boundaries<2>();
-  template BoundaryNames
-  box_boundaries<3>();
-  template void
-  make_box(const BoxParameters &, dealii::Triangulation<2> &);
-  template void
-  make_box(const BoxParameters &, dealii::Triangulation<3> &);
+  template decltype(box_sides<2>)      box_sides<2>;
+  template decltype(box_sides<3>)      box_sides<3>;
+  template decltype(box_boundaries<2>) box_boundaries<2>;
+  template decltype(box_boundaries<3>) box_boundaries<3>;
+  template decltype(make_box<2>)       make_box<2>;
+  template decltype(make_box<3>)       make_box<3>;
   template class Box<2>;
   template class Box<3>;
 } // namespace Debond

@@ -171,10 +171,6 @@ namespace Debond
 
 
 
-  template void
-  crossed_subdivision(const dealii::Triangulation<2> &,
-                      dealii::Triangulation<2> &);
-  template void
-  crossed_subdivision(const dealii::Triangulation<3> &,
-                      dealii::Triangulation<3> &);
+  template decltype(crossed_subdivision<2>) crossed_subdivision<2>;
+  template decltype(crossed_subdivision<3>) crossed_subdivision<3>;
 } // namespace Debond

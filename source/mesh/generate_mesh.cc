@@ -63,8 +63,6 @@ namespace Debond
 
 
 
-  template std::unique_ptr<SourceMesh<2>>
-  generate_mesh(const std::string &, const std::string &, const unsigned int);
-  template std::unique_ptr<SourceMesh<3>>
-  generate_mesh(const std::string &, const std::string &, const unsigned int);
+  template decltype(generate_mesh<2>) generate_mesh<2>;
+  template decltype(generate_mesh<3>) generate_mesh<3>;
 } // namespace Debond

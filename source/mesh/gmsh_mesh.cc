@@ -560,8 +560,6 @@ namespace Debond
 
 
 
-  template std::unique_ptr<SourceMesh<2>>
-  read_gmsh_mesh(const std::string &, const double);
-  template std::unique_ptr<SourceMesh<3>>
-  read_gmsh_mesh(const std::string &, const double);
+  template decltype(read_gmsh_mesh<2>) read_gmsh_mesh<2>;
+  template decltype(read_gmsh_mesh<3>) read_gmsh_mesh<3>;
 } // namespace Debond

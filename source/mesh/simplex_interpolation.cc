@@ -69,12 +69,6 @@ namespace Debond
 
 
 
-  template std::vector<dealii::Tensor<1, 2>>
-  interpolate_on_simplices(const dealii::Triangulation<2> &,
-                           const std::vector<dealii::Tensor<1, 2>> &,
-                           const std::vector<dealii::Point<2>> &);
-  template std::vector<dealii::Tensor<1, 3>>
-  interpolate_on_simplices(const dealii::Triangulation<3> &,
-                           const std::vector<dealii::Tensor<1, 3>> &,
-                           const std::vector<dealii::Point<3>> &);
+  template decltype(interpolate_on_simplices<2>) interpolate_on_simplices<2>;
+  template decltype(interpolate_on_simplices<3>) interpolate_on_simplices<3>;
 } // namespace Debond

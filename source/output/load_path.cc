@@ -110,8 +110,6 @@ namespace Debond
   }
 
 
-  template void
-  write_load_path(const std::vector<LoadPathStep<2>> &, const std::string &);
-  template void
-  write_load_path(const std::vector<LoadPathStep<3>> &, const std::string &);
+  template decltype(write_load_path<2>) write_load_path<2>;
+  template decltype(write_load_path<3>) write_load_path<3>;
 } // namespace Debond

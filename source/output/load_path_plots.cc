@@ -204,10 +204,6 @@ namespace Debond
 
 
 
-  template std::vector<Plot>
-  load_path_plots(const std::vector<LoadPathStep<2>> &,
-                  const std::vector<LoadPathStep<2>> &);
-  template std::vector<Plot>
-  load_path_plots(const std::vector<LoadPathStep<3>> &,
-                  const std::vector<LoadPathStep<3>> &);
+  template decltype(load_path_plots<2>) load_path_plots<2>;
+  template decltype(load_path_plots<3>) load_path_plots<3>;
 } // namespace Debond

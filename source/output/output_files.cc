@@ -173,14 +173,6 @@ namespace Debond
 
 
 
-  template std::vector<OutputFile>
-  output_files(const OutputParameters &,
-               const Scene<2> &,
-               const RunResult<2> &,
-               std::string &);
-  template std::vector<OutputFile>
-  output_files(const OutputParameters &,
-               const Scene<3> &,
-               const RunResult<3> &,
-               std::string &);
+  template decltype(output_files<2>) output_files<2>;
+  template decltype(output_files<3>) output_files<3>;
 } // namespace Debond

@@ -108,14 +108,6 @@ namespace Debond
 
 
 
-  template void
-  report_cost(const RunResult<2> &,
-              const MethodChoice &,
-              const double,
-              Record &);
-  template void
-  report_cost(const RunResult<3> &,
-              const MethodChoice &,
-              const double,
-              Record &);
+  template decltype(report_cost<2>) report_cost<2>;
+  template decltype(report_cost<3>) report_cost<3>;
 } // namespace Debond

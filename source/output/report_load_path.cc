@@ -169,8 +169,6 @@ namespace Debond
 
 
 
-  template void
-  report_load_path(const LoadPathParameters &, const RunResult<2> &, Record &);
-  template void
-  report_load_path(const LoadPathParameters &, const RunResult<3> &, Record &);
+  template decltype(report_load_path<2>) report_load_path<2>;
+  template decltype(report_load_path<3>) report_load_path<3>;
 } // namespace Debond

@@ -151,14 +151,6 @@ namespace Debond
 
 
 
-  template void
-  report_problem(const Scene<2> &,
-                 const MethodChoice &,
-                 const double,
-                 Record &);
-  template void
-  report_problem(const Scene<3> &,
-                 const MethodChoice &,
-                 const double,
-                 Record &);
+  template decltype(report_problem<2>) report_problem<2>;
+  template decltype(report_problem<3>) report_problem<3>;
 } // namespace Debond

@@ -444,14 +444,6 @@ namespace Debond
 
 
 
-  template void
-  report_result(const Scene<2> &,
-                const MethodChoice &,
-                const RunResult<2> &,
-                Record &);
-  template void
-  report_result(const Scene<3> &,
-                const MethodChoice &,
-                const RunResult<3> &,
-                Record &);
+  template decltype(report_result<2>) report_result<2>;
+  template decltype(report_result<3>) report_result<3>;
 } // namespace Debond

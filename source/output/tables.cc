@@ -199,12 +199,6 @@ namespace Debond
 
 
 
-  template void
-  write_contact_profile(const ContactBoundary<2> &,
-                        const Verification<2> &,
-                        const std::string &);
-  template void
-  write_contact_profile(const ContactBoundary<3> &,
-                        const Verification<3> &,
-                        const std::string &);
+  template decltype(write_contact_profile<2>) write_contact_profile<2>;
+  template decltype(write_contact_profile<3>) write_contact_profile<3>;
 } // namespace Debond

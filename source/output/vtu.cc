@@ -392,40 +392,10 @@ namespace Debond
 
 
 
-  template void
-  write_body_vtu(const ElasticProblem<2> &,
-                 const DofVector &,
-                 const std::string &,
-                 const LoadFactors,
-                 const ErrorEstimate *,
-                 const std::vector<CellField> &);
-  template void
-  write_body_vtu(const ElasticProblem<3> &,
-                 const DofVector &,
-                 const std::string &,
-                 const LoadFactors,
-                 const ErrorEstimate *,
-                 const std::vector<CellField> &);
-  template std::vector<std::string>
-  write_body_pieces(const ElasticProblem<2> &,
-                    const ProblemPiece<2> &,
-                    const DofVector &,
-                    const ErrorEstimate *,
-                    const std::string &);
-  template std::vector<std::string>
-  write_body_pieces(const ElasticProblem<3> &,
-                    const ProblemPiece<3> &,
-                    const DofVector &,
-                    const ErrorEstimate *,
-                    const std::string &);
-  template void
-  write_contact_vtu(const ContactBoundary<2> &,
-                    const Verification<2> &,
-                    const std::string &,
-                    const std::vector<CellField> &);
-  template void
-  write_contact_vtu(const ContactBoundary<3> &,
-                    const Verification<3> &,
-                    const std::string &,
-                    const std::vector<CellField> &);
+  template decltype(write_body_vtu<2>)    write_body_vtu<2>;
+  template decltype(write_body_vtu<3>)    write_body_vtu<3>;
+  template decltype(write_body_pieces<2>) write_body_pieces<2>;
+  template decltype(write_body_pieces<3>) write_body_pieces<3>;
+  template decltype(write_contact_vtu<2>) write_contact_vtu<2>;
+  template decltype(write_contact_vtu<3>) write_contact_vtu<3>;
 } // namespace Debond

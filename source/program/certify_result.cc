@@ -71,24 +71,8 @@ namespace Debond
 
 
 
-  template std::unique_ptr<const Certifier>
-  make_certifier(const CertificateKind,
-                 const std::shared_ptr<const Scene<2>> &);
-  template std::unique_ptr<const Certifier>
-  make_certifier(const CertificateKind,
-                 const std::shared_ptr<const Scene<3>> &);
-  template void
-  certify_result(const Certifier &,
-                 const CertificateKind,
-                 const bool,
-                 const BranchAndBoundParameters &,
-                 const std::shared_ptr<const Scene<2>> &,
-                 RunResult<2> &);
-  template void
-  certify_result(const Certifier &,
-                 const CertificateKind,
-                 const bool,
-                 const BranchAndBoundParameters &,
-                 const std::shared_ptr<const Scene<3>> &,
-                 RunResult<3> &);
+  template decltype(make_certifier<2>) make_certifier<2>;
+  template decltype(make_certifier<3>) make_certifier<3>;
+  template decltype(certify_result<2>) certify_result<2>;
+  template decltype(certify_result<3>) certify_result<3>;
 } // namespace Debond

@@ -196,34 +196,14 @@ namespace Debond
 
 
 
-  template std::optional<DisplacementError>
-  error_of(const std::string &, const Scene<2> &, const DofVector &);
-  template std::optional<DisplacementError>
-  error_of(const std::string &, const Scene<3> &, const DofVector &);
-  template std::string
-  verification_message(const double, const RunResult<2> &);
-  template std::string
-  verification_message(const double, const RunResult<3> &);
-  template void
-  judge(const std::string &, const std::string &, RunResult<2> &);
-  template void
-  judge(const std::string &, const std::string &, RunResult<3> &);
-  template void
-  estimate(const Scene<2> &, const AdhesionIntegral<2> &, RunResult<2> &);
-  template void
-  estimate(const Scene<3> &, const AdhesionIntegral<3> &, RunResult<3> &);
-  template void
-  check_result(const VerificationParameters &,
-               const std::vector<std::string> &,
-               const Scene<2> &,
-               const AdhesionIntegral<2> &,
-               const std::string &,
-               RunResult<2> &);
-  template void
-  check_result(const VerificationParameters &,
-               const std::vector<std::string> &,
-               const Scene<3> &,
-               const AdhesionIntegral<3> &,
-               const std::string &,
-               RunResult<3> &);
+  template decltype(error_of<2>)             error_of<2>;
+  template decltype(error_of<3>)             error_of<3>;
+  template decltype(verification_message<2>) verification_message<2>;
+  template decltype(verification_message<3>) verification_message<3>;
+  template decltype(judge<2>)                judge<2>;
+  template decltype(judge<3>)                judge<3>;
+  template decltype(estimate<2>)             estimate<2>;
+  template decltype(estimate<3>)             estimate<3>;
+  template decltype(check_result<2>)         check_result<2>;
+  template decltype(check_result<3>)         check_result<3>;
 } // namespace Debond

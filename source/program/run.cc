@@ -221,8 +221,6 @@ namespace Debond
 
 
 
-  template ExitCode
-  run<2>(const Parameters &, std::ostream &, const bool);
-  template ExitCode
-  run<3>(const Parameters &, std::ostream &, const bool);
+  template decltype(run<2>) run<2>;
+  template decltype(run<3>) run<3>;
 } // namespace Debond

@@ -260,14 +260,6 @@ namespace Debond
 
 
 
-  template ExitCode
-  run_on_ranks<2>(const Parameters &,
-                  const MPI_Comm,
-                  std::ostream &,
-                  const bool);
-  template ExitCode
-  run_on_ranks<3>(const Parameters &,
-                  const MPI_Comm,
-                  std::ostream &,
-                  const bool);
+  template decltype(run_on_ranks<2>) run_on_ranks<2>;
+  template decltype(run_on_ranks<3>) run_on_ranks<3>;
 } // namespace Debond

@@ -84,16 +84,8 @@ namespace Debond
 
 
 
-  template std::string
-  finish_checkpoints(const RunCheckpoints &,
-                     RunResult<2> &,
-                     std::vector<std::string> &);
-  template std::string
-  finish_checkpoints(const RunCheckpoints &,
-                     RunResult<3> &,
-                     std::vector<std::string> &);
-  template ExitCode
-  conclude(const RunResult<2> &, const std::string &);
-  template ExitCode
-  conclude(const RunResult<3> &, const std::string &);
+  template decltype(finish_checkpoints<2>) finish_checkpoints<2>;
+  template decltype(finish_checkpoints<3>) finish_checkpoints<3>;
+  template decltype(conclude<2>)           conclude<2>;
+  template decltype(conclude<3>)           conclude<3>;
 } // namespace Debond

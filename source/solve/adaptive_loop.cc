@@ -577,32 +577,8 @@ namespace Debond
 
 
 
-  template std::shared_ptr<const Scene<2>>
-  make_first_scene(const ProblemParameters &,
-                   const AccuracyParameters &,
-                   const MatrixStorage,
-                   const std::string &);
-  template std::shared_ptr<const Scene<3>>
-  make_first_scene(const ProblemParameters &,
-                   const AccuracyParameters &,
-                   const MatrixStorage,
-                   const std::string &);
-  template AdaptiveResult
-  solve_adaptively(const MethodChoice &,
-                   const SolverParameters &,
-                   const AccuracyParameters &,
-                   const CertificateKind,
-                   const double,
-                   const std::function<void(const AdaptiveLevel &)> &,
-                   std::shared_ptr<const Scene<2>> &,
-                   FollowedPath<2> *);
-  template AdaptiveResult
-  solve_adaptively(const MethodChoice &,
-                   const SolverParameters &,
-                   const AccuracyParameters &,
-                   const CertificateKind,
-                   const double,
-                   const std::function<void(const AdaptiveLevel &)> &,
-                   std::shared_ptr<const Scene<3>> &,
-                   FollowedPath<3> *);
+  template decltype(make_first_scene<2>) make_first_scene<2>;
+  template decltype(make_first_scene<3>) make_first_scene<3>;
+  template decltype(solve_adaptively<2>) solve_adaptively<2>;
+  template decltype(solve_adaptively<3>) solve_adaptively<3>;
 } // namespace Debond

@@ -202,20 +202,6 @@ namespace Debond
 
 
 
-  template void
-  solve_condensed(const std::string &,
-                  const SolverParameters &,
-                  const Scene<2> &,
-                  Checkpoints *,
-                  const Vector *,
-                  Watch &,
-                  SolveResult &);
-  template void
-  solve_condensed(const std::string &,
-                  const SolverParameters &,
-                  const Scene<3> &,
-                  Checkpoints *,
-                  const Vector *,
-                  Watch &,
-                  SolveResult &);
+  template decltype(solve_condensed<2>) solve_condensed<2>;
+  template decltype(solve_condensed<3>) solve_condensed<3>;
 } // namespace Debond

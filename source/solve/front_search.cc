@@ -210,14 +210,6 @@ namespace Debond
 
 
 
-  template FrontSearchResult
-  search_fronts(const Scene<2> &,
-                const MajoriseMinimise &,
-                const std::function<bool()> &,
-                DofVector &);
-  template FrontSearchResult
-  search_fronts(const Scene<3> &,
-                const MajoriseMinimise &,
-                const std::function<bool()> &,
-                DofVector &);
+  template decltype(search_fronts<2>) search_fronts<2>;
+  template decltype(search_fronts<3>) search_fronts<3>;
 } // namespace Debond

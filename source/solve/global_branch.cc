@@ -174,22 +174,6 @@ namespace Debond
 
 
 
-  template Branch
-  global_branch(const GlobalBranch,
-                const SolverParameters &,
-                const Scene<2> &,
-                const Branch &,
-                const std::function<bool()> &,
-                const BranchMonitor &,
-                AdhesionIntegral<2> &,
-                Condensation &);
-  template Branch
-  global_branch(const GlobalBranch,
-                const SolverParameters &,
-                const Scene<3> &,
-                const Branch &,
-                const std::function<bool()> &,
-                const BranchMonitor &,
-                AdhesionIntegral<3> &,
-                Condensation &);
+  template decltype(global_branch<2>) global_branch<2>;
+  template decltype(global_branch<3>) global_branch<3>;
 } // namespace Debond

@@ -313,18 +313,6 @@ namespace Debond
 
 
 
-  template void
-  solve_by_levels(const MethodChoice &,
-                  const SolverParameters &,
-                  const Scene<2> &,
-                  const InterruptGuard &,
-                  Watch &,
-                  SolveResult &);
-  template void
-  solve_by_levels(const MethodChoice &,
-                  const SolverParameters &,
-                  const Scene<3> &,
-                  const InterruptGuard &,
-                  Watch &,
-                  SolveResult &);
+  template decltype(solve_by_levels<2>) solve_by_levels<2>;
+  template decltype(solve_by_levels<3>) solve_by_levels<3>;
 } // namespace Debond

@@ -702,22 +702,6 @@ namespace Debond
 
 
 
-  template SolveResult
-  follow_load_path(const LoadPathParameters &,
-                   const SolverParameters &,
-                   const double,
-                   const Scene<2> &,
-                   const LoadPathObserver<2> &,
-                   std::ostream *,
-                   std::vector<LoadPathStep<2>> &,
-                   std::vector<LoadPathStep<2>> &);
-  template SolveResult
-  follow_load_path(const LoadPathParameters &,
-                   const SolverParameters &,
-                   const double,
-                   const Scene<3> &,
-                   const LoadPathObserver<3> &,
-                   std::ostream *,
-                   std::vector<LoadPathStep<3>> &,
-                   std::vector<LoadPathStep<3>> &);
+  template decltype(follow_load_path<2>) follow_load_path<2>;
+  template decltype(follow_load_path<3>) follow_load_path<3>;
 } // namespace Debond

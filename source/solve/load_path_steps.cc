@@ -57,8 +57,6 @@ namespace Debond
   }
 
 
-  template LoadPathTotals
-  load_path_totals(const std::vector<LoadPathStep<2>> &, const unsigned int);
-  template LoadPathTotals
-  load_path_totals(const std::vector<LoadPathStep<3>> &, const unsigned int);
+  template decltype(load_path_totals<2>) load_path_totals<2>;
+  template decltype(load_path_totals<3>) load_path_totals<3>;
 } // namespace Debond

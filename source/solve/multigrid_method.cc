@@ -151,16 +151,6 @@ namespace Debond
 
 
 
-  template void
-  solve_by_multigrid(const SolverParameters &,
-                     const Scene<2> &,
-                     const InterruptGuard &,
-                     Watch &,
-                     SolveResult &);
-  template void
-  solve_by_multigrid(const SolverParameters &,
-                     const Scene<3> &,
-                     const InterruptGuard &,
-                     Watch &,
-                     SolveResult &);
+  template decltype(solve_by_multigrid<2>) solve_by_multigrid<2>;
+  template decltype(solve_by_multigrid<3>) solve_by_multigrid<3>;
 } // namespace Debond

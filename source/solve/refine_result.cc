@@ -104,14 +104,6 @@ namespace Debond
 
 
 
-  template bool
-  refine_result(const Scene<2> &,
-                CorrectionSolver &,
-                const Watch &,
-                SolveResult &);
-  template bool
-  refine_result(const Scene<3> &,
-                CorrectionSolver &,
-                const Watch &,
-                SolveResult &);
+  template decltype(refine_result<2>) refine_result<2>;
+  template decltype(refine_result<3>) refine_result<3>;
 } // namespace Debond

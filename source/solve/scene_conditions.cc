@@ -242,20 +242,10 @@ namespace Debond
 
 
 
-  template Supports<2>
-  make_supports<2>(const ProblemParameters &, const BoundaryConditions &);
-  template Supports<3>
-  make_supports<3>(const ProblemParameters &, const BoundaryConditions &);
-  template std::unique_ptr<BondField<2>>
-  make_bond_field<2>(const ProblemParameters &,
-                     const AdhesiveLaw &,
-                     const BoundaryConditions &);
-  template std::unique_ptr<BondField<3>>
-  make_bond_field<3>(const ProblemParameters &,
-                     const AdhesiveLaw &,
-                     const BoundaryConditions &);
-  template void
-  check_held_vertices(const ElasticUnknowns<2> &, const std::vector<double> &);
-  template void
-  check_held_vertices(const ElasticUnknowns<3> &, const std::vector<double> &);
+  template decltype(make_supports<2>)       make_supports<2>;
+  template decltype(make_supports<3>)       make_supports<3>;
+  template decltype(make_bond_field<2>)     make_bond_field<2>;
+  template decltype(make_bond_field<3>)     make_bond_field<3>;
+  template decltype(check_held_vertices<2>) check_held_vertices<2>;
+  template decltype(check_held_vertices<3>) check_held_vertices<3>;
 } // namespace Debond

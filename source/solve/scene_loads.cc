@@ -91,14 +91,6 @@ namespace Debond
 
 
 
-  template Loads<2>
-  make_loads<2>(const LoadParameters &,
-                const std::set<std::string> &,
-                const bool,
-                const BoundaryNames &);
-  template Loads<3>
-  make_loads<3>(const LoadParameters &,
-                const std::set<std::string> &,
-                const bool,
-                const BoundaryNames &);
+  template decltype(make_loads<2>) make_loads<2>;
+  template decltype(make_loads<3>) make_loads<3>;
 } // namespace Debond

@@ -147,28 +147,8 @@ namespace Debond
 
 
 
-  template void
-  check_supports_of_method(const MethodChoice &,
-                           const SolverParameters &,
-                           const Scene<2> &);
-  template void
-  check_supports_of_method(const MethodChoice &,
-                           const SolverParameters &,
-                           const Scene<3> &);
-  template SolveResult
-  solve(const MethodChoice &,
-        const SolverParameters &,
-        const Scene<2> &,
-        std::ostream *,
-        const bool,
-        Checkpoints *,
-        const Vector *);
-  template SolveResult
-  solve(const MethodChoice &,
-        const SolverParameters &,
-        const Scene<3> &,
-        std::ostream *,
-        const bool,
-        Checkpoints *,
-        const Vector *);
+  template decltype(check_supports_of_method<2>) check_supports_of_method<2>;
+  template decltype(check_supports_of_method<3>) check_supports_of_method<3>;
+  template decltype(solve<2>)                    solve<2>;
+  template decltype(solve<3>)                    solve<3>;
 } // namespace Debond

@@ -54,8 +54,6 @@ namespace Debond
 
 
 
-  template double
-  functional_of(const Scene<2> &, const DofVector &);
-  template double
-  functional_of(const Scene<3> &, const DofVector &);
+  template decltype(functional_of<2>) functional_of<2>;
+  template decltype(functional_of<3>) functional_of<3>;
 } // namespace Debond

@@ -519,32 +519,10 @@ namespace Debond
 
 
 
-  template SeparableBranches
-  lumped_bonds(const AdhesiveLaw &, const AdhesionIntegral<2> &);
-  template SeparableBranches
-  lumped_bonds(const AdhesiveLaw &, const AdhesionIntegral<3> &);
-  template MinimumKind
-  kind_without_search(const AdhesiveLaw &,
-                      const AdhesionIntegral<2> &,
-                      const VectorView &);
-  template MinimumKind
-  kind_without_search(const AdhesiveLaw &,
-                      const AdhesionIntegral<3> &,
-                      const VectorView &);
-  template WhichMinimum
-  find_better_minimum(const SolverParameters &,
-                      const ContactBoundary<2> &,
-                      const AdhesiveLaw &,
-                      const AdhesionIntegral<2> &,
-                      const Condensation &,
-                      const std::function<bool()> &,
-                      Eigen::VectorXd &);
-  template WhichMinimum
-  find_better_minimum(const SolverParameters &,
-                      const ContactBoundary<3> &,
-                      const AdhesiveLaw &,
-                      const AdhesionIntegral<3> &,
-                      const Condensation &,
-                      const std::function<bool()> &,
-                      Eigen::VectorXd &);
+  template decltype(lumped_bonds<2>)        lumped_bonds<2>;
+  template decltype(lumped_bonds<3>)        lumped_bonds<3>;
+  template decltype(kind_without_search<2>) kind_without_search<2>;
+  template decltype(kind_without_search<3>) kind_without_search<3>;
+  template decltype(find_better_minimum<2>) find_better_minimum<2>;
+  template decltype(find_better_minimum<3>) find_better_minimum<3>;
 } // namespace Debond
