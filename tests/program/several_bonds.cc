@@ -6,74 +6,20 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <debond/input/parameters.h>
-#include <debond/program/exit_code.h>
-#include <debond/program/run.h>
-
-#include <nlohmann/json.hpp>
-#include <unistd.h>
-
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "../check.h"
-#include "assignments.h"
 #include "own_check.h"
+#include "solve_scene.h"
 
 using namespace Debond;
 
 namespace
 {
-  using Json = nlohmann::json;
-
-
-
-  Json
-  solve_scene(const Values &assignments)
-  {
-    const std::filesystem::path directory =
-      std::filesystem::temp_directory_path() /
-      ("debond-several-bonds-" + std::to_string(getpid()));
-    SceneTable table;
-    for (const std::string &assignment : assignments)
-      table.assign(assignment);
-    table.assign("Output/Load path plots=false");
-    table.assign("Output/Directory=" + directory.string());
-    std::ostringstream log;
-    Json               summary;
-    try
-      {
-        const Parameters parameters = table.parameters("scene.prm");
-        if (parameters.dimension == 2)
-          run<2>(parameters, log, false);
-        else
-          run<3>(parameters, log, false);
-        std::ifstream(directory / "summary.json") >> summary;
-      }
-    catch (const std::invalid_argument &error)
-      {
-        summary["status"] = error.what();
-      }
-    std::filesystem::remove_all(directory);
-    return summary;
-  }
-
-
-
-  double
-  relative(const double value, const double expected)
-  {
-    return std::abs(value / expected - 1.);
-  }
-
-
-
   /// The benchmark's strip with bonds at its end as well.
   void
   test_equal(const std::string &name, const Values &settings)

@@ -3,113 +3,18 @@
 // a block that is pressed through a gap, a column on bonds of which it is
 // pulled off, halves of symmetric bodies, bonds given in several ways.
 
-#include <debond/input/parameters.h>
-#include <debond/program/run.h>
-
-#include <nlohmann/json.hpp>
-#include <unistd.h>
-
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "../check.h"
-#include "assignments.h"
+#include "solve_scene.h"
 
 using namespace Debond;
 
 namespace
 {
-  using Json = nlohmann::json;
-
-
-
-  /// The summary of a run, with the load path as "path" if there is one.
-  Json
-  solve_scene(const Values &assignments)
-  {
-    const std::filesystem::path directory =
-      std::filesystem::temp_directory_path() /
-      ("debond-supports-" + std::to_string(getpid()));
-    SceneTable table;
-    for (const std::string &assignment : assignments)
-      table.assign(assignment);
-    for (const char *file : {"Body VTU", "Contact VTU", "Load path plots"})
-      table.assign(std::string("Output/") + file + "=false");
-    table.assign("Output/Directory=" + directory.string());
-    std::ostringstream log;
-    Json               summary;
-    try
-      {
-        const Parameters parameters = table.parameters("scene.prm");
-        if (parameters.dimension == 2)
-          run<2>(parameters, log, false);
-        else
-          run<3>(parameters, log, false);
-        std::ifstream(directory / "summary.json") >> summary;
-        std::ifstream path(directory / "load_path.csv");
-        summary["path"] = Json::array();
-        std::string line;
-        std::getline(path, line);
-        std::vector<std::string> names;
-        std::istringstream       titles(line);
-        for (std::string name; std::getline(titles, name, ',');)
-          names.push_back(name);
-        while (std::getline(path, line))
-          {
-            Json               row;
-            std::istringstream cells(line);
-            std::string        cell;
-            for (unsigned int k = 0; std::getline(cells, cell, ','); ++k)
-              row[names.at(k)] = cell;
-            summary["path"].push_back(row);
-          }
-      }
-    catch (const std::invalid_argument &error)
-      {
-        std::cout << error.what() << std::endl;
-        summary["status"] = "rejected";
-      }
-    std::filesystem::remove_all(directory);
-    return summary;
-  }
-
-
-
-  /// A column of a row of load_path.csv.
-  double
-  number(const Json &row, const std::string &column)
-  {
-    return std::stod(row.at(column).get<std::string>());
-  }
-
-
-
-  double
-  relative(const double value, const double expected)
-  {
-    return std::abs(value / expected - 1.);
-  }
-
-
-
-  /// A length and a modulus in some units.
-  struct Units
-  {
-    std::string name;
-    double      length, modulus;
-  };
-
-  const std::vector<Units> systems = {{"GPa and m", 1., 1.},
-                                      {"Pa and m", 1., 1e9},
-                                      {"MPa and mm", 1e3, 1e3}};
-
-
-
   /// A box that is free to deform uniformly: planes of symmetry left, at the
   /// bottom (and at the back), a foundation above it.
   Values
