@@ -116,8 +116,8 @@ namespace Debond
                      side.ends[1][1],
                      side.mean.lower,
                      side.mean.upper,
-                     side.linear.lower,
-                     side.linear.upper,
+                     side.linear().lower,
+                     side.linear().upper,
                      side.piece ? law.name(*side.piece) : "uncertain"});
     table.write_csv(file_name);
   }

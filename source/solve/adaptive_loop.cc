@@ -40,6 +40,9 @@ namespace Debond
     /// The same if parts of a certificate's gap are to become smaller.
     constexpr double growth_for_gaps = 1.7;
 
+    /// Of branch and bound for certificates that only later ones use.
+    constexpr unsigned int n_nodes_on_the_way = 100;
+
     /// The part of Accuracy/Target that a mesh is made for.
     constexpr double aim = 0.9;
 
@@ -278,7 +281,8 @@ namespace Debond
     /// The certificate of a level; of one that Certificate/Target is for
     /// bonds that may break, which takes longer, that for their branches as
     /// they are as long as that is not narrow enough and @p is_last is false.
-    /// Throws EquilibriumError if there is none.
+    /// @p global is the latest one for bonds that may break, for which the next
+    /// one is narrower. Throws EquilibriumError if there is none.
     template <int dim>
     Certificate
     certify_level(
@@ -288,55 +292,49 @@ namespace Debond
       [[maybe_unused]] const std::shared_ptr<const Scene<dim>> &scene,
       [[maybe_unused]] const DofVector                         &u,
       [[maybe_unused]] const bool                               is_last,
+      [[maybe_unused]] std::optional<Certificate>              &global,
       [[maybe_unused]] const std::function<bool()>             &may_go_on)
     {
       if constexpr (dim == 2)
         {
-          const auto certify = [&](const CertificateKind kind_of_this) {
-            return Certifier(kind_of_this, scene)
-              .certify(*scene, u, proof, may_go_on);
+          const auto certify = [&](const CertificateKind           kind_of_this,
+                                   const BranchAndBoundParameters &limits) {
+            Certificate certificate = Certifier(kind_of_this, scene)
+                                        .certify(*scene,
+                                                 u,
+                                                 limits,
+                                                 may_go_on,
+                                                 global ? &*global : nullptr,
+                                                 !is_last);
+            if (certificate.minimum == CertifiedMinimum::global)
+              global = certificate;
+            return certificate;
           };
           if (kind == CertificateKind::global && !is_last)
             try
               {
-                const Certificate first = certify(CertificateKind::fixed_state);
-                if (first.minimum == CertifiedMinimum::global ||
-                    first.width() > target)
+                const Certificate first =
+                  certify(CertificateKind::fixed_state, proof);
+                if (first.minimum == CertifiedMinimum::global)
                   return first;
+                if (first.width() > target)
+                  {
+                    BranchAndBoundParameters limits = proof;
+                    limits.maximum_nodes =
+                      std::min(limits.maximum_nodes, n_nodes_on_the_way);
+                    certify(kind, limits);
+                    return first;
+                  }
               }
             catch (const EquilibriumError &)
               {
                 // Such as a body that only bonds hold.
               }
-          return certify(kind);
+          return certify(kind, proof);
         }
       else
         throw EquilibriumError("there is none in 3D");
     }
-
-
-
-    /// All intervals for the least J hold for the same number, whatever mesh
-    /// they are of: a bound of a coarser mesh may be the better one.
-    class Narrowest
-    {
-    public:
-      void
-      intersect(Certificate &certificate)
-      {
-        if (certificate.minimum != CertifiedMinimum::global ||
-            !certificate.loads_are_exact)
-          return;
-        lower             = std::max(lower, certificate.lower);
-        upper             = std::min(upper, certificate.upper);
-        certificate.lower = lower;
-        certificate.upper = upper;
-      }
-
-    private:
-      double lower = -std::numeric_limits<double>::infinity();
-      double upper = std::numeric_limits<double>::infinity();
-    };
 
 
 
@@ -411,7 +409,7 @@ namespace Debond
     std::shared_ptr<const Body<dim>>  finished, latest;
     std::unique_ptr<const DofVector>  start;
     MeshGrowth                        growth(accuracy, dim, problem.degree);
-    Narrowest                         narrowest;
+    std::optional<Certificate>        narrowest;
     while (true)
       {
         const bool        is_first = !next;
@@ -478,8 +476,8 @@ namespace Debond
                                    scene,
                                    result.solve.u,
                                    is_last,
+                                   narrowest,
                                    [&]() { return !guard.requested(); });
-              narrowest.intersect(*result.certificate);
             }
           catch (const EquilibriumError &error)
             {

@@ -105,11 +105,11 @@ namespace Debond
           CertifiedLength length = {law.name(k), 0., 0.};
           for (const CertifiedSide &side : sides)
             {
-              const double measure = side.ends[0].distance(side.ends[1]);
-              const auto  &piece   = law.branches()[k];
-              const bool   is_likely =
-                side.linear.upper > piece.lower &&
-                (k == 0 || side.linear.lower < piece.upper);
+              const double   measure   = side.ends[0].distance(side.ends[1]);
+              const auto    &piece     = law.branches()[k];
+              const Interval linear    = side.linear();
+              const bool     is_likely = linear.upper > piece.lower &&
+                                     (k == 0 || linear.lower < piece.upper);
               if (side.piece ? *side.piece == k : is_likely)
                 length.largest += measure;
               if (side.piece == k)
@@ -302,6 +302,29 @@ namespace Debond
 
 
 
+  namespace
+  {
+    bool
+    is_for_least(const Certificate &certificate)
+    {
+      return certificate.minimum == CertifiedMinimum::global &&
+             certificate.loads_are_exact;
+    }
+  } // namespace
+
+
+
+  void
+  intersect(Certificate &certificate, const Certificate &other)
+  {
+    if (!is_for_least(certificate) || !is_for_least(other))
+      return;
+    certificate.lower = std::max(certificate.lower, other.lower);
+    certificate.upper = std::min(certificate.upper, other.upper);
+  }
+
+
+
   Certifier::Certifier(const CertificateKind                  kind,
                        const std::shared_ptr<const Scene<2>> &scene)
     : scene(scene)
@@ -340,7 +363,9 @@ namespace Debond
   Certifier::certify(const Scene<2>                 &solved,
                      const DofVector                &u,
                      const BranchAndBoundParameters &proof,
-                     const std::function<bool()>    &may_go_on) const
+                     const std::function<bool()>    &may_go_on,
+                     const Certificate              *earlier,
+                     const bool                      is_for_finer) const
   {
     const bool is_own = &solved == scene.get();
     Assert(is_own || is_for_finer_meshes(), dealii::ExcInternalError());
@@ -401,6 +426,16 @@ namespace Debond
             for (unsigned int i = 0; i < certificate.n_sides; ++i)
               side_energies[i] = energies[equilibrium.contact_sides()[i].cell];
           }
+        std::vector<CertifiedSide> known;
+        const bool is_known = earlier != nullptr && is_for_least(*earlier) &&
+                              is_for_least(certificate);
+        if (is_known)
+          certificate.upper = std::min(certificate.upper, earlier->upper);
+        for (const ContactSide &side : equilibrium.contact_sides())
+          known.push_back(known_between(side.ends,
+                                        is_known ?
+                                          earlier->sides :
+                                          std::vector<CertifiedSide>()));
         GlobalBound bound        = bound_global(equilibrium,
                                          trace_constants,
                                          law,
@@ -409,6 +444,8 @@ namespace Debond
                                                     contact.trace(u)),
                                          side_energies,
                                          certificate.upper,
+                                         known,
+                                         is_for_finer,
                                          proof,
                                          may_go_on);
         certificate.lower        = bound.lower - own;
@@ -426,6 +463,8 @@ namespace Debond
     if (!std::isfinite(certificate.lower))
       throw EquilibriumError("no bound was found (" +
                              to_string(certificate.proof_status) + ")");
+    if (earlier != nullptr)
+      intersect(certificate, *earlier);
     certificate.seconds = timer.wall_time();
     return certificate;
   }

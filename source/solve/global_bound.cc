@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <iostream>
 
 namespace Debond
 {
@@ -106,18 +108,10 @@ namespace Debond
 
 
 
-    /// Where minimisers are on a side, as far as is known.
-    struct SideRange
-    {
-      Interval mean;   ///< of u_nu
-      Interval linear; ///< of the nearest linear function
-    };
-
-
-
     /// The right side of theorem 2 for shifts D, as a function of the means m:
     ///     constant + 1/2 m'S m - g'm + phi(m),
-    /// with the slopes k = offset + slopes m that belong to them.
+    /// with the slopes k = offset + slopes m that belong to them. J is at least
+    /// this and 1/2 the sum of the rests times the squared deviations.
     struct MeanProblem
     {
       double                             constant, rounding;
@@ -127,6 +121,7 @@ namespace Debond
 
       // Of the sides.
       std::vector<double>                      shifts;
+      std::vector<double>                      rests;
       std::vector<std::optional<unsigned int>> pieces;
 
       Eigen::VectorXd offset;
@@ -160,27 +155,35 @@ namespace Debond
                        const double           multiple) const;
 
       std::vector<double>
-      shifts_for_ranges(const std::vector<SideRange> &ranges,
-                        const Eigen::VectorXd        &means,
-                        const Eigen::VectorXd        &slopes,
-                        const double                  least_multiple) const;
+      shifts_for_ranges(const std::vector<CertifiedSide> &ranges,
+                        const Eigen::VectorXd            &means,
+                        const Eigen::VectorXd            &slopes,
+                        const double                      least_multiple) const;
 
       /// What the sides lose at the means @p m: by stiffness, and where no
       /// piece is certain by slopes and the rounded law.
       std::vector<double>
       losses(const MeanProblem &problem, const Eigen::VectorXd &m) const;
 
+      /// What of a stiffness is left for deviations to be bounded with, beside
+      /// the shifts @p D: so much that it makes the bound lower by about @p
+      /// loss.
+      std::vector<double>
+      rests_for(const double loss, const std::vector<double> &D) const;
+
       /// At @p means it measures its rounding.
       MeanProblem
-      mean_problem(const std::vector<SideRange> &ranges,
-                   const Eigen::VectorXd        &means,
-                   std::vector<double>          &D) const;
+      mean_problem(const std::vector<CertifiedSide> &ranges,
+                   const Eigen::VectorXd            &means,
+                   std::vector<double>               D,
+                   std::vector<double>               rests) const;
 
     private:
       std::optional<MeanProblem>
-      try_mean_problem(const std::vector<SideRange> &ranges,
-                       const Eigen::VectorXd        &means,
-                       const std::vector<double>    &D) const;
+      try_mean_problem(const std::vector<CertifiedSide> &ranges,
+                       const Eigen::VectorXd            &means,
+                       const std::vector<double>        &D,
+                       const std::vector<double>        &rests) const;
 
       /// The largest shift of a side: at least a tenth of an element's
       /// stiffness stays.
@@ -227,10 +230,10 @@ namespace Debond
     /// lose little by stiffness, slopes and rounding together, but at least the
     /// given multiple of the bonds' stiffness.
     std::vector<double>
-    Sides::shifts_for_ranges(const std::vector<SideRange> &ranges,
-                             const Eigen::VectorXd        &means,
-                             const Eigen::VectorXd        &slopes,
-                             const double                  least_multiple) const
+    Sides::shifts_for_ranges(const std::vector<CertifiedSide> &ranges,
+                             const Eigen::VectorXd            &means,
+                             const Eigen::VectorXd            &slopes,
+                             const double least_multiple) const
     {
       const double        a = law[0].curvature;
       std::vector<double> shifts;
@@ -244,7 +247,7 @@ namespace Debond
             {
               const RoundedBranches rounded(law, D);
               const bool            is_certain =
-                rounded.exact_piece(ranges[i].linear).has_value();
+                rounded.exact_piece(ranges[i].linear()).has_value();
               if (!is_certain && D > largest_uncertain_shift * a)
                 continue;
               double cost = D * of_stiffness;
@@ -259,7 +262,7 @@ namespace Debond
               if (is_certain)
                 break;
             }
-          if (!RoundedBranches(law, best).exact_piece(ranges[i].linear))
+          if (!RoundedBranches(law, best).exact_piece(ranges[i].linear()))
             best = std::max(best, least_multiple * a);
           shifts.push_back(std::min(best, available(i)));
         }
@@ -276,7 +279,8 @@ namespace Debond
       for (unsigned int i = 0; i < n; ++i)
         {
           const double D = problem.shifts[i];
-          result.push_back(0.5 * D / trace_constants[i] * energies[i]);
+          result.push_back(0.5 * (D + problem.rests[i]) / trace_constants[i] *
+                           energies[i]);
           if (problem.pieces[i])
             continue;
           const double s       = std::min(m(i), 0.);
@@ -290,16 +294,37 @@ namespace Debond
 
 
 
+    std::vector<double>
+    Sides::rests_for(const double loss, const std::vector<double> &D) const
+    {
+      // Half of an element's stiffness at the most: what is taken has to be
+      // small beside it for the energy to be that of the displacement.
+      constexpr double    largest = 0.5;
+      std::vector<double> rests;
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          const double allowed = std::max(largest * available(i) - D[i], 0.);
+          const double of_stiffness = 0.5 * energies[i] / trace_constants[i];
+          rests.push_back(allowed * of_stiffness * n > loss ?
+                            loss / (of_stiffness * n) :
+                            allowed);
+        }
+      return rests;
+    }
+
+
+
     /// Nothing if it is not convex in the slopes, or the means do not determine
     /// the stresses.
     std::optional<MeanProblem>
-    Sides::try_mean_problem(const std::vector<SideRange> &ranges,
-                            const Eigen::VectorXd        &means,
-                            const std::vector<double>    &D) const
+    Sides::try_mean_problem(const std::vector<CertifiedSide> &ranges,
+                            const Eigen::VectorXd            &means,
+                            const std::vector<double>        &D,
+                            const std::vector<double>        &rests) const
     {
       std::vector<double> weights(equilibrium.elements().size(), 1.);
       for (unsigned int i = 0; i < n; ++i)
-        weights[sides[i].element] -= D[i] / trace_constants[i];
+        weights[sides[i].element] -= (D[i] + rests[i]) / trace_constants[i];
       std::unique_ptr<const Condensation> condensed;
       try
         {
@@ -314,13 +339,14 @@ namespace Debond
 
       MeanProblem result;
       result.shifts   = D;
+      result.rests    = rests;
       result.constant = condensed->energy_at_zero();
       std::vector<BranchMinimum> laws;
       for (unsigned int i = 0; i < n; ++i)
         {
           const double          length = sides[i].length;
           const RoundedBranches rounded(law, D[i]);
-          result.pieces.push_back(rounded.exact_piece(ranges[i].linear));
+          result.pieces.push_back(rounded.exact_piece(ranges[i].linear()));
           if (!result.pieces.back())
             {
               A(n + i, n + i) -= length * D[i] / 3.;
@@ -361,20 +387,22 @@ namespace Debond
 
 
 
-    /// D is made smaller until there is one. Throws EquilibriumError if that
-    /// does not help.
+    /// D and the rests are made smaller until there is one. Throws
+    /// EquilibriumError if that does not help.
     MeanProblem
-    Sides::mean_problem(const std::vector<SideRange> &ranges,
-                        const Eigen::VectorXd        &means,
-                        std::vector<double>          &D) const
+    Sides::mean_problem(const std::vector<CertifiedSide> &ranges,
+                        const Eigen::VectorXd            &means,
+                        std::vector<double>               D,
+                        std::vector<double>               rests) const
     {
       constexpr unsigned int trials = 12;
       for (unsigned int trial = 0; trial < trials; ++trial)
         {
-          if (auto problem = try_mean_problem(ranges, means, D))
+          if (auto problem = try_mean_problem(ranges, means, D, rests))
             return std::move(*problem);
-          for (double &shift : D)
-            shift *= 0.5;
+          for (std::vector<double> *shifts : {&D, &rests})
+            for (double &shift : *shifts)
+              shift *= 0.5;
         }
       throw EquilibriumError("the equilibrated stresses are not determined by "
                              "the mean displacements of the contact sides");
@@ -394,28 +422,18 @@ namespace Debond
 
 
 
-    Interval
-    intersection(const Interval &a, const Interval &b)
-    {
-      return {std::max(a.lower, b.lower), std::min(a.upper, b.upper)};
-    }
-
-
-
     /// Where displacements of a node can be if the functional of the means is
     /// at most @p upper; nothing if they cannot.
-    std::optional<std::vector<SideRange>>
+    std::optional<std::vector<CertifiedSide>>
     ranges_of_node(const MeanProblem &problem,
                    const NodeBound   &bound,
                    const ProofNode   &node,
                    const double       upper)
     {
       const unsigned int n = static_cast<unsigned int>(problem.pieces.size());
-      constexpr double   infinity = std::numeric_limits<double>::infinity();
-      std::vector<SideRange> ranges;
+      std::vector<CertifiedSide> ranges(n);
       for (unsigned int i = 0; i < n; ++i)
-        ranges.push_back(
-          {{node.lower(i), node.upper(i)}, {-infinity, infinity}});
+        ranges[i].mean = {node.lower(i), node.upper(i)};
       for (const NodeBall &ball : bound.balls(node))
         {
           if (ball.value > upper)
@@ -438,11 +456,18 @@ namespace Debond
                 problem.inverse_in_slopes(i, i);
               const double mixed = 2. * product(i, i);
               ranges[i].mean = intersection(ranges[i].mean, around(m, of_mean));
-              ranges[i].linear =
-                intersection(ranges[i].linear,
-                             hull(around(m + k(i), of_mean + mixed + of_slope),
-                                  around(m - k(i),
-                                         of_mean - mixed + of_slope)));
+              for (const double xi : {-1., 1.})
+                {
+                  Interval &at_end = ranges[i].at_ends[xi > 0.];
+                  at_end =
+                    intersection(at_end,
+                                 around(m + xi * k(i),
+                                        of_mean + xi * mixed + of_slope));
+                }
+              if (problem.rests[i] > 0.)
+                ranges[i].deviation =
+                  std::min(ranges[i].deviation,
+                           radius / std::sqrt(problem.rests[i]));
             }
         }
       return ranges;
@@ -455,7 +480,7 @@ namespace Debond
     shrink(const MeanProblem           &problem,
            const double                 upper,
            const std::function<bool()> &may_go_on,
-           std::vector<SideRange>      &ranges)
+           std::vector<CertifiedSide>  &ranges)
     {
       const double           best = upper - problem.constant + problem.rounding;
       const NodeBound        bound(problem.S, problem.g, *problem.phi);
@@ -471,8 +496,12 @@ namespace Debond
         }
       else
         return;
-      const SideRange        empty = {{1., -1.}, {1., -1.}};
-      std::vector<SideRange> hulls(ranges.size(), empty);
+      const Interval empty    = {1., -1.};
+      CertifiedSide  no_range = {};
+      no_range.mean           = empty;
+      no_range.at_ends        = {{empty, empty}};
+      no_range.deviation      = 0.;
+      std::vector<CertifiedSide> hulls(ranges.size(), no_range);
       for (unsigned int nodes = 0; !open.empty(); ++nodes)
         {
           if (!may_go_on())
@@ -491,8 +520,12 @@ namespace Debond
               if (const auto own = ranges_of_node(problem, bound, node, best))
                 for (unsigned int i = 0; i < ranges.size(); ++i)
                   {
-                    hulls[i].mean   = hull(hulls[i].mean, (*own)[i].mean);
-                    hulls[i].linear = hull(hulls[i].linear, (*own)[i].linear);
+                    hulls[i].mean = hull(hulls[i].mean, (*own)[i].mean);
+                    for (unsigned int k = 0; k < 2; ++k)
+                      hulls[i].at_ends[k] =
+                        hull(hulls[i].at_ends[k], (*own)[i].at_ends[k]);
+                    hulls[i].deviation =
+                      std::max(hulls[i].deviation, (*own)[i].deviation);
                   }
               continue;
             }
@@ -510,8 +543,8 @@ namespace Debond
         // No displacement at all would be one of rounding.
         if (!hulls[i].mean.is_empty())
           {
-            ranges[i].mean   = intersection(ranges[i].mean, hulls[i].mean);
-            ranges[i].linear = intersection(ranges[i].linear, hulls[i].linear);
+            hulls[i].ends = ranges[i].ends;
+            ranges[i]     = intersection(ranges[i], hulls[i]);
           }
     }
   } // namespace
@@ -586,14 +619,15 @@ namespace Debond
                const Eigen::VectorXd          &means,
                const std::vector<double>      &energies,
                const double                    upper,
+               std::vector<CertifiedSide>      known,
+               const bool                      with_deviations,
                const BranchAndBoundParameters &proof_parameters,
                const std::function<bool()>    &may_go_on)
   {
     const Sides sides(equilibrium, trace_constants, law, energies);
 
-    constexpr double       infinity = std::numeric_limits<double>::infinity();
-    const Interval         all      = {-infinity, infinity};
-    std::vector<SideRange> ranges(means.size(), {{-infinity, 0.}, all});
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    std::vector<CertifiedSide> &ranges = known;
 
     BranchAndBoundParameters parameters = proof_parameters;
     parameters.tolerance                = proof_tolerance * std::abs(upper);
@@ -601,8 +635,9 @@ namespace Debond
     std::optional<MeanProblem> best, latest;
     Eigen::VectorXd            latest_means;
     /// Returns the bound.
-    const auto add_bound = [&](std::vector<double> D) {
-      MeanProblem                problem = sides.mean_problem(ranges, means, D);
+    const std::vector<double> none(ranges.size(), 0.);
+    const auto                add_bound = [&](const std::vector<double> &D) {
+      MeanProblem problem = sides.mean_problem(ranges, means, D, none);
       const BranchAndBoundResult proof =
         BranchAndBound(parameters)
           .minimize(problem.S,
@@ -612,8 +647,8 @@ namespace Debond
                     [&](const ProofProgress &) { return may_go_on(); });
       result.nodes += proof.nodes;
       const double lower = proof.status == ProofStatus::no_bound ?
-                             -infinity :
-                             problem.constant + proof.lower - problem.rounding;
+                                            -infinity :
+                                            problem.constant + proof.lower - problem.rounding;
       latest_means       = proof.s;
       latest             = std::move(problem);
       if (lower > result.lower)
@@ -649,22 +684,42 @@ namespace Debond
                                   least_shifts[stage % least_shifts.size()]));
         best       = std::move(latest);
         best_means = latest_means;
+        if (std::getenv("CERT"))
+          {
+            double certain = 0., whole = 0.;
+            for (unsigned int i = 0; i < ranges.size(); ++i)
+              {
+                const double l = equilibrium.contact_sides()[i].length;
+                whole += l;
+                certain += piece_of(ranges[i].linear(), law) ? l : 0.;
+              }
+            std::cerr << "  stage " << stage << " lower " << result.lower
+                      << " width " << (upper - result.lower) / std::abs(upper)
+                      << " nodes " << result.nodes << " uncertain "
+                      << whole - certain << " of " << whole << " sides "
+                      << ranges.size() << '\n';
+          }
         n_idle =
           upper - result.lower > (1. - least_gain) * before ? n_idle + 1 : 0;
         if (n_idle == n_idle_stages)
           break;
       }
 
-    for (unsigned int i = 0; i < ranges.size(); ++i)
+    if (with_deviations && may_go_on())
       {
-        const auto &side     = equilibrium.contact_sides()[i];
-        const auto &vertices = equilibrium.vertices();
-        result.sides.push_back(
-          {{{vertices[side.vertices[0]], vertices[side.vertices[1]]}},
-           ranges[i].mean,
-           ranges[i].linear,
-           piece_of(ranges[i].linear, law)});
+        const std::vector<double> &D = best->shifts;
+        shrink(sides.mean_problem(ranges,
+                                  best_means,
+                                  D,
+                                  sides.rests_for(upper - result.lower, D)),
+               upper,
+               may_go_on,
+               ranges);
       }
+
+    for (CertifiedSide &side : ranges)
+      side.piece = piece_of(side.linear(), law);
+    result.sides = std::move(ranges);
     return result;
   }
 } // namespace Debond

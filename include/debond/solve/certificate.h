@@ -83,6 +83,15 @@ namespace Debond
 
 
 
+  /// All intervals for the least J of a scene hold for the same number, on
+  /// whatever mesh they were found: a bound of the other one may be the better
+  /// one, and becomes that of @p certificate. Intervals for fixed branches, or
+  /// for loads that are not exact, are for other numbers and change nothing.
+  void
+  intersect(Certificate &certificate, const Certificate &other);
+
+
+
   /// Certificates of displacements of a scene, for its whole load.
   class Certifier
   {
@@ -98,13 +107,18 @@ namespace Debond
     is_for_finer_meshes() const;
 
     /// Of the displacement @p u of @p solved, which is the scene, or the same
-    /// on a finer mesh. @p proof: limits of branch and bound. Throws
+    /// on a finer mesh. @p proof: limits of branch and bound. @p earlier: of
+    /// the same scene on another mesh, whose bounds and what it knows of sides
+    /// are used if they are of the least J and of the loads as they are. If @p
+    /// is_for_finer, the sides have what finer meshes can use of them. Throws
     /// EquilibriumError if no bound was found.
     Certificate
     certify(const Scene<2>                 &solved,
             const DofVector                &u,
             const BranchAndBoundParameters &proof,
-            const std::function<bool()>    &may_go_on) const;
+            const std::function<bool()>    &may_go_on,
+            const Certificate              *earlier      = nullptr,
+            const bool                      is_for_finer = false) const;
 
   private:
     double

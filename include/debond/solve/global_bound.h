@@ -2,40 +2,17 @@
 #ifndef debond_solve_global_bound_h
 #define debond_solve_global_bound_h
 
-#include <deal.II/base/point.h>
-
 #include <debond/elasticity/equilibrium_problem.h>
 #include <debond/optimization/branch_minimum.h>
 #include <debond/optimization/global/branch_and_bound.h>
-#include <debond/optimization/interval.h>
+#include <debond/solve/certified_side.h>
 
-#include <array>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <vector>
 
 namespace Debond
 {
-  /// What each admissible displacement with J at most some value has at a side
-  /// of the contact boundary.
-  struct CertifiedSide
-  {
-    std::array<dealii::Point<2>, 2> ends;
-
-    /// The mean of u_nu.
-    Interval mean;
-
-    /// Contains, at each point, the linear function that is nearest to u_nu in
-    /// L2 of the side.
-    Interval linear;
-
-    /// The piece of the law on which that function is, if it is certain.
-    std::optional<unsigned int> piece;
-  };
-
-
-
   struct GlobalBound
   {
     double lower = -std::numeric_limits<double>::infinity();
@@ -69,8 +46,10 @@ namespace Debond
    *
    * @p means: of u_nu on the contact sides, of a good displacement; @p upper:
    * a value of J that is reached; @p energies: of its strains in the cells
-   * above the contact sides, for the choice of shifts. Throws EquilibriumError
-   * if there is no bound.
+   * above the contact sides, for the choice of shifts; @p known: what is known
+   * on each contact side of displacements with J at most @p upper. If @p
+   * with_deviations, the result's sides have these, which takes one bound more.
+   * Throws EquilibriumError if there is no bound.
    */
   GlobalBound
   bound_global(const EquilibriumProblem       &equilibrium,
@@ -79,6 +58,8 @@ namespace Debond
                const Eigen::VectorXd          &means,
                const std::vector<double>      &energies,
                const double                    upper,
+               std::vector<CertifiedSide>      known,
+               const bool                      with_deviations,
                const BranchAndBoundParameters &proof,
                const std::function<bool()>    &may_go_on);
 } // namespace Debond

@@ -27,6 +27,14 @@ namespace Debond
 
 
 
+  Interval
+  intersection(const Interval &a, const Interval &b)
+  {
+    return {std::max(a.lower, b.lower), std::min(a.upper, b.upper)};
+  }
+
+
+
   double
   Growth::value(const double s) const
   {

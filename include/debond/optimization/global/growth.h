@@ -11,6 +11,10 @@ namespace Debond
   Interval
   hull(const Interval &a, const Interval &b);
 
+  /// Empty if they have nothing in common.
+  Interval
+  intersection(const Interval &a, const Interval &b);
+
 
 
   /**

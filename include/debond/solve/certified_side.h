@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_certified_side_h
+#define debond_solve_certified_side_h
+
+#include <deal.II/base/point.h>
+
+#include <debond/optimization/interval.h>
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace Debond
+{
+  /// What each admissible displacement with J at most some value has on a part
+  /// of the contact boundary, a straight line: of its normal displacement u_nu
+  /// and the linear function p that is nearest to it in L2 of the part.
+  struct CertifiedSide
+  {
+    std::array<dealii::Point<2>, 2> ends;
+
+    /// The mean of u_nu, which is that of p.
+    Interval mean = {-std::numeric_limits<double>::infinity(), 0.};
+
+    /// p at the ends.
+    std::array<Interval, 2> at_ends = {
+      {{-std::numeric_limits<double>::infinity(),
+        std::numeric_limits<double>::infinity()},
+       {-std::numeric_limits<double>::infinity(),
+        std::numeric_limits<double>::infinity()}}};
+
+    /// The norm of u_nu - p in L2 of the part is at most this.
+    double deviation = std::numeric_limits<double>::infinity();
+
+    /// The piece of the law on which p is, if it is certain.
+    std::optional<unsigned int> piece;
+
+    /// Contains p at each point.
+    Interval
+    linear() const;
+  };
+
+
+
+  /// What is known between @p ends, two points of @p sides: of the side they
+  /// are on, by lemma 4 of doc/reference/certificate.md; nothing if they are on
+  /// none. The piece of the law is left out.
+  CertifiedSide
+  known_between(const std::array<dealii::Point<2>, 2> &ends,
+                const std::vector<CertifiedSide>      &sides);
+
+
+
+  /// What both say; they have the same ends. The piece of the law is left out.
+  CertifiedSide
+  intersection(const CertifiedSide &a, const CertifiedSide &b);
+} // namespace Debond
+
+#endif
