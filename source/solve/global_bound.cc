@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <iostream>
 
 namespace Debond
 {
@@ -20,8 +18,11 @@ namespace Debond
 
 
     /// How far a proof goes, relative to J, which is much less than what meshes
-    /// leave.
-    constexpr double proof_tolerance = 1e-6;
+    /// leave, and relative to the interval as it is. That of the first one is
+    /// as wide as this, relative to J.
+    constexpr double proof_tolerance      = 1e-6;
+    constexpr double part_of_the_interval = 0.02;
+    constexpr double first_interval       = 1e-2;
 
     /// Shifts at the kinks, relative to the stiffness of the bonds. Large ones
     /// cost stiffness, small ones round the law: the finer the mesh, the larger
@@ -46,6 +47,11 @@ namespace Debond
 
     /// Nodes that tell where minimisers are.
     constexpr unsigned int n_nodes_of_ranges = 32;
+
+    /// Nodes to exclude one piece of the law on one side, and how often in a
+    /// row they may be too few before no more are tried.
+    constexpr unsigned int n_nodes_of_trial = 7;
+    constexpr unsigned int n_failed_trials  = 6;
 
 
 
@@ -108,10 +114,12 @@ namespace Debond
 
 
 
-    /// The right side of theorem 2 for shifts D, as a function of the means m:
-    ///     constant + 1/2 m'S m - g'm + phi(m),
-    /// with the slopes k = offset + slopes m that belong to them. J is at least
-    /// this and 1/2 the sum of the rests times the squared deviations.
+    /// The right side of theorem 2 for shifts D. What the terms that are not
+    /// quadratic or m <= 0 are for is a function of some means s,
+    ///     constant + 1/2 s'S s - g's + phi(s);
+    /// the others, and after them the slopes k of all sides, are eliminated:
+    /// offset + to_others s are those that belong to s. J is at least this, and
+    /// 1/2 the sum of the rests times the squared deviations.
     struct MeanProblem
     {
       double                             constant, rounding;
@@ -124,10 +132,111 @@ namespace Debond
       std::vector<double>                      rests;
       std::vector<std::optional<unsigned int>> pieces;
 
+      std::vector<unsigned int> kept; ///< sides of s
+      std::vector<unsigned int> eliminated;
+
       Eigen::VectorXd offset;
-      Eigen::MatrixXd slopes;
-      Eigen::MatrixXd inverse_in_slopes;
+      Eigen::MatrixXd to_others;
+      Eigen::MatrixXd inverse_in_others;
+
+      unsigned int
+      n_sides() const
+      {
+        return static_cast<unsigned int>(pieces.size());
+      }
+
+      /// The means of all sides, then the slopes.
+      Eigen::VectorXd
+      all(const Eigen::VectorXd &s) const
+      {
+        const Eigen::VectorXd others = offset + to_others * s;
+        Eigen::VectorXd       result(2 * n_sides());
+        for (unsigned int i = 0; i < kept.size(); ++i)
+          result(kept[i]) = s(i);
+        for (unsigned int i = 0; i < eliminated.size(); ++i)
+          result(eliminated[i]) = others(i);
+        result.tail(n_sides()) = others.tail(n_sides());
+        return result;
+      }
+
+      Eigen::VectorXd
+      kept_of(const Eigen::VectorXd &means) const
+      {
+        Eigen::VectorXd result(kept.size());
+        for (unsigned int i = 0; i < kept.size(); ++i)
+          result(i) = means(kept[i]);
+        return result;
+      }
     };
+
+
+
+    /// A quadratic term, of a mean.
+    struct Quadratic
+    {
+      double curvature, slope, constant;
+    };
+
+    /// A law without the branches that it has nowhere in an interval: with one
+    /// left that one, with several their minimum, and what was taken from it to
+    /// be 0 at 0.
+    struct LawInRange
+    {
+      std::optional<Quadratic> quadratic;
+      BranchMinimum            minimum;
+      double                   constant = 0.;
+    };
+
+
+
+    /// @p factor times the law.
+    LawInRange
+    law_in_range(const BranchMinimum &whole,
+                 const Interval      &range,
+                 const double         factor)
+    {
+      unsigned int first = whole.index(range.upper);
+      unsigned int last  = std::max(whole.index(range.lower), first);
+      while (first < last && range.upper <= whole[first].lower)
+        ++first;
+      const BranchMinimum::Piece &nearest  = whole[first];
+      const auto                  in_whole = [&]() -> LawInRange {
+        return {{},
+                whole.with_first_curvature(factor * whole[0].curvature),
+                0.};
+      };
+      if (first == last)
+        return {Quadratic{factor * nearest.curvature,
+                          factor * nearest.slope,
+                          factor * static_cast<double>(nearest.constant)},
+                BranchMinimum({{0., 0., 0.L, ""}}),
+                0.};
+      if (first == 0 && last + 1 == whole.size())
+        return in_whole();
+      std::vector<ConvexBranch> branches;
+      for (unsigned int k = first; k <= last; ++k)
+        {
+          long double constant = whole[k].constant - nearest.constant;
+          // Branches without slopes have the constant of a near one.
+          if (std::abs(constant) < 1e-12L * whole[last].constant)
+            constant = 0.L;
+          branches.push_back({factor * whole[k].curvature,
+                              factor * whole[k].slope,
+                              factor * constant,
+                              ""});
+        }
+      try
+        {
+          return {{},
+                  BranchMinimum(branches),
+                  factor * static_cast<double>(nearest.constant)};
+        }
+      catch (const std::invalid_argument &)
+        {
+          // Some branch falls below its value at 0.
+          return in_whole();
+        }
+    }
 
 
 
@@ -160,10 +269,11 @@ namespace Debond
                         const Eigen::VectorXd            &slopes,
                         const double                      least_multiple) const;
 
-      /// What the sides lose at the means @p m: by stiffness, and where no
-      /// piece is certain by slopes and the rounded law.
+      /// What the sides lose at these means and slopes: by stiffness, and where
+      /// no piece is certain by slopes and the rounded law.
       std::vector<double>
-      losses(const MeanProblem &problem, const Eigen::VectorXd &m) const;
+      losses(const MeanProblem     &problem,
+             const Eigen::VectorXd &means_and_slopes) const;
 
       /// What of a stiffness is left for deviations to be bounded with, beside
       /// the shifts @p D: so much that it makes the bound lower by about @p
@@ -272,10 +382,10 @@ namespace Debond
 
 
     std::vector<double>
-    Sides::losses(const MeanProblem &problem, const Eigen::VectorXd &m) const
+    Sides::losses(const MeanProblem     &problem,
+                  const Eigen::VectorXd &means_and_slopes) const
     {
-      const Eigen::VectorXd k = problem.offset + problem.slopes * m;
-      std::vector<double>   result;
+      std::vector<double> result;
       for (unsigned int i = 0; i < n; ++i)
         {
           const double D = problem.shifts[i];
@@ -283,11 +393,12 @@ namespace Debond
                            energies[i]);
           if (problem.pieces[i])
             continue;
-          const double s       = std::min(m(i), 0.);
+          const double s       = std::min(means_and_slopes(i), 0.);
+          const double k       = means_and_slopes(n + i);
           const double rounded = RoundedBranches(law, D).minimum().value(s);
           const double c       = law[law.index(s)].curvature;
-          result.back() += sides[i].length * (law.value(s) - rounded +
-                                              (c + D) * k(i) * k(i) / 6.);
+          result.back() +=
+            sides[i].length * (law.value(s) - rounded + (c + D) * k * k / 6.);
         }
       return result;
     }
@@ -342,46 +453,83 @@ namespace Debond
       result.rests    = rests;
       result.constant = condensed->energy_at_zero();
       std::vector<BranchMinimum> laws;
+      const BranchMinimum        zero({{0., 0., 0.L, ""}});
       for (unsigned int i = 0; i < n; ++i)
         {
-          const double          length = sides[i].length;
-          const RoundedBranches rounded(law, D[i]);
+          const double             length = sides[i].length;
+          const RoundedBranches    rounded(law, D[i]);
+          std::optional<Quadratic> quadratic;
           result.pieces.push_back(rounded.exact_piece(ranges[i].linear()));
-          if (!result.pieces.back())
+          if (result.pieces.back())
+            {
+              const BranchMinimum::Piece &piece = law[*result.pieces.back()];
+              quadratic =
+                Quadratic{length * piece.curvature,
+                          length * piece.slope,
+                          length * static_cast<double>(piece.constant)};
+              A(n + i, n + i) += length * piece.curvature / 3.;
+            }
+          else
             {
               A(n + i, n + i) -= length * D[i] / 3.;
-              laws.push_back(rounded.minimum().with_first_curvature(
-                length * law[0].curvature));
-              continue;
+              const LawInRange own =
+                law_in_range(rounded.minimum(), ranges[i].mean, length);
+              quadratic = own.quadratic;
+              if (!quadratic)
+                {
+                  laws.push_back(own.minimum);
+                  result.constant += own.constant;
+                }
             }
-          const BranchMinimum::Piece &piece = law[*result.pieces.back()];
-          A(i, i) += length * piece.curvature;
-          A(n + i, n + i) += length * piece.curvature / 3.;
-          b(i) -= length * piece.slope;
-          result.constant += length * static_cast<double>(piece.constant);
-          laws.push_back(BranchMinimum({{0., 0., 0.L, ""}}));
+          if (quadratic)
+            {
+              A(i, i) += quadratic->curvature;
+              b(i) -= quadratic->slope;
+              result.constant += quadratic->constant;
+              // m <= 0 says nothing.
+              if (ranges[i].mean.upper < 0.)
+                {
+                  result.eliminated.push_back(i);
+                  continue;
+                }
+              laws.push_back(zero);
+            }
+          result.kept.push_back(i);
+        }
+      // There is a problem without any, too.
+      if (result.kept.empty())
+        {
+          result.kept.push_back(result.eliminated.back());
+          result.eliminated.pop_back();
+          laws.push_back(zero);
         }
 
-      // That there is an inverse proves that it is convex in the slopes.
-      auto inverse = safe_inverse(A.bottomRightCorner(n, n));
+      std::vector<unsigned int> others = result.eliminated;
+      for (unsigned int i = 0; i < n; ++i)
+        others.push_back(n + i);
+      // That there is an inverse proves that it is convex in the others.
+      auto inverse = safe_inverse(A(others, others));
       if (!inverse)
         return {};
-      result.inverse_in_slopes = std::move(*inverse);
-      result.offset            = result.inverse_in_slopes * b.tail(n);
-      result.slopes = -result.inverse_in_slopes * A.bottomLeftCorner(n, n);
-      result.constant -= 0.5 * b.tail(n).dot(result.offset);
+      result.inverse_in_others       = std::move(*inverse);
+      const Eigen::VectorXd b_others = b(others);
+      const Eigen::MatrixXd mixed    = A(others, result.kept);
+      result.offset                  = result.inverse_in_others * b_others;
+      result.to_others               = -result.inverse_in_others * mixed;
+      result.constant -= 0.5 * b_others.dot(result.offset);
       const Eigen::MatrixXd S =
-        A.topLeftCorner(n, n) + A.topRightCorner(n, n) * result.slopes;
+        A(result.kept, result.kept) + mixed.transpose() * result.to_others;
       result.S = 0.5 * (S + S.transpose());
       // What shifts take may be more than what the bonds of stiff laws leave.
       if (!is_safely_positive_definite(result.S))
         return {};
-      result.g   = b.head(n) + result.slopes.transpose() * b.tail(n);
+      result.g   = b(result.kept) + result.to_others.transpose() * b_others;
       result.phi = std::make_unique<SeparableBranches>(laws);
 
-      Eigen::VectorXd kept(2 * n);
-      kept << means, result.offset + result.slopes * means;
-      result.rounding = equilibrium.rounding_of(*condensed, kept, weights);
+      result.rounding =
+        equilibrium.rounding_of(*condensed,
+                                result.all(result.kept_of(means)),
+                                weights);
       return result;
     }
 
@@ -430,40 +578,63 @@ namespace Debond
                    const ProofNode   &node,
                    const double       upper)
     {
-      const unsigned int n = static_cast<unsigned int>(problem.pieces.size());
+      const unsigned int n = problem.n_sides();
+      const unsigned int n_kept =
+        static_cast<unsigned int>(problem.kept.size());
+      const unsigned int n_eliminated =
+        static_cast<unsigned int>(problem.eliminated.size());
+      // Means and slopes as functions of s, and what of their variance is that
+      // of what is eliminated.
+      Eigen::MatrixXd means  = Eigen::MatrixXd::Zero(n, n_kept);
+      Eigen::MatrixXd slopes = problem.to_others.bottomRows(n);
+      Eigen::VectorXd of_mean(Eigen::VectorXd::Zero(n));
+      Eigen::VectorXd mixed(Eigen::VectorXd::Zero(n));
+      Eigen::VectorXd of_slope = problem.inverse_in_others.diagonal().tail(n);
       std::vector<CertifiedSide> ranges(n);
-      for (unsigned int i = 0; i < n; ++i)
-        ranges[i].mean = {node.lower(i), node.upper(i)};
+      for (unsigned int i = 0; i < n_kept; ++i)
+        {
+          const unsigned int side = problem.kept[i];
+          means(side, i)          = 1.;
+          ranges[side].mean       = {node.lower(i), node.upper(i)};
+        }
+      for (unsigned int i = 0; i < n_eliminated; ++i)
+        {
+          const unsigned int side = problem.eliminated[i];
+          means.row(side)         = problem.to_others.row(i);
+          of_mean(side)           = problem.inverse_in_others(i, i);
+          mixed(side) = problem.inverse_in_others(i, n_eliminated + side);
+        }
       for (const NodeBall &ball : bound.balls(node))
         {
           if (ball.value > upper)
             return {};
           const double radius =
             std::sqrt(2. * (upper - ball.value)) * (1. + 1e-6);
-          const auto around = [&](const double centre,
-                                  const double variance) -> Interval {
-            const double distance = radius * std::sqrt(std::max(variance, 0.));
-            return {centre - distance, centre + distance};
-          };
-          const Eigen::VectorXd k = problem.offset + problem.slopes * ball.x;
-          const Eigen::MatrixXd product = problem.slopes * ball.inverse;
+          const Eigen::VectorXd x         = problem.all(ball.x);
+          const Eigen::MatrixXd of_means  = means * ball.inverse;
+          const Eigen::MatrixXd of_slopes = slopes * ball.inverse;
           for (unsigned int i = 0; i < n; ++i)
             {
-              const double m       = ball.x(i);
-              const double of_mean = ball.inverse(i, i);
-              const double of_slope =
-                product.row(i).dot(problem.slopes.row(i)) +
-                problem.inverse_in_slopes(i, i);
-              const double mixed = 2. * product(i, i);
-              ranges[i].mean = intersection(ranges[i].mean, around(m, of_mean));
-              for (const double xi : {-1., 1.})
-                {
-                  Interval &at_end = ranges[i].at_ends[xi > 0.];
-                  at_end =
-                    intersection(at_end,
-                                 around(m + xi * k(i),
-                                        of_mean + xi * mixed + of_slope));
-                }
+              const double mean_variance =
+                of_mean(i) + of_means.row(i).dot(means.row(i));
+              const double slope_variance =
+                of_slope(i) + of_slopes.row(i).dot(slopes.row(i));
+              const double covariance =
+                mixed(i) + of_means.row(i).dot(slopes.row(i));
+              /// Of the mean + xi times the slope.
+              const auto range_at = [&](const double xi) -> Interval {
+                const double variance = mean_variance + 2. * xi * covariance +
+                                        xi * xi * slope_variance;
+                const double centre = x(i) + xi * x(n + i);
+                const double distance =
+                  radius * std::sqrt(std::max(variance, 0.));
+                return {centre - distance, centre + distance};
+              };
+              ranges[i].mean = intersection(ranges[i].mean, range_at(0.));
+              for (const unsigned int end : {0, 1})
+                ranges[i].at_ends[end] =
+                  intersection(ranges[i].at_ends[end],
+                               range_at(end == 0 ? -1. : 1.));
               if (problem.rests[i] > 0.)
                 ranges[i].deviation =
                   std::min(ranges[i].deviation,
@@ -471,6 +642,131 @@ namespace Debond
             }
         }
       return ranges;
+    }
+
+
+
+    /// All that is known before.
+    std::optional<ProofNode>
+    root_in_ranges(const MeanProblem                &problem,
+                   const NodeBound                  &bound,
+                   const double                      best,
+                   const std::vector<CertifiedSide> &ranges)
+    {
+      auto root = bound.root(best);
+      if (root)
+        for (unsigned int i = 0; i < problem.kept.size(); ++i)
+          {
+            const Interval &mean = ranges[problem.kept[i]].mean;
+            root->lower(i)       = std::max(root->lower(i), mean.lower);
+            root->upper(i)       = std::min(root->upper(i), mean.upper);
+          }
+      return root;
+    }
+
+
+
+    /// The two parts of a node on both sides of a kink.
+    std::array<ProofNode, 2>
+    halves(const ProofNode         &node,
+           const NodeResult        &result,
+           const SeparableBranches &phi)
+    {
+      const unsigned int       i     = *result.unknown;
+      const double             kink  = phi.f[i][result.piece].upper;
+      std::array<ProofNode, 2> parts = {{node, node}};
+      parts[0].lower(i)              = kink;
+      parts[0].number                = 2 * node.number + 1;
+      parts[1].upper(i)              = kink;
+      parts[1].number                = 2 * node.number + 2;
+      return parts;
+    }
+
+
+
+    /// Whether a few nodes prove that no point of the node is below @p best.
+    bool
+    is_excluded(const NodeBound         &bound,
+                const SeparableBranches &phi,
+                const double             best,
+                ProofNode                node)
+    {
+      std::vector<ProofNode> open = {std::move(node)};
+      for (unsigned int nodes = 0; nodes < n_nodes_of_trial; ++nodes)
+        {
+          ProofNode own = std::move(open.back());
+          open.pop_back();
+          const NodeResult result = bound.bound(own, best, 0.);
+          if (result.unknown)
+            for (ProofNode &half : halves(own, result, phi))
+              open.push_back(std::move(half));
+          else if (result.least < best)
+            return false;
+          if (open.empty())
+            return true;
+        }
+      return false;
+    }
+
+
+
+    /// Tries, for one side after the other, whether it can be beyond the kinks
+    /// that are nearest to where it is at @p means, and takes what it cannot be
+    /// from its range. Those that are farthest from their kinks come first.
+    void
+    exclude_pieces(const MeanProblem           &problem,
+                   const double                 upper,
+                   const Eigen::VectorXd       &means,
+                   const std::function<bool()> &may_go_on,
+                   std::vector<CertifiedSide>  &ranges)
+    {
+      struct Trial
+      {
+        unsigned int i;
+        bool         is_above; ///< the kink
+        double       kink, distance;
+      };
+      const double       best = upper - problem.constant + problem.rounding;
+      const NodeBound    bound(problem.S, problem.g, *problem.phi);
+      std::vector<Trial> trials;
+      for (unsigned int i = 0; i < problem.kept.size(); ++i)
+        {
+          const BranchMinimum &f     = problem.phi->f[i];
+          const Interval      &range = ranges[problem.kept[i]].mean;
+          const double         s     = means(problem.kept[i]);
+          const auto          &piece = f[f.index(s)];
+          for (const bool is_above : {false, true})
+            {
+              const double kink = is_above ? piece.upper : piece.lower;
+              if (kink < range.upper && kink > range.lower)
+                trials.push_back({i, is_above, kink, std::abs(s / kink - 1.)});
+            }
+        }
+      std::sort(trials.begin(),
+                trials.end(),
+                [](const Trial &a, const Trial &b) {
+                  return a.distance != b.distance ? a.distance > b.distance :
+                                                    a.i < b.i;
+                });
+      unsigned int n_failures = 0;
+      for (const Trial &trial : trials)
+        {
+          auto root = root_in_ranges(problem, bound, best, ranges);
+          if (!root || !may_go_on() || n_failures == n_failed_trials)
+            return;
+          // As it has been set up before.
+          root->number                                          = 1;
+          (trial.is_above ? root->lower : root->upper)(trial.i) = trial.kink;
+          Interval &range = ranges[problem.kept[trial.i]].mean;
+          if (root->lower(trial.i) <= root->upper(trial.i) &&
+              !is_excluded(bound, *problem.phi, best, std::move(*root)))
+            {
+              ++n_failures;
+              continue;
+            }
+          n_failures                                   = 0;
+          (trial.is_above ? range.upper : range.lower) = trial.kink;
+        }
     }
 
 
@@ -485,15 +781,8 @@ namespace Debond
       const double           best = upper - problem.constant + problem.rounding;
       const NodeBound        bound(problem.S, problem.g, *problem.phi);
       std::vector<ProofNode> open;
-      if (auto root = bound.root(best))
-        {
-          for (unsigned int i = 0; i < ranges.size(); ++i)
-            {
-              root->lower(i) = std::max(root->lower(i), ranges[i].mean.lower);
-              root->upper(i) = std::min(root->upper(i), ranges[i].mean.upper);
-            }
-          open.push_back(*root);
-        }
+      if (auto root = root_in_ranges(problem, bound, best, ranges))
+        open.push_back(*root);
       else
         return;
       const Interval empty    = {1., -1.};
@@ -529,15 +818,8 @@ namespace Debond
                   }
               continue;
             }
-          const unsigned int i    = *result.unknown;
-          const double       kink = problem.phi->f[i][result.piece].upper;
-          ProofNode          near = node;
-          near.lower(i)           = kink;
-          near.number             = 2 * nodes + 1;
-          node.upper(i)           = kink;
-          node.number             = 2 * nodes + 2;
-          open.push_back(std::move(near));
-          open.push_back(std::move(node));
+          for (ProofNode &half : halves(node, result, *problem.phi))
+            open.push_back(std::move(half));
         }
       for (unsigned int i = 0; i < ranges.size(); ++i)
         // No displacement at all would be one of rounding.
@@ -629,76 +911,76 @@ namespace Debond
     constexpr double infinity = std::numeric_limits<double>::infinity();
     std::vector<CertifiedSide> &ranges = known;
 
-    BranchAndBoundParameters parameters = proof_parameters;
-    parameters.tolerance                = proof_tolerance * std::abs(upper);
+    BranchAndBoundParameters   parameters = proof_parameters;
     GlobalBound                result;
     std::optional<MeanProblem> best, latest;
-    Eigen::VectorXd            latest_means;
+    Eigen::VectorXd            latest_values;
     /// Returns the bound.
     const std::vector<double> none(ranges.size(), 0.);
     const auto                add_bound = [&](const std::vector<double> &D) {
+      const double interval = std::isfinite(result.lower) ?
+                                               upper - result.lower :
+                                               first_interval * std::abs(upper);
+      parameters.tolerance = std::max(proof_tolerance * std::abs(upper),
+                                      part_of_the_interval * interval);
       MeanProblem problem = sides.mean_problem(ranges, means, D, none);
       const BranchAndBoundResult proof =
         BranchAndBound(parameters)
           .minimize(problem.S,
                     problem.g,
                     *problem.phi,
-                    means,
+                    problem.kept_of(means),
                     [&](const ProofProgress &) { return may_go_on(); });
       result.nodes += proof.nodes;
       const double lower = proof.status == ProofStatus::no_bound ?
                                             -infinity :
                                             problem.constant + proof.lower - problem.rounding;
-      latest_means       = proof.s;
+      latest_values      = problem.all(proof.s);
       latest             = std::move(problem);
       if (lower > result.lower)
         {
           result.lower    = lower;
           result.rounding = latest->rounding;
           result.status   = proof.status;
-          result.losses   = sides.losses(*latest, proof.s);
+          result.losses   = sides.losses(*latest, latest_values);
         }
       return lower;
     };
 
     double          best_lower = -infinity;
-    Eigen::VectorXd best_means = means;
-    for (const double multiple : first_shifts)
-      if (const double lower =
-            add_bound(sides.shifts_for_means(means, multiple));
-          !best || lower > best_lower)
+    Eigen::VectorXd best_values;
+    const bool      is_known =
+      std::any_of(ranges.begin(), ranges.end(), [](const CertifiedSide &side) {
+        return std::isfinite(side.linear().upper);
+      });
+    std::vector<std::vector<double>> first_trials;
+    if (is_known)
+      first_trials.push_back(sides.shifts_for_ranges(
+        ranges, means, Eigen::VectorXd::Zero(means.size()), least_shifts[0]));
+    else
+      for (const double multiple : first_shifts)
+        first_trials.push_back(sides.shifts_for_means(means, multiple));
+    for (const std::vector<double> &D : first_trials)
+      if (const double lower = add_bound(D); !best || lower > best_lower)
         {
-          best       = std::move(latest);
-          best_means = latest_means;
-          best_lower = lower;
+          best        = std::move(latest);
+          best_values = latest_values;
+          best_lower  = lower;
         }
     unsigned int n_idle = 0;
     for (unsigned int stage = 0; stage < n_stages && may_go_on(); ++stage)
       {
         shrink(*best, upper, may_go_on, ranges);
+        exclude_pieces(
+          *best, upper, best_values.head(means.size()), may_go_on, ranges);
         const double before = upper - result.lower;
         add_bound(
           sides.shifts_for_ranges(ranges,
-                                  best_means,
-                                  best->offset + best->slopes * best_means,
+                                  best_values.head(means.size()),
+                                  best_values.tail(means.size()),
                                   least_shifts[stage % least_shifts.size()]));
-        best       = std::move(latest);
-        best_means = latest_means;
-        if (std::getenv("CERT"))
-          {
-            double certain = 0., whole = 0.;
-            for (unsigned int i = 0; i < ranges.size(); ++i)
-              {
-                const double l = equilibrium.contact_sides()[i].length;
-                whole += l;
-                certain += piece_of(ranges[i].linear(), law) ? l : 0.;
-              }
-            std::cerr << "  stage " << stage << " lower " << result.lower
-                      << " width " << (upper - result.lower) / std::abs(upper)
-                      << " nodes " << result.nodes << " uncertain "
-                      << whole - certain << " of " << whole << " sides "
-                      << ranges.size() << '\n';
-          }
+        best        = std::move(latest);
+        best_values = latest_values;
         n_idle =
           upper - result.lower > (1. - least_gain) * before ? n_idle + 1 : 0;
         if (n_idle == n_idle_stages)
@@ -709,7 +991,7 @@ namespace Debond
       {
         const std::vector<double> &D = best->shifts;
         shrink(sides.mean_problem(ranges,
-                                  best_means,
+                                  best_values.head(means.size()),
                                   D,
                                   sides.rests_for(upper - result.lower, D)),
                upper,

@@ -326,6 +326,46 @@ namespace
     check("  some sides are certain", n_certain > 0);
     check("  bonds are on the certain branches", n_wrong == 0);
   }
+
+
+
+  /// The best bounds of two meshes, in whichever order they come.
+  void
+  test_intersection()
+  {
+    const auto certificate = [](const double lower, const double upper) {
+      Certificate result;
+      result.lower = lower;
+      result.upper = upper;
+      return result;
+    };
+    bool is_narrowest = true;
+    for (const auto &[first, second] :
+         {std::make_pair(certificate(-4., -2.), certificate(-3., -1.)),
+          std::make_pair(certificate(-3., -1.), certificate(-4., -2.))})
+      {
+        Certificate later = second;
+        intersect(later, first);
+        is_narrowest = is_narrowest && later.lower == -3. && later.upper == -2.;
+      }
+    bool is_kept = true;
+    for (const bool is_first : {true, false})
+      for (const bool is_state : {true, false})
+        {
+          Certificate  earlier = certificate(-3., -2.);
+          Certificate  later   = certificate(-4., -1.);
+          Certificate &other   = is_first ? earlier : later;
+          if (is_state)
+            other.minimum = CertifiedMinimum::fixed_state;
+          else
+            other.loads_are_exact = false;
+          intersect(later, earlier);
+          is_kept = is_kept && later.lower == -4. && later.upper == -1.;
+        }
+    std::cout << "intervals of two meshes\n";
+    check("  the best bounds are kept", is_narrowest);
+    check("  not those for another number", is_kept);
+  }
 } // namespace
 
 
@@ -333,6 +373,7 @@ namespace
 int
 main()
 {
+  test_intersection();
   test_parts();
   const Values benchmark = {"Loads/Traction top=0; if(x<0.2,0.69,-0.345)",
                             "Contact law/Quadrature=exact",
