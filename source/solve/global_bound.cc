@@ -24,6 +24,10 @@ namespace Debond
     constexpr double part_of_the_interval = 0.02;
     constexpr double first_interval       = 1e-2;
 
+    /// Nodes of each bound after the first: what is then not decided is left
+    /// to the ranges.
+    constexpr unsigned int n_later_nodes = 400;
+
     /// Shifts at the kinks, relative to the stiffness of the bonds. Large ones
     /// cost stiffness, small ones round the law: the finer the mesh, the larger
     /// the best one is.
@@ -646,22 +650,18 @@ namespace Debond
 
 
 
-    /// All that is known before.
-    std::optional<ProofNode>
-    root_in_ranges(const MeanProblem                &problem,
-                   const NodeBound                  &bound,
-                   const double                      best,
-                   const std::vector<CertifiedSide> &ranges)
+    /// Takes from the box of a node what is not in the ranges.
+    void
+    cut(ProofNode                        &node,
+        const MeanProblem                &problem,
+        const std::vector<CertifiedSide> &ranges)
     {
-      auto root = bound.root(best);
-      if (root)
-        for (unsigned int i = 0; i < problem.kept.size(); ++i)
-          {
-            const Interval &mean = ranges[problem.kept[i]].mean;
-            root->lower(i)       = std::max(root->lower(i), mean.lower);
-            root->upper(i)       = std::min(root->upper(i), mean.upper);
-          }
-      return root;
+      for (unsigned int i = 0; i < problem.kept.size(); ++i)
+        {
+          const Interval &mean = ranges[problem.kept[i]].mean;
+          node.lower(i)        = std::max(node.lower(i), mean.lower);
+          node.upper(i)        = std::min(node.upper(i), mean.upper);
+        }
     }
 
 
@@ -748,18 +748,22 @@ namespace Debond
                   return a.distance != b.distance ? a.distance > b.distance :
                                                     a.i < b.i;
                 });
+      auto root = bound.root(best);
+      if (!root)
+        return;
+      // With as few relaxations as later nodes.
+      root->number            = 1;
       unsigned int n_failures = 0;
       for (const Trial &trial : trials)
         {
-          auto root = root_in_ranges(problem, bound, best, ranges);
-          if (!root || !may_go_on() || n_failures == n_failed_trials)
+          if (!may_go_on() || n_failures == n_failed_trials)
             return;
-          // As it has been set up before.
-          root->number                                          = 1;
-          (trial.is_above ? root->lower : root->upper)(trial.i) = trial.kink;
+          ProofNode node = *root;
+          cut(node, problem, ranges);
+          (trial.is_above ? node.lower : node.upper)(trial.i) = trial.kink;
           Interval &range = ranges[problem.kept[trial.i]].mean;
-          if (root->lower(trial.i) <= root->upper(trial.i) &&
-              !is_excluded(bound, *problem.phi, best, std::move(*root)))
+          if (node.lower(trial.i) <= node.upper(trial.i) &&
+              !is_excluded(bound, *problem.phi, best, std::move(node)))
             {
               ++n_failures;
               continue;
@@ -781,8 +785,11 @@ namespace Debond
       const double           best = upper - problem.constant + problem.rounding;
       const NodeBound        bound(problem.S, problem.g, *problem.phi);
       std::vector<ProofNode> open;
-      if (auto root = root_in_ranges(problem, bound, best, ranges))
-        open.push_back(*root);
+      if (auto root = bound.root(best))
+        {
+          cut(*root, problem, ranges);
+          open.push_back(std::move(*root));
+        }
       else
         return;
       const Interval empty    = {1., -1.};
@@ -923,6 +930,9 @@ namespace Debond
                                                first_interval * std::abs(upper);
       parameters.tolerance = std::max(proof_tolerance * std::abs(upper),
                                       part_of_the_interval * interval);
+      if (std::isfinite(result.lower))
+        parameters.maximum_nodes =
+          std::min(parameters.maximum_nodes, n_later_nodes);
       MeanProblem problem = sides.mean_problem(ranges, means, D, none);
       const BranchAndBoundResult proof =
         BranchAndBound(parameters)
@@ -955,11 +965,21 @@ namespace Debond
       });
     std::vector<std::vector<double>> first_trials;
     if (is_known)
-      first_trials.push_back(sides.shifts_for_ranges(
-        ranges, means, Eigen::VectorXd::Zero(means.size()), least_shifts[0]));
-    else
-      for (const double multiple : first_shifts)
-        first_trials.push_back(sides.shifts_for_means(means, multiple));
+      {
+        const auto shifts = [&]() {
+          return sides.shifts_for_ranges(ranges,
+                                         means,
+                                         Eigen::VectorXd::Zero(means.size()),
+                                         least_shifts[0]);
+        };
+        const MeanProblem problem =
+          sides.mean_problem(ranges, means, shifts(), none);
+        exclude_pieces(problem, upper, means, may_go_on, ranges);
+        shrink(problem, upper, may_go_on, ranges);
+        first_trials.push_back(shifts());
+      }
+    for (const double multiple : first_shifts)
+      first_trials.push_back(sides.shifts_for_means(means, multiple));
     for (const std::vector<double> &D : first_trials)
       if (const double lower = add_bound(D); !best || lower > best_lower)
         {

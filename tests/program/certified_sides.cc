@@ -269,8 +269,7 @@ namespace
           whole.outside <= 1e-9);
     check("  and on halves of sides", halves.outside <= 1e-9);
     check("  they are not farther from linear ones", whole.of_deviation <= 1.);
-    check("  some are nearly as far", whole.of_deviation > 0.1);
-    std::cout << whole.of_deviation << ' ' << n_narrower << '\n';
+    check("  some are nearly as far", whole.of_deviation > 0.05);
   }
 
 
@@ -384,14 +383,19 @@ main()
                             "Loads/Body force=0; if(x<0.1,-5,5)",
                             "Loads/Traction right=0; 0.1"};
   test("benchmark", benchmark + Values{"Mesh/Cells=40, 4"}, loads);
+  // Loads in waves as long as the sides of the coarse mesh bend the lower side
+  // of the body there.
+  const Values waves =
+    loads + Values{"Loads/Body force=0; if(y<0.005,2000*sin(314.16*x),0)",
+                   "Loads/Body force=0; if(y<0.005,400*cos(314.16*x),0)"};
   test_halves(
-    "benchmark, sides of 20 mm", benchmark, "20, 2", "80, 8", {0., 0.4}, loads);
+    "benchmark, sides of 20 mm", benchmark, "20, 2", "80, 8", {0., 0.4}, waves);
   test_halves("stiff bonds",
               benchmark + Values{"Contact law/Bond stiffness=690"},
               "20, 2",
               "80, 8",
               {0., 0.4},
-              loads);
+              waves);
 
   const Values strip       = {"Mesh/Lengths=100, 4",
                               "Material/Young modulus=210000",
