@@ -9,8 +9,10 @@ namespace Debond
 {
   namespace
   {
-    const std::set<std::string> known_linear_solvers = {"cholesky",
-                                                        "multigrid"};
+    const std::set<std::string> known_linear_solvers = {"levels",
+                                                        "ml",
+                                                        "hypre",
+                                                        "cholesky"};
   } // namespace
 
 
@@ -33,12 +35,22 @@ namespace Debond
   {
     bind("Benchmark/Linear solvers",
          result.linear_solvers,
-         "What solves A u = f beside the contact solve: cholesky, multigrid");
+         "What solves A u = f beside the contact solve: levels (the cycle of "
+         "the contact solve, where the body has levels), ml, hypre, cholesky");
     bind("Benchmark/Repetitions",
          result.repetitions,
          whole_number(1, 1000),
-         "How often each time is measured",
+         "How often each time is measured at most",
          "none");
+    bind("Benchmark/Seconds",
+         result.seconds,
+         positive_number(),
+         "A case is not repeated once this time is over",
+         "s");
+    bind("Benchmark/Refined",
+         result.is_refined,
+         "Whether the cases are one scene on finer and finer meshes, to whose "
+         "times and memory powers of the number of unknowns are fitted");
   }
 
 

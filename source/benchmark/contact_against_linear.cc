@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/text.h>
 #include <debond/benchmark/contact_against_linear.h>
 #include <debond/benchmark/linear_baselines.h>
 #include <debond/solve/scene.h>
@@ -43,16 +44,57 @@ namespace Debond
       const auto result = std::make_shared<LinearSolve>();
       return {solver,
               [&scene, solver, result] {
+                const ElasticProblem<dim> &problem = scene.problem();
+
                 *result = LinearSolve();
-                *result = solver == "cholesky" ?
-                            solve_by_cholesky(scene.problem().matrix(),
-                                              scene.problem().load()) :
-                            solve_by_multigrid(scene.problem());
+                *result =
+                  solver == "cholesky" ?
+                    solve_by_cholesky(problem.matrix(), problem.load()) :
+                  solver == "hypre"  ? solve_by_hypre(problem) :
+                  solver == "levels" ? solve_by_levels(scene.body(), problem) :
+                                       solve_by_ml(problem);
               },
               [&scene, result]() -> nlohmann::json {
                 return {{"iterations", result->iterations},
                         {"energy", 0.5 * (result->u * scene.problem().load())}};
               }};
+    }
+
+
+
+    void
+    add_times(const std::string              &prefix,
+              const std::vector<Measurement> &values,
+              BenchmarkRow                   &row)
+    {
+      add_spread(prefix + "seconds",
+                 spread(values, &Measurement::seconds),
+                 row);
+      add_spread(prefix + "cpu_seconds",
+                 spread(values, &Measurement::cpu_seconds),
+                 row);
+      add_spread(prefix + "peak_bytes",
+                 spread(values, &Measurement::peak_bytes),
+                 row);
+    }
+
+
+
+    void
+    add_ratios(const std::string              &solver,
+               const std::vector<Measurement> &contact,
+               const std::vector<Measurement> &linear,
+               BenchmarkRow                   &row)
+    {
+      add_spread("time_over_" + solver,
+                 spread_of_ratios(contact, linear, &Measurement::seconds),
+                 row);
+      add_spread("cpu_time_over_" + solver,
+                 spread_of_ratios(contact, linear, &Measurement::cpu_seconds),
+                 row);
+      add_spread("memory_over_" + solver,
+                 spread_of_ratios(contact, linear, &Measurement::peak_bytes),
+                 row);
     }
   } // namespace
 
@@ -78,64 +120,82 @@ namespace Debond
     const ElasticProblem<dim> &problem =
       scene(matrix_storage(choice)).problem();
 
+    std::vector<std::string> solvers;
+    for (const std::string &solver : study.linear_solvers)
+      if (solver != "levels" || parameters.body->has_coarse_levels())
+        solvers.push_back(solver);
     std::vector<Job> jobs = {
       contact_job(choice, parameters.solver, scene(matrix_storage(choice)))};
-    for (const std::string &solver : study.linear_solvers)
-      jobs.push_back(
-        linear_job(solver,
-                   scene(solver == "cholesky" ? MatrixStorage::serial :
-                                                MatrixStorage::trilinos)));
+    for (const std::string &solver : solvers)
+      jobs.push_back(linear_job(solver,
+                                scene(solver == "ml" ? MatrixStorage::trilinos :
+                                                       MatrixStorage::serial)));
     for (Job &job : jobs)
       job.name = name + ", " + job.name;
-    const auto results = measure_alternating(jobs, study.repetitions);
+    const auto results =
+      measure_alternating(jobs, study.repetitions, study.seconds);
 
-    BenchmarkRow row;
+    const unsigned int n_unknowns = problem.unknowns().n_free_dofs();
+    BenchmarkRow       row;
     row["scene"]    = name;
     row["path"]     = choice.linear_solver + " " + std::to_string(dim) + "D";
     row["method"]   = choice.method;
-    row["unknowns"] = problem.unknowns().n_free_dofs();
+    row["unknowns"] = n_unknowns;
     row["contact_nodes"] = problem.unknowns().contact().boundary().nodes.size();
-    row["status"]        = results[0].front().facts["status"];
-    row["iterations"]    = results[0].front().facts["iterations"];
-    row["cg_steps"]      = results[0].front().facts["cg_steps"];
-    row["J"]             = results[0].front().facts["J"];
-    auto linear_results  = results.begin() + 1;
-    for (const std::string &solver : study.linear_solvers)
+    std::vector<std::string> errors;
+    for (const Measurements &job : results)
+      if (!job.error.empty())
+        errors.push_back(job.error);
+    if (!errors.empty())
+      row["failed"] = join(errors, "; ");
+
+    const auto &contact = results[0].values;
+    if (!contact.empty())
       {
-        const auto &linear = *linear_results++;
-        add_spread("time_over_" + solver,
-                   spread_of_ratios(results[0], linear, &Measurement::seconds),
-                   row);
-        add_spread("cpu_time_over_" + solver,
-                   spread_of_ratios(results[0],
-                                    linear,
-                                    &Measurement::cpu_seconds),
-                   row);
-        add_spread("memory_over_" + solver,
-                   spread_of_ratios(results[0],
-                                    linear,
-                                    &Measurement::peak_bytes),
-                   row);
+        const auto &facts  = contact.front().facts;
+        row["repetitions"] = contact.size();
+        row["status"]      = facts["status"];
+        row["iterations"]  = facts["iterations"];
+        row["cg_steps"]    = facts["cg_steps"];
+        row["J"]           = facts["J"];
+        row["bytes_per_unknown"] =
+          spread(contact, &Measurement::peak_bytes).median / n_unknowns;
+      }
+    // What anyone would solve A u = f by: not the cycle of the contact solve.
+    const std::vector<Measurement> *best = nullptr;
+    for (std::size_t k = 0; k < solvers.size(); ++k)
+      {
+        const std::string &solver = solvers[k];
+        const auto        &linear = results[k + 1].values;
+        if (linear.empty())
+          continue;
+        const auto median = [](const std::vector<Measurement> &values) {
+          return spread(values, &Measurement::cpu_seconds).median;
+        };
+        if (solver != "levels" &&
+            (best == nullptr || median(linear) < median(*best)))
+          {
+            best               = &linear;
+            row["best_linear"] = solver;
+          }
         row[solver + "_iterations"] = linear.front().facts["iterations"];
         row[solver + "_energy"]     = linear.front().facts["energy"];
-        add_spread(solver + "_seconds",
-                   spread(linear, &Measurement::seconds),
-                   row);
-        add_spread(solver + "_cpu_seconds",
-                   spread(linear, &Measurement::cpu_seconds),
-                   row);
-        add_spread(solver + "_peak_bytes",
-                   spread(linear, &Measurement::peak_bytes),
+        add_times(solver + "_", linear, row);
+        if (!contact.empty())
+          add_ratios(solver, contact, linear, row);
+        if (!contact.empty() && solver == "levels" && choice.has_levels)
+          row["cycles_over_levels"] = row["cg_steps"].get<double>() /
+                                      row["levels_iterations"].get<double>();
+      }
+    if (!contact.empty())
+      {
+        if (best != nullptr)
+          add_ratios("best", contact, *best, row);
+        add_times("", contact, row);
+        add_spread("first_seconds",
+                   spread(contact, &Measurement::first_seconds),
                    row);
       }
-    add_spread("seconds", spread(results[0], &Measurement::seconds), row);
-    add_spread("cpu_seconds",
-               spread(results[0], &Measurement::cpu_seconds),
-               row);
-    add_spread("first_seconds",
-               spread(results[0], &Measurement::first_seconds),
-               row);
-    add_spread("peak_bytes", spread(results[0], &Measurement::peak_bytes), row);
     return row;
   }
 

@@ -2,19 +2,32 @@
 #include <deal.II/lac/solver_cg.h>
 
 #include <debond/benchmark/linear_baselines.h>
+#include <debond/elasticity/elastic_levels.h>
 #include <debond/elasticity/multigrid.h>
 
 #include <cholmod.h>
+#include <petscksp.h>
 
 #include <algorithm>
+#include <functional>
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace Debond
 {
   namespace
   {
+    /// Of iterative solves, relative to |f|: that of contact solves.
+    constexpr double       linear_tolerance  = 1e-10;
+    constexpr unsigned int most_linear_steps = 1000;
+
+    /// A level needs to be solved to what the next finer one makes of it.
+    constexpr double coarse_tolerance = 1e-4;
+
+
+
     /// The upper triangle by columns, which is the lower one by rows.
     cholmod_sparse *
     convert(const dealii::SparseMatrix<double> &A, cholmod_common &common)
@@ -51,6 +64,20 @@ namespace Debond
       starts[n] = static_cast<int>(next);
       return result;
     }
+
+
+
+    /// A product with a matrix, for deal.II's solvers.
+    struct ProductWith
+    {
+      std::function<void(DofVector &, const DofVector &)> product;
+
+      void
+      vmult(DofVector &dst, const DofVector &src) const
+      {
+        product(dst, src);
+      }
+    };
   } // namespace
 
 
@@ -94,12 +121,13 @@ namespace Debond
 
   template <int dim>
   LinearSolve
-  solve_by_multigrid(const ElasticProblem<dim> &problem)
+  solve_by_ml(const ElasticProblem<dim> &problem)
   {
     LinearSolve     result;
     const Multigrid preconditioner(problem);
     result.u.reinit(problem.unknowns().n_dofs());
-    dealii::SolverControl       control(1000, 1e-10 * problem.load().l2_norm());
+    dealii::SolverControl       control(most_linear_steps,
+                                  linear_tolerance * problem.load().l2_norm());
     dealii::SolverCG<DofVector> cg(control);
     cg.solve(problem.trilinos_matrix(),
              result.u,
@@ -111,6 +139,138 @@ namespace Debond
 
 
 
-  template decltype(solve_by_multigrid<2>) solve_by_multigrid<2>;
-  template decltype(solve_by_multigrid<3>) solve_by_multigrid<3>;
+  template <int dim>
+  LinearSolve
+  solve_by_hypre(const ElasticProblem<dim> &problem)
+  {
+    const dealii::SparseMatrix<double> &A = problem.matrix();
+    const DofVector                    &f = problem.load();
+
+    const PetscInt        n = static_cast<PetscInt>(A.m());
+    std::vector<PetscInt> starts(1, 0), columns;
+    std::vector<double>   values;
+    columns.reserve(A.n_nonzero_elements());
+    values.reserve(A.n_nonzero_elements());
+    for (PetscInt i = 0; i < n; ++i)
+      {
+        // deal.II has the diagonal first, PETSc wants it in its place.
+        bool       has_diagonal = false;
+        const auto add_diagonal = [&]() {
+          columns.push_back(i);
+          values.push_back(A.diag_element(i));
+          has_diagonal = true;
+        };
+        for (auto entry = ++A.begin(i); entry != A.end(i); ++entry)
+          {
+            const PetscInt column = static_cast<PetscInt>(entry->column());
+            if (!has_diagonal && column > i)
+              add_diagonal();
+            columns.push_back(column);
+            values.push_back(entry->value());
+          }
+        if (!has_diagonal)
+          add_diagonal();
+        starts.push_back(static_cast<PetscInt>(columns.size()));
+      }
+
+    LinearSolve result;
+    result.u.reinit(static_cast<unsigned int>(n));
+    std::vector<double> load(f.begin(), f.end());
+    Mat                 matrix = nullptr;
+    Vec                 b = nullptr, x = nullptr;
+    KSP                 solver         = nullptr;
+    PC                  preconditioner = nullptr;
+    KSPConvergedReason  reason         = KSP_CONVERGED_ITERATING;
+    PetscInt            iterations     = 0;
+
+    const auto solve = [&]() -> PetscErrorCode {
+      PetscCall(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF,
+                                          n,
+                                          n,
+                                          starts.data(),
+                                          columns.data(),
+                                          values.data(),
+                                          &matrix));
+      PetscCall(MatSetBlockSize(matrix, dim));
+      PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, load.data(), &b));
+      PetscCall(
+        VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, result.u.begin(), &x));
+      PetscCall(KSPCreate(PETSC_COMM_SELF, &solver));
+      PetscCall(KSPSetOperators(solver, matrix, matrix));
+      PetscCall(KSPSetType(solver, KSPCG));
+      PetscCall(KSPSetNormType(solver, KSP_NORM_UNPRECONDITIONED));
+      PetscCall(KSPSetTolerances(solver,
+                                 linear_tolerance,
+                                 PETSC_DEFAULT,
+                                 PETSC_DEFAULT,
+                                 most_linear_steps));
+      PetscCall(KSPGetPC(solver, &preconditioner));
+      PetscCall(PCSetType(preconditioner, PCHYPRE));
+      PetscCall(PCHYPRESetType(preconditioner, "boomeramg"));
+      PetscCall(PetscOptionsSetValue(nullptr,
+                                     "-pc_hypre_boomeramg_strong_threshold",
+                                     dim == 2 ? "0.25" : "0.5"));
+      PetscCall(PCSetFromOptions(preconditioner));
+      PetscCall(KSPSolve(solver, b, x));
+      PetscCall(KSPGetConvergedReason(solver, &reason));
+      PetscCall(KSPGetIterationNumber(solver, &iterations));
+      return 0;
+    };
+    const PetscErrorCode error = solve();
+    KSPDestroy(&solver);
+    VecDestroy(&x);
+    VecDestroy(&b);
+    MatDestroy(&matrix);
+    if (error != 0 || reason <= 0)
+      throw std::runtime_error(
+        "hypre by PETSc failed: error " + std::to_string(error) +
+        ", reason of convergence " + std::to_string(reason) + " after " +
+        std::to_string(iterations) + " steps");
+    result.iterations = static_cast<unsigned int>(iterations);
+    return result;
+  }
+
+
+
+  template <int dim>
+  LinearSolve
+  solve_by_levels(const Body<dim> &body, const ElasticProblem<dim> &problem)
+  {
+    const auto levels = ElasticLevels<dim>::make(body, problem);
+    if (levels == nullptr)
+      throw std::invalid_argument("the body has no coarser levels");
+
+    LinearSolve  result;
+    unsigned int l = levels->n_levels() - 1;
+    result.u.reinit(levels->n_unknowns(l));
+    for (;; --l)
+      {
+        levels->cycle().truncate(l, {}, {}, Eigen::SparseMatrix<double>());
+        const double tolerance = l > 0 ? coarse_tolerance : linear_tolerance;
+        dealii::SolverControl control(most_linear_steps,
+                                      tolerance * levels->load(l).l2_norm());
+        const auto product = [&](DofVector &dst, const DofVector &src) {
+          levels->vmult(l, dst, src);
+        };
+        dealii::SolverCG<DofVector>(control).solve(ProductWith{product},
+                                                   result.u,
+                                                   levels->load(l),
+                                                   levels->cycle());
+        if (l == 0)
+          {
+            result.iterations = control.last_step();
+            return result;
+          }
+        result.u = levels->prolongate(l, result.u);
+      }
+  }
+
+
+
+  template decltype(solve_by_ml<2>) solve_by_ml<2>;
+  template decltype(solve_by_ml<3>) solve_by_ml<3>;
+  template decltype(solve_by_hypre<2>) solve_by_hypre<2>;
+  template decltype(solve_by_hypre<3>) solve_by_hypre<3>;
+  template decltype(solve_by_levels<2>) solve_by_levels<2>;
+  template decltype(solve_by_levels<3>) solve_by_levels<3>;
 } // namespace Debond

@@ -179,20 +179,35 @@ namespace Debond
 
 
 
-  std::vector<std::vector<Measurement>>
+  std::vector<Measurements>
   measure_alternating(const std::vector<Job> &jobs,
-                      const unsigned int      repetitions)
+                      const unsigned int      repetitions,
+                      const double            seconds)
   {
-    std::vector<std::vector<Measurement>> result(jobs.size());
+    std::vector<Measurements> result(jobs.size());
+    const double              start = seconds_of(CLOCK_MONOTONIC);
     for (unsigned int r = 0; r < repetitions; ++r)
-      for (std::size_t k = 0; k < jobs.size(); ++k)
-        {
-          const std::size_t i   = r % 2 == 0 ? k : jobs.size() - 1 - k;
-          Job               job = jobs[i];
-          if (r > 0)
-            job.facts = nullptr;
-          result[i].push_back(measure(job));
-        }
+      {
+        for (std::size_t k = 0; k < jobs.size(); ++k)
+          {
+            const std::size_t i = r % 2 == 0 ? k : jobs.size() - 1 - k;
+            if (!result[i].error.empty())
+              continue;
+            Job job = jobs[i];
+            if (r > 0)
+              job.facts = nullptr;
+            try
+              {
+                result[i].values.push_back(measure(job));
+              }
+            catch (const std::runtime_error &error)
+              {
+                result[i] = {{}, error.what()};
+              }
+          }
+        if (seconds_of(CLOCK_MONOTONIC) - start > seconds)
+          break;
+      }
     return result;
   }
 

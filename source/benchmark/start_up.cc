@@ -64,17 +64,22 @@ namespace Debond
         {}}},
       repetitions);
 
+    for (const Measurements &job : results)
+      if (!job.error.empty())
+        throw std::runtime_error(job.error);
+    const auto &of_program = results[0].values, &of_empty = results[1].values;
+
     BenchmarkRow row;
     row["scene"] = scene.name;
     add_spread("ratio",
-               spread_of_ratios(results[0], results[1], &Measurement::seconds),
+               spread_of_ratios(of_program, of_empty, &Measurement::seconds),
                row);
     std::vector<double> differences;
     for (unsigned int r = 0; r < repetitions; ++r)
-      differences.push_back(results[0][r].seconds - results[1][r].seconds);
+      differences.push_back(of_program[r].seconds - of_empty[r].seconds);
     add_spread("seconds_above_floor", spread(differences), row);
-    add_spread("seconds", spread(results[0], &Measurement::seconds), row);
-    add_spread("floor_seconds", spread(results[1], &Measurement::seconds), row);
+    add_spread("seconds", spread(of_program, &Measurement::seconds), row);
+    add_spread("floor_seconds", spread(of_empty, &Measurement::seconds), row);
     return row;
   }
 } // namespace Debond

@@ -182,12 +182,10 @@ namespace Debond
           [&]() { return watch.may_go_on(); },
           s);
         result.parts["search and proof"] = timer.wall_time();
-        if (result.minimum.search_trials > 0 || result.minimum.proof_attempted)
-          {
-            result.functional_from_start =
-              functional_of(scene, condensed.expand(followed));
-            result.is_replaced = s != followed;
-          }
+        result.is_replaced               = s != followed;
+        if (result.is_replaced)
+          result.functional_from_start =
+            functional_of(scene, condensed.expand(followed));
       }
 
     timer.restart();

@@ -142,6 +142,10 @@ namespace Debond
     result.functional = result.status == SolverStatus::comes_off ?
                           std::numeric_limits<double>::quiet_NaN() :
                           functional_of(scene, result.u);
+    // Where nothing lower was found one integral over the cells does.
+    if (choice.linear_solver == LinearSolver::direct && !result.is_replaced &&
+        (result.minimum.search_trials > 0 || result.minimum.proof_attempted))
+      result.functional_from_start = result.functional;
     return result;
   }
 

@@ -6,7 +6,7 @@
 prm=$2
 export OMP_THREAD_LIMIT=1
 
-"$debond" results "$prm"/benchmarks/quick-{direct,multigrid,multigrid-3d}.prm \
+"$debond" results "$prm"/benchmarks/quick-{direct,multigrid,multigrid-3d,body-pad}.prm \
   >log || fail "$(cat log)"
 cd results
 files=(contact_solve growth start_up)

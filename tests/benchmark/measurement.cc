@@ -132,6 +132,17 @@ namespace
         {
           std::cout << "  " << error.what() << std::endl;
         }
+
+    // The other job is measured all the same, once where there is no time.
+    const Job good = {"a good one", [] {}, {}};
+    const Job bad  = {"a bad one",
+                      [] { throw std::runtime_error("its reason"); },
+                      {}};
+    for (const Measurements &job : measure_alternating({bad, good}, 3, 1e4))
+      std::cout << "  " << job.values.size() << " measurements, \"" << job.error
+                << '"' << std::endl;
+    std::cout << "  " << measure_alternating({good}, 3, 1e-9)[0].values.size()
+              << " where there is no time" << std::endl;
   }
 
 
@@ -164,8 +175,8 @@ namespace
     const auto results = measure_alternating(jobs, 3);
     // The last of a row and the first of the next one are the same job.
     std::cout << "Order: " << std::string(log->names, log->size) << std::endl;
-    for (const auto &job : results)
-      for (const Measurement &measurement : job)
+    for (const Measurements &job : results)
+      for (const Measurement &measurement : job.values)
         std::cout << "  " << measurement.facts << std::endl;
   }
 

@@ -31,10 +31,19 @@ namespace Debond
   {
     std::vector<BenchmarkScene> scenes;
 
-    /// Of "cholesky" and "multigrid".
-    std::set<std::string> linear_solvers = {"cholesky", "multigrid"};
+    /// Of "levels", "ml", "hypre" and "cholesky".
+    std::set<std::string> linear_solvers = {"levels",
+                                            "ml",
+                                            "hypre",
+                                            "cholesky"};
 
-    unsigned int repetitions = 5;
+    unsigned int repetitions = 5; ///< at most
+
+    /// A case is not repeated once this time is over.
+    double seconds = 60.;
+
+    /// Whether its cases are one scene on finer and finer meshes.
+    bool is_refined = false;
   };
 
 

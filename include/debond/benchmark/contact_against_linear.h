@@ -10,7 +10,8 @@ namespace Debond
   /**
    * Time and memory of the whole contact solve, from the assembled A and f to
    * u, beside the linear solves of A u = f that the study asks for, which start
-   * from the same A and f, as often as it says. @p name: of the scene.
+   * from the same A and f, as often as it says. @p name: of the scene. What
+   * fails has no times, and its reason in the row's "failed".
    */
   template <int dim>
   BenchmarkRow

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -58,12 +59,24 @@ namespace Debond
   Measurement
   measure(const Job &job);
 
-  /// Measures all jobs, @p repetitions times, every second time in reverse
-  /// order. The result has a vector for each job, of which the first
-  /// measurement has the facts.
-  std::vector<std::vector<Measurement>>
-  measure_alternating(const std::vector<Job> &jobs,
-                      const unsigned int      repetitions);
+  /// Of a job.
+  struct Measurements
+  {
+    /// The first one has the facts. None if a run failed.
+    std::vector<Measurement> values = {};
+
+    /// Why a run failed; empty if none did.
+    std::string error = {};
+  };
+
+  /// Measures all jobs, at most @p repetitions times, every second time in
+  /// reverse order, and not again once @p seconds are over. A job that throws
+  /// or dies is left out from then on.
+  std::vector<Measurements>
+  measure_alternating(
+    const std::vector<Job> &jobs,
+    const unsigned int      repetitions,
+    const double            seconds = std::numeric_limits<double>::infinity());
 
 
 
@@ -82,7 +95,7 @@ namespace Debond
   spread(const std::vector<Measurement> &measurements,
          double Measurement::*const figure);
 
-  /// Of the quotients of measurements of the same repetition.
+  /// Of the quotients of measurements of the same repetition, as many of both.
   Spread
   spread_of_ratios(const std::vector<Measurement> &numerators,
                    const std::vector<Measurement> &denominators,

@@ -107,26 +107,29 @@ namespace Debond
     double       largest_force = 0., violation = 0.;
     double       largest_terms = 0., energy_terms = 0.;
     const double adhesion = phi.value(s);
+
+    // The terms of a row of S s nearly cancel. Summed up column by column, for
+    // which processors have instructions that sums row by row must not use.
+    Eigen::VectorXd S_s   = Eigen::VectorXd::Zero(s.size());
+    Eigen::VectorXd terms = Eigen::VectorXd::Zero(s.size());
+    for (unsigned int j = 0; j < s.size(); ++j)
+      if (s(j) != 0.)
+        {
+          S_s += s(j) * S.col(j);
+          terms += std::abs(s(j)) * S.col(j).cwiseAbs();
+        }
     for (unsigned int i = 0; i < s.size(); ++i)
       {
-        // The terms of a row of S s nearly cancel.
-        double S_s = 0., terms = 0.;
-        for (unsigned int j = 0; j < s.size(); ++j)
-          {
-            const double term = S(j, i) * s(j);
-            S_s += term;
-            terms += std::abs(term);
-          }
-        largest_terms = std::max(largest_terms, terms);
-        energy_terms += std::abs(s(i)) * terms;
+        largest_terms = std::max(largest_terms, terms(i));
+        energy_terms += std::abs(s(i)) * terms(i);
 
-        energy += 0.5 * s(i) * S_s;
+        energy += 0.5 * s(i) * S_s(i);
         work += g(i) * s(i);
         // S s + xi - g + mu = 0,  mu >= 0,  s <= 0,  mu's = 0.
-        const double mu = g(i) - S_s - xi(i);
+        const double mu = g(i) - S_s(i) - xi(i);
         violation       = std::max(violation, s(i) < 0. ? std::abs(mu) : -mu);
         largest_force   = std::max(
-          {largest_force, std::abs(g(i)), std::abs(S_s), std::abs(xi(i))});
+          {largest_force, std::abs(g(i)), std::abs(S_s(i)), std::abs(xi(i))});
         state.n_active += s(i) == 0.;
         // A maximum would lose it.
         if (std::isnan(mu))
