@@ -105,7 +105,8 @@ namespace Debond
                                       ranks) > box->shape().cells[0];
           throw BadInput({parameters.scene + ": " +
                           (is_too_short ? "Mesh/Cells" : "Mesh/Rotation") +
-                          ": " + error.what()});
+                          ": " + error.what() +
+                          (is_too_short ? "" : "; run the scene on one rank")});
         }
     }
   } // namespace

@@ -308,6 +308,10 @@ namespace Debond
     // Windows are cut out of a whole mesh.
     if (wants_search(parameters) && scene.piece() == nullptr)
       improve_fronts(parameters, scene, energy, problem, watch, result);
+    else if (wants_search(parameters) && scene.law().branches().size() > 1)
+      result.notes.push_back(
+        "fronts of bonds are as the search on coarser meshes left them: several "
+        "ranks do not look for better ones on the finest mesh, one does");
     refine_result(scene, solver, watch, result);
   }
 

@@ -69,7 +69,7 @@ namespace
                 << verdict(iterative.iterations, most_iterations) << std::endl;
     };
     compare("ML", by_ml, 34);
-    compare("hypre", solve_by_hypre(problem), 60);
+    compare("hypre", solve_by_hypre(problem), 130);
     compare("levels", solve_by_levels(Box<dim>(box), problem), most_cycles);
   }
 } // namespace

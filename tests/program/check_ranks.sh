@@ -111,10 +111,26 @@ refused "Solver/Linear solver=direct" "Solver/Linear solver"
 refused "Solver/Method=euclidean bundle" "Solver/Method"
 refused "Certificate/Kind=global" "Certificate/Kind"
 refused "Contact law/Initial gap=1e-4" "Contact law/Initial gap"
-refused "Mesh/Rotation=10" "Mesh/Rotation"
+refused "Mesh/Rotation=10" "Mesh/Rotation: .*; run the scene on one rank"
 refused "Probes/end=0.4, 0.005" "Probes/end"
 refused "Loads/Traction top=0; 1/(x-0.3)" "Loads/Traction top"
 refused "Mesh/Cells=3, 1" "Mesh/Cells"
 expect_code 2 mpirun --oversubscribe -n 5 "$debond" plane.prm \
   --set Mesh/Lengths=0.4,8 --set Mesh/Cells=4,80 --set Output/Directory=refused
 grep -q "at most as many ranks, not 5" errors || fail "$(cat errors)"
+
+# Bodies and displacements that ranks do not share, and a word of what they leave out.
+expect_code 2 mpirun --oversubscribe -n 2 "$debond" \
+  "$tests/../prm/cookbook/ring.prm" --set Output/Directory=refused
+[ "$(grep -c "Mesh/Source: several ranks share boxes only" errors)" -eq 1 ] ||
+  fail "$(cat errors)"
+expect_code 2 mpirun --oversubscribe -n 2 "$debond" plane.prm \
+  --set Mesh/Degree=2 --set "Contact law/Quadrature=gauss 4" \
+  --set Output/Directory=refused
+[ "$(grep -c "Mesh/Degree: several ranks share linear" errors)" -eq 1 ] ||
+  fail "$(cat errors)"
+expect_code 0 mpirun --oversubscribe -n 2 "$debond" plane.prm \
+  --set Solver/Method=automatic --set Solver/Search=automatic \
+  --set Output/Directory=searched
+[ "$(grep -c "fronts of bonds are as the search" log)" -eq 1 ] ||
+  fail "no word of the fronts: $(cat log)"
