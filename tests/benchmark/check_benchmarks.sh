@@ -62,8 +62,12 @@ for scene in "multigrid 80x8" "multigrid 20x2x2" "pad 40x10"; do
   [ "$(column contact_solve status "$scene")" = success ] || fail "$scene"
   at_most "$(column contact_solve ml_iterations "$scene")" 36 "CG steps"
   at_most "$(column contact_solve levels_iterations "$scene")" 16 "cycles of A u = f"
-  at_most "$(column contact_solve cycles_over_levels "$scene")" 1.3 "cycles"
 done
+for scene in "multigrid 80x8" "pad 40x10"; do
+  at_most "$(column contact_solve cycles_over_levels "$scene")" 1.15 "cycles of $scene"
+done
+# Fronts are moved there, and what is found is minimised once more.
+at_most "$(column contact_solve cycles_over_levels "multigrid 20x2x2")" 2.2 "cycles"
 is "$(column contact_solve unknowns "direct 40x4")" 671 0 "unknowns"
 is "$(column contact_solve J "direct 40x4")" "${minima[0]}" 2e-11 "J"
 
