@@ -4,10 +4,11 @@
 #include <debond/base/text.h>
 #include <debond/check/error_estimate.h>
 #include <debond/contact/field_value.h>
-#include <debond/elasticity/linear_simplex.h>
+#include <debond/elasticity/cell_nodes.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -47,17 +48,26 @@ namespace Debond
 
 
 
-    /// int_K |grad b_F|^2, F being opposite to a vertex.
     template <int dim>
     double
-    bubble_energy(const LinearSimplex<dim> &cell, const unsigned int opposite)
+    sum_of_squares(const LinearSimplex<dim> &cell)
     {
       double sum = 0.;
-      for (unsigned int i = 0; i <= dim; ++i)
-        for (unsigned int j = 0; j <= i; ++j)
-          if (i != opposite && j != opposite)
-            sum += cell.gradients[i] * cell.gradients[j];
-      return (dim == 2 ? 8. / 3. : 243. / 70.) * cell.volume * sum;
+      for (const dealii::Tensor<1, dim> &gradient : cell.gradients)
+        sum += gradient.norm_square();
+      return sum;
+    }
+
+
+
+    /// int_K |grad b_F|^2, which is the same for all faces F of a cell, as its
+    /// gradients add up to zero.
+    template <int dim>
+    double
+    bubble_energy(const LinearSimplex<dim> &cell)
+    {
+      return (dim == 2 ? 4. / 3. : 243. / 140.) * cell.volume *
+             sum_of_squares(cell);
     }
 
 
@@ -70,12 +80,29 @@ namespace Debond
                 const dealii::Tensor<1, dim> &force,
                 const double                  stiffness)
     {
-      double sum = 0.;
-      for (const dealii::Tensor<1, dim> &gradient : cell.gradients)
-        sum += gradient.norm_square();
-      const double mean   = dim == 2 ? 1. / 60. : 1. / 840.;
-      const double energy = cell.volume * sum / (dim == 2 ? 180. : 15120.);
+      const double mean = dim == 2 ? 1. / 60. : 1. / 840.;
+      const double energy =
+        cell.volume * sum_of_squares(cell) / (dim == 2 ? 180. : 15120.);
       return 0.5 * mean * mean * force.norm_square() / (stiffness * energy);
+    }
+
+
+
+    template <int dim>
+    bool
+    is_stretched(const std::array<dealii::Point<dim>, dim + 1> &vertices)
+    {
+      double shortest = std::numeric_limits<double>::infinity();
+      double longest  = 0.;
+      for (unsigned int v = 1; v <= dim; ++v)
+        for (unsigned int w = 0; w < v; ++w)
+          {
+            const double square = vertices[v].distance_square(vertices[w]);
+            shortest            = std::min(shortest, square);
+            longest             = std::max(longest, square);
+          }
+      return longest >
+             largest_calibrated_stretch * largest_calibrated_stretch * shortest;
     }
 
 
@@ -154,62 +181,46 @@ namespace Debond
         , s(problem.unknowns().contact().trace(u))
         , dead_loads(dead_loads)
         , load_factor(factors.loads)
+        , has_volume_loads(loads.body_force || loads.temperature_change ||
+                           (dead_loads != nullptr && dead_loads->body_force))
         , largest_s((piece == nullptr ? s : piece->trace(u))
                       .template lpNorm<Eigen::Infinity>())
       {
-        const DofVector displacement =
+        const ElasticFields<dim> &fields = problem.fields();
+        const DofVector           displacement =
           problem.unknowns().cartesian_displacement(u, factors);
-        const auto &dofs = problem.unknowns().dof_handler();
-        cells.reserve(dofs.get_triangulation().n_active_cells());
+        const auto        &dofs = problem.unknowns().dof_handler();
+        const unsigned int n    = dofs.get_triangulation().n_active_cells();
+        cells.reserve(n);
+        stress_energies.reserve(n);
+        if (degree == 2)
+          linear_stresses.reserve(n);
+        if (has_volume_loads)
+          volume_loads.reserve(n);
+        parts.assign(n, 0.);
         for (const auto &cell : dofs.active_cell_iterators())
           {
-            const Material &material = problem.fields().material(cell);
-            CellStress      here     = {LinearSimplex<dim>(cell),
-                                        material.shear_modulus(),
-                                        material.template lame_lambda<dim>(),
-                                        problem.fields().stress(cell,
-                                                       displacement,
-                                                       factors),
-                                        0.,
-                                        {},
-                                        0.,
-                                        {}};
-            if (loads.body_force || loads.temperature_change ||
-                (dead_loads != nullptr && dead_loads->body_force))
-              add_volume_forces(cell, material, here);
-            const double trace    = dealii::trace(here.stress);
-            const double dilation = (trace + dim * here.thermal_pressure) /
-                                    (2. * here.mu + dim * here.lambda);
-            here.pressure = here.thermal_pressure - here.lambda * dilation;
-            if (degree == 2)
-              add_linear_part(
-                cell,
-                [&](const auto &point) {
-                  return problem.fields().stress(cell,
-                                                 displacement,
-                                                 factors,
-                                                 point);
-                },
-                here);
-            stress_energies.push_back(
-              here.simplex.volume *
-              (here.stress * here.stress -
-               here.lambda / (2. * here.mu + dim * here.lambda) * trace *
-                 trace) /
-              (4. * here.mu));
-            cells.push_back(here);
+            const BernsteinSimplex<dim> simplex(cell, degree);
+            const CellNodes<dim>        nodes(cell);
+            Vertices                    vertices;
+            for (unsigned int v = 0; v <= dim; ++v)
+              vertices[v] = cell->vertex(v);
+            add_cell(simplex,
+                     vertices,
+                     fields.material(cell),
+                     [&](const auto &point) {
+                       return fields.stress(
+                         cell, simplex, nodes, displacement, factors, point);
+                     });
+            for (unsigned int f = 0; f <= dim; ++f)
+              if (cell->neighbor_index(f) < 0)
+                add_boundary_face(cell, f, simplex, vertices);
+              else if (is_before(cell->neighbor_level(f),
+                                 cell->neighbor_index(f),
+                                 cell->level(),
+                                 cell->index()))
+                add_inner_face(cell, f, simplex, vertices, cell->neighbor(f));
           }
-        parts.assign(cells.size(), 0.);
-        if (degree == 2)
-          for (unsigned int c = 0; c < cells.size(); ++c)
-            parts[c] =
-              fall_inside(cells[c].simplex, cells[c].force, cells[c].mu);
-        for (const auto &cell : dofs.active_cell_iterators())
-          for (const unsigned int f : cell->face_indices())
-            if (!cell->face(f)->at_boundary())
-              add_inner_face(cell, f);
-            else
-              add_boundary_face(cell, f);
       }
 
       /// What J would fall, of each cell.
@@ -218,10 +229,36 @@ namespace Debond
       /// Those of an elastic body with these stresses.
       std::vector<double> stress_energies;
 
+      /// What the constant was not measured for.
+      bool is_nearly_incompressible = false;
+      bool has_stretched_cells      = false;
+
     private:
+      using Vertices = std::array<dealii::Point<dim>, dim + 1>;
+
+      /// Of the material of the last cell.
+      struct Moduli
+      {
+        Moduli() = default;
+
+        explicit Moduli(const Material &material)
+          : material(&material)
+          , mu(material.shear_modulus())
+          , lambda(material.template lame_lambda<dim>())
+          , part_of_lambda(lambda / (2. * mu + dim * lambda))
+          , half_compliance(1. / (2. * mu))
+        {}
+
+        const Material *material = nullptr;
+        double          mu;
+        double          lambda;
+        double          part_of_lambda; ///< times the trace of sigma: of eps
+        double          half_compliance;
+      };
+
+      /// What the next cells need of one that is done.
       struct CellStress
       {
-        LinearSimplex<dim>              simplex;
         double                          mu;
         double                          lambda;
         dealii::SymmetricTensor<2, dim> stress;
@@ -229,12 +266,19 @@ namespace Debond
         /// sigma is what shears minus this times the identity.
         double pressure;
 
+        double bubble_energy;
+      };
+
+      struct VolumeLoad
+      {
         /// int_K (f_0 + div sigma).
         dealii::Tensor<1, dim> force;
 
         /// What keeps the cell from expanding, and its gradient.
-        double                 thermal_pressure;
+        double                 thermal_pressure = 0.;
         dealii::Tensor<1, dim> pressure_gradient;
+
+        dealii::Point<dim> middle;
       };
 
       /// Of degree 2, at the vertices of a cell.
@@ -247,23 +291,76 @@ namespace Debond
       struct Face
       {
         unsigned int           cell;
-        unsigned int           opposite; ///< vertex of the cell
-        double                 measure;
-        dealii::Tensor<1, dim> normal;
+        dealii::Tensor<1, dim> area; ///< the normal times the measure
+
+        /// Of the face, if there are loads in the volume.
+        dealii::Point<dim> middle;
 
         /// The numbers of its vertices in the cell, in the order of
         /// ContactBoundary's faces.
         std::array<unsigned int, dim> in_cell;
       };
 
+      /// Whether a cell comes before another one among the active cells.
+      static bool
+      is_before(const int level,
+                const int index,
+                const int other_level,
+                const int other_index)
+      {
+        return level != other_level ? level < other_level : index < other_index;
+      }
+
+      /// Of the next cell; @p stress: at its points.
+      template <typename Stress>
+      void
+      add_cell(const BernsteinSimplex<dim> &simplex,
+               const Vertices              &vertices,
+               const Material              &material,
+               const Stress                &stress)
+      {
+        if (moduli.material != &material)
+          moduli = Moduli(material);
+        CellStress here = {moduli.mu,
+                           moduli.lambda,
+                           stress(ElasticFields<dim>::middle()),
+                           0.,
+                           bubble_energy(simplex)};
+        VolumeLoad load;
+        if (has_volume_loads)
+          load = volume_load(simplex, vertices, material);
+        const double trace = dealii::trace(here.stress);
+        here.pressure =
+          load.thermal_pressure -
+          moduli.part_of_lambda * (trace + dim * load.thermal_pressure);
+        if (degree == 2)
+          {
+            add_linear_part(simplex, vertices, stress, load);
+            parts[cells.size()] = fall_inside(simplex, load.force, here.mu);
+          }
+        stress_energies.push_back(
+          0.5 * moduli.half_compliance * simplex.volume *
+          (here.stress * here.stress - moduli.part_of_lambda * trace * trace));
+        is_nearly_incompressible =
+          is_nearly_incompressible ||
+          here.lambda > largest_calibrated_lambda * here.mu;
+        has_stretched_cells =
+          has_stretched_cells || (dim == 3 && is_stretched<dim>(vertices));
+        cells.push_back(here);
+        if (has_volume_loads)
+          volume_loads.push_back(load);
+      }
+
       /// Loads are evaluated where load_vector() and thermal_stresses() do it:
       /// there they are finite.
-      template <typename CellIterator>
-      void
-      add_volume_forces(const CellIterator &cell,
-                        const Material     &material,
-                        CellStress         &here) const
+      VolumeLoad
+      volume_load(const LinearSimplex<dim> &simplex,
+                  const Vertices           &vertices,
+                  const Material           &material) const
       {
+        VolumeLoad result;
+        for (const dealii::Point<dim> &vertex : vertices)
+          result.middle += vertex / (dim + 1.);
         const double stress_of_one =
           loads.temperature_change ?
             load_factor * material.template thermal_stress<dim>() :
@@ -271,22 +368,22 @@ namespace Debond
         for (unsigned int q = 0; q < cell_rule.size(); ++q)
           {
             const double weight = cell_rule.weight(q) * (dim == 2 ? 2. : 6.);
-            dealii::Point<dim> point = cell->vertex(0);
+            dealii::Point<dim> point = vertices[0];
             // Times the basis' gradients at the vertices.
-            dealii::Tensor<1, dim> towards = here.simplex.gradients[0];
+            dealii::Tensor<1, dim> towards = simplex.gradients[0];
             for (unsigned int d = 0; d < dim; ++d)
               {
                 const double lambda = cell_rule.point(q)[d];
-                point += lambda * (cell->vertex(d + 1) - cell->vertex(0));
-                towards += lambda * (here.simplex.gradients[d + 1] -
-                                     here.simplex.gradients[0]);
+                point += lambda * (vertices[d + 1] - vertices[0]);
+                towards +=
+                  lambda * (simplex.gradients[d + 1] - simplex.gradients[0]);
               }
             const auto add_force = [&](const Loads<dim> &load,
                                        const double      factor) {
               if (load.body_force)
                 for (unsigned int d = 0; d < dim; ++d)
-                  here.force[d] += factor * weight * here.simplex.volume *
-                                   field_value(*load.body_force, point, d);
+                  result.force[d] += factor * weight * simplex.volume *
+                                     field_value(*load.body_force, point, d);
             };
             add_force(loads, load_factor);
             if (dead_loads != nullptr)
@@ -296,21 +393,23 @@ namespace Debond
                 // The linear function with the same mean and moments.
                 const double pressure =
                   stress_of_one * field_value(*loads.temperature_change, point);
-                here.thermal_pressure += weight * pressure;
-                here.pressure_gradient +=
+                result.thermal_pressure += weight * pressure;
+                result.pressure_gradient +=
                   (dim + 1.) * (dim + 2.) * weight * pressure * towards;
               }
           }
         if (degree == 1)
-          here.force -= here.simplex.volume * here.pressure_gradient;
+          result.force -= simplex.volume * result.pressure_gradient;
+        return result;
       }
 
       /// What varies in a cell, of degree 2, from the stress at its points.
-      template <typename CellIterator, typename Stress>
+      template <typename Stress>
       void
-      add_linear_part(const CellIterator &cell,
-                      const Stress       &stress,
-                      CellStress         &here)
+      add_linear_part(const LinearSimplex<dim> &simplex,
+                      const Vertices           &vertices,
+                      const Stress             &stress,
+                      VolumeLoad               &load)
       {
         linear_stresses.emplace_back();
         auto &[stresses, pressures] = linear_stresses.back();
@@ -320,14 +419,12 @@ namespace Debond
             vertex[v]                          = 1.;
             stresses[v]                        = stress(vertex);
             const double thermal =
-              here.thermal_pressure +
-              here.pressure_gradient * (cell->vertex(v) - cell->center());
+              load.thermal_pressure +
+              load.pressure_gradient * (vertices[v] - load.middle);
             pressures[v] =
-              thermal - here.lambda *
-                          (dealii::trace(stresses[v]) + dim * thermal) /
-                          (2. * here.mu + dim * here.lambda);
-            here.force +=
-              here.simplex.volume * (stresses[v] * here.simplex.gradients[v]);
+              thermal - moduli.part_of_lambda *
+                          (dealii::trace(stresses[v]) + dim * thermal);
+            load.force += simplex.volume * (stresses[v] * simplex.gradients[v]);
           }
       }
 
@@ -346,146 +443,141 @@ namespace Debond
       }
 
       Face
-      face_of(const unsigned int cell, const unsigned int f) const
+      face_of(const unsigned int        cell,
+              const unsigned int        f,
+              const LinearSimplex<dim> &simplex,
+              const Vertices           &vertices) const
       {
-        Face face = {cell, dim * (dim + 1) / 2, 0., {}, face_vertices[f]};
+        Face         face     = {cell, {}, {}, face_vertices[f]};
+        unsigned int opposite = dim * (dim + 1) / 2;
         for (const unsigned int vertex : face.in_cell)
-          face.opposite -= vertex;
-        const LinearSimplex<dim>     &simplex = cells[face.cell].simplex;
-        const dealii::Tensor<1, dim> &inward = simplex.gradients[face.opposite];
-        face.measure = dim * simplex.volume * inward.norm();
-        face.normal  = -inward / inward.norm();
+          opposite -= vertex;
+        if (has_volume_loads)
+          for (const unsigned int vertex : face.in_cell)
+            face.middle += vertices[vertex] / double(dim);
+        face.area = -dim * simplex.volume * simplex.gradients[opposite];
         return face;
       }
 
-      /// - sigma n and its share of the volume's force, in the middle of the
-      /// face.
-      template <typename CellIterator>
+      /// What the volume's force and the pressure's change from the middle of a
+      /// cell add to minus the traction on a side of a face, times its measure.
       dealii::Tensor<1, dim>
-      traction(const CellIterator &cell,
-               const unsigned int  f,
-               const Face         &face) const
+      share_of_volume(const unsigned int            cell,
+                      const Face                   &face,
+                      const dealii::Tensor<1, dim> &outward) const
       {
-        const CellStress &here = cells[face.cell];
-        return -(here.stress * face.normal) +
-               pressure_change(cell, f, face) * face.normal +
-               mean_in_cell / face.measure * here.force;
+        return pressure_change(cell, face) * outward +
+               mean_in_cell * volume_loads[cell].force;
       }
 
-      /// From the middle of the cell to that of the face.
-      template <typename CellIterator>
+      /// From the middle of a cell to that of its face.
       double
-      pressure_change(const CellIterator &cell,
-                      const unsigned int  f,
-                      const Face         &face) const
+      pressure_change(const unsigned int cell, const Face &face) const
       {
-        return loads.temperature_change ?
-                 cells[face.cell].pressure_gradient *
-                   (cell->face(f)->center() - cell->center()) :
-                 0.;
+        return has_volume_loads ? volume_loads[cell].pressure_gradient *
+                                    (face.middle - volume_loads[cell].middle) :
+                                  0.;
       }
 
-      double
-      bubble(const Face &face) const
-      {
-        return bubble_energy(cells[face.cell].simplex, face.opposite);
-      }
-
-      /// What J would fall by r with the given mean square.
+      /// What J would fall by r, given the mean square of its product with the
+      /// measure of the face.
       static double
-      fall(const double square, const double measure, const double stiffness)
+      fall(const double square, const double stiffness)
       {
-        const double force = mean_on_face<dim> * measure;
-        return 0.5 * force * force * square / stiffness;
+        return 0.5 * mean_on_face<dim> * mean_on_face<dim> * square / stiffness;
       }
 
-      template <typename CellIterator>
+      /// @p neighbor is done.
+      template <typename CellIterator, typename OtherIterator>
       void
-      add_inner_face(const CellIterator &cell, const unsigned int f)
+      add_inner_face(const CellIterator       &cell,
+                     const unsigned int        f,
+                     const LinearSimplex<dim> &simplex,
+                     const Vertices           &vertices,
+                     const OtherIterator      &neighbor)
       {
-        const auto neighbor = cell->neighbor(f);
-        if (neighbor->active_cell_index() < cell->active_cell_index())
-          return;
-        const Face         face  = face_of(cell->active_cell_index(), f);
-        const unsigned int g     = cell->neighbor_face_no(f);
-        const Face         back  = face_of(neighbor->active_cell_index(), g);
-        const CellStress  &here  = cells[face.cell];
-        const CellStress  &there = cells[back.cell];
-        const double       a = bubble(face), b = bubble(back);
+        const Face face =
+          face_of(cell->active_cell_index(), f, simplex, vertices);
+        const unsigned int other  = neighbor->active_cell_index();
+        const CellStress  &here   = cells[face.cell];
+        const CellStress  &there  = cells[other];
+        const double       a      = here.bubble_energy;
+        const double       b      = there.bubble_energy;
+        double             energy = 0.;
+        // At the interface of two materials only tractions have no jump.
+        const bool is_one_material =
+          here.mu == there.mu && here.lambda == there.lambda;
+        const double stiffness = here.mu * a + there.mu * b;
+        const double pressure_stiffness =
+          (here.lambda + 2. * here.mu) * (a + b);
         if (degree == 2)
           {
-            const double energy =
-              fall_of_linear_jump(cell, face, neighbor, back, a, b);
-            parts[face.cell] += 0.5 * energy;
-            parts[back.cell] += 0.5 * energy;
-            return;
+            std::array<dealii::Tensor<1, dim>, dim> r;
+            std::array<double, dim>                 jumps = {};
+            find_linear_jump(
+              cell, face, neighbor, other, is_one_material, r, jumps);
+            energy = fall(mean_square(jumps) * face.area.norm_square(),
+                          pressure_stiffness) +
+                     fall(mean_square(r), stiffness);
           }
-
-        dealii::Tensor<1, dim> r =
-          traction(cell, f, face) + traction(neighbor, g, back);
-        double energy = 0.;
-        // At the interface of two materials only their sum has no jump.
-        if (here.mu == there.mu && here.lambda == there.lambda)
+        else
           {
-            const double jump = here.pressure + pressure_change(cell, f, face) -
-                                there.pressure -
-                                pressure_change(neighbor, g, back);
-            r -= jump * face.normal;
-            energy = fall(jump * jump,
-                          face.measure,
-                          (here.lambda + 2. * here.mu) * (a + b));
-          }
-        energy +=
-          fall(r.norm_square(), face.measure, here.mu * a + there.mu * b);
-        parts[face.cell] += 0.5 * energy;
-        parts[back.cell] += 0.5 * energy;
-      }
-
-      /// The same of degree 2, where tractions are linear on the face.
-      template <typename CellIterator, typename OtherIterator>
-      double
-      fall_of_linear_jump(const CellIterator  &cell,
-                          const Face          &face,
-                          const OtherIterator &neighbor,
-                          const Face          &back,
-                          const double         a,
-                          const double         b) const
-      {
-        const CellStress &here  = cells[face.cell];
-        const CellStress &there = cells[back.cell];
-        const bool        is_one_material =
-          here.mu == there.mu && here.lambda == there.lambda;
-        std::array<dealii::Tensor<1, dim>, dim> r;
-        std::array<double, dim>                 jumps = {};
-        for (unsigned int v = 0; v < dim; ++v)
-          {
-            const unsigned int other =
-              *std::find_if(back.in_cell.begin(),
-                            back.in_cell.end(),
-                            [&, index = cell->vertex_index(face.in_cell[v])](
-                              const unsigned int w) {
-                              return neighbor->vertex_index(w) == index;
-                            });
-            const LinearStress &from = linear_stresses[face.cell];
-            const LinearStress &to   = linear_stresses[back.cell];
-            r[v] = (to.stresses[other] - from.stresses[face.in_cell[v]]) *
-                   face.normal;
+            dealii::Tensor<1, dim> r = (there.stress - here.stress) * face.area;
+            if (has_volume_loads)
+              r += share_of_volume(face.cell, face, face.area) +
+                   share_of_volume(other, face, -face.area);
             if (is_one_material)
               {
-                jumps[v] =
-                  from.pressures[face.in_cell[v]] - to.pressures[other];
-                r[v] -= jumps[v] * face.normal;
+                const double jump =
+                  here.pressure + pressure_change(face.cell, face) -
+                  there.pressure - pressure_change(other, face);
+                r -= jump * face.area;
+                energy = fall(jump * jump * face.area.norm_square(),
+                              pressure_stiffness);
+              }
+            energy += fall(r.norm_square(), stiffness);
+          }
+        parts[face.cell] += 0.5 * energy;
+        parts[other] += 0.5 * energy;
+      }
+
+      /// Of degree 2, where tractions are linear on the face: @p r times the
+      /// measure, without the jumps of the pressure, and these, at its
+      /// vertices.
+      template <typename CellIterator, typename OtherIterator>
+      void
+      find_linear_jump(const CellIterator                      &cell,
+                       const Face                              &face,
+                       const OtherIterator                     &neighbor,
+                       const unsigned int                       other,
+                       const bool                               is_one_material,
+                       std::array<dealii::Tensor<1, dim>, dim> &r,
+                       std::array<double, dim>                 &jumps) const
+      {
+        const LinearStress &from = linear_stresses[face.cell];
+        const LinearStress &to   = linear_stresses[other];
+        for (unsigned int v = 0; v < dim; ++v)
+          {
+            const unsigned int index = cell->vertex_index(face.in_cell[v]);
+            unsigned int       w     = 0;
+            while (neighbor->vertex_index(w) != index)
+              ++w;
+            r[v] =
+              (to.stresses[w] - from.stresses[face.in_cell[v]]) * face.area;
+            if (is_one_material)
+              {
+                jumps[v] = from.pressures[face.in_cell[v]] - to.pressures[w];
+                r[v] -= jumps[v] * face.area;
               }
           }
-        return fall(mean_square(jumps),
-                    face.measure,
-                    (here.lambda + 2. * here.mu) * (a + b)) +
-               fall(mean_square(r), face.measure, here.mu * a + there.mu * b);
       }
 
       template <typename CellIterator>
       void
-      add_boundary_face(const CellIterator &cell, const unsigned int f)
+      add_boundary_face(const CellIterator       &cell,
+                        const unsigned int        f,
+                        const LinearSimplex<dim> &simplex,
+                        const Vertices           &vertices)
       {
         const auto id         = cell->face(f)->boundary_id();
         const bool is_contact = conditions.contact.count(id) > 0;
@@ -495,9 +587,24 @@ namespace Debond
         if (conditions.clamped.count(id) > 0)
           return;
 
-        const Face face = face_of(cell->active_cell_index(), f);
-        const dealii::Tensor<1, dim> inner =
-          degree == 1 ? traction(cell, f, face) : dealii::Tensor<1, dim>();
+        const Face face =
+          face_of(cell->active_cell_index(), f, simplex, vertices);
+        const double                 measure = face.area.norm();
+        const dealii::Tensor<1, dim> normal  = face.area / measure;
+        dealii::Tensor<1, dim>       inner;
+        if (degree == 1)
+          {
+            inner = -(cells[face.cell].stress * normal);
+            if (has_volume_loads)
+              inner += share_of_volume(face.cell, face, face.area) / measure;
+          }
+        const auto applied = [id](const Loads<dim> &load) {
+          const auto entry = load.tractions.find(id);
+          return entry == load.tractions.end() ? nullptr : entry->second.get();
+        };
+        const auto *const live = applied(loads);
+        const auto *const dead =
+          dead_loads == nullptr ? nullptr : applied(*dead_loads);
         double square = 0.;
         for (unsigned int q = 0; q < rule.weights.size(); ++q)
           {
@@ -506,31 +613,30 @@ namespace Debond
               for (unsigned int v = 0; v < dim; ++v)
                 r -= rule.barycentric[q][v] *
                      (linear_stresses[face.cell].stresses[face.in_cell[v]] *
-                      face.normal);
-            const auto add_traction = [&](const Loads<dim> &load,
-                                          const double      factor) {
-              const auto entry = load.tractions.find(id);
-              if (entry == load.tractions.end())
-                return;
-              dealii::Point<dim> point;
-              for (unsigned int v = 0; v < dim; ++v)
-                point += rule.barycentric[q][v] * cell->vertex(face.in_cell[v]);
-              for (unsigned int d = 0; d < dim; ++d)
-                r[d] += factor * field_value(*entry->second, point, d);
-            };
-            add_traction(loads, load_factor);
-            if (dead_loads != nullptr)
-              add_traction(*dead_loads, 1.);
+                      normal);
+            if (live != nullptr || dead != nullptr)
+              {
+                dealii::Point<dim> point;
+                for (unsigned int v = 0; v < dim; ++v)
+                  point += rule.barycentric[q][v] * vertices[face.in_cell[v]];
+                for (unsigned int d = 0; d < dim; ++d)
+                  {
+                    if (live != nullptr)
+                      r[d] += load_factor * field_value(*live, point, d);
+                    if (dead != nullptr)
+                      r[d] += field_value(*dead, point, d);
+                  }
+              }
             if (is_contact)
               r = with_foundation(r,
-                                  face.normal,
+                                  normal,
                                   boundary.faces[contact_face],
                                   rule.barycentric[q]);
-            square +=
-              rule.weights[q] * free_part(r, face.normal, id).norm_square();
+            square += rule.weights[q] * free_part(r, normal, id).norm_square();
           }
+        const CellStress &here = cells[face.cell];
         parts[face.cell] +=
-          fall(square, face.measure, cells[face.cell].mu * bubble(face));
+          fall(square * measure * measure, here.mu * here.bubble_energy);
       }
 
       /// With what bonds bear, as far as the foundation lets the body go.
@@ -583,14 +689,17 @@ namespace Debond
       const Eigen::VectorXd                                    s;
       const Loads<dim>                                        *dead_loads;
       const double                                             load_factor;
+      const bool                                               has_volume_loads;
       const double                                             largest_s;
       const FaceRule<dim>                                      rule;
       const std::array<std::array<unsigned int, dim>, dim + 1> face_vertices =
         make_face_vertices();
       const dealii::QGaussSimplex<dim> cell_rule =
         dealii::QGaussSimplex<dim>(2);
+      Moduli                    moduli;
       std::vector<CellStress>   cells;
-      std::vector<LinearStress> linear_stresses;
+      std::vector<LinearStress> linear_stresses; ///< of degree 2
+      std::vector<VolumeLoad>   volume_loads;    ///< if there are any
       unsigned int              n_contact_faces = 0;
     };
 
@@ -598,21 +707,14 @@ namespace Debond
 
     template <int dim>
     std::string
-    outside_calibration(const ElasticProblem<dim> &problem,
-                        const ProblemPiece<dim>   *piece)
+    outside_calibration(const Residuals<dim>    &residuals,
+                        const ProblemPiece<dim> *piece)
     {
       std::set<std::string> reasons;
-      for (const auto &cell :
-           problem.unknowns().dof_handler().active_cell_iterators())
-        {
-          const Material &material = problem.fields().material(cell);
-          if (material.template lame_lambda<dim>() >
-              largest_calibrated_lambda * material.shear_modulus())
-            reasons.insert("nearly incompressible materials");
-          if (dim == 3 && cell->diameter() > largest_calibrated_stretch *
-                                               cell->minimum_vertex_distance())
-            reasons.insert("cells that are stretched");
-        }
+      if (residuals.is_nearly_incompressible)
+        reasons.insert("nearly incompressible materials");
+      if (residuals.has_stretched_cells)
+        reasons.insert("cells that are stretched");
       if (piece != nullptr)
         for (const std::vector<std::string> &of_rank :
              dealii::Utilities::MPI::all_gather(
@@ -685,7 +787,7 @@ namespace Debond
     for (double &part : result.cells)
       part *= constant;
     result.functional          = sum(result.cells);
-    result.outside_calibration = outside_calibration(problem, piece);
+    result.outside_calibration = outside_calibration(*residuals, piece);
     const double stress_energy = sum(residuals->stress_energies);
     result.is_of_J =
       std::abs(functional) >= least_part_of_energy * stress_energy;

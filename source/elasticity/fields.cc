@@ -134,10 +134,29 @@ namespace Debond
                              const LoadFactors  factors,
                              const Barycentric &point) const
   {
+    return stress(cell,
+                  BernsteinSimplex<dim>(cell, unknowns.degree()),
+                  CellNodes<dim>(cell),
+                  cartesian_displacement,
+                  factors,
+                  point);
+  }
+
+
+
+  template <int dim>
+  dealii::SymmetricTensor<2, dim>
+  ElasticFields<dim>::stress(const Cell                  &cell,
+                             const BernsteinSimplex<dim> &simplex,
+                             const CellNodes<dim>        &nodes,
+                             const DofVector   &cartesian_displacement,
+                             const LoadFactors  factors,
+                             const Barycentric &point) const
+  {
     dealii::SymmetricTensor<2, dim> stress =
       stiffness(cell->material_id()) *
       dealii::symmetrize(
-        displacement_gradient(cell, cartesian_displacement, point));
+        gradient(simplex, nodes, cartesian_displacement, point));
     if (!thermal_stresses.empty())
       stress -= factors.loads * thermal_stress(cell, point) *
                 dealii::unit_symmetric_tensor<dim>();

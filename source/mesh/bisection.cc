@@ -4,32 +4,31 @@
 #include <debond/mesh/bisection.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <map>
 #include <numeric>
 #include <queue>
 #include <stdexcept>
-#include <unordered_map>
 #include <utility>
 
 namespace Debond
 {
   namespace
   {
-    /// The vertices that were put in the middle of edges.
+    /// The vertices that were put in the middle of edges: of each vertex the
+    /// list of those on edges to vertices with larger numbers.
     class EdgeMiddles
     {
     public:
       bool
       empty() const
       {
-        return middles.empty();
+        return entries.empty();
       }
 
       bool
       has(const unsigned int a, const unsigned int b) const
       {
-        return middles.count(key(a, b)) > 0;
+        return find(std::min(a, b), std::max(a, b)) != end;
       }
 
       /// @p next is the number of a new one; returns whether it is needed.
@@ -38,19 +37,38 @@ namespace Debond
              const unsigned int b,
              const unsigned int next)
       {
-        const auto [entry, is_new] = middles.emplace(key(a, b), next);
-        return {entry->second, is_new};
+        const unsigned int first = std::min(a, b), second = std::max(a, b);
+        const unsigned int found = find(first, second);
+        if (found != end)
+          return {entries[found].middle, false};
+        if (first >= lists.size())
+          lists.resize(first + 1, end);
+        entries.push_back({second, next, lists[first]});
+        lists[first] = static_cast<unsigned int>(entries.size()) - 1;
+        return {next, true};
       }
 
     private:
-      static std::uint64_t
-      key(const unsigned int a, const unsigned int b)
+      struct Entry
       {
-        return (static_cast<std::uint64_t>(std::min(a, b)) << 32) |
-               std::max(a, b);
+        unsigned int second;
+        unsigned int middle;
+        unsigned int next;
+      };
+
+      static constexpr unsigned int end = dealii::numbers::invalid_unsigned_int;
+
+      unsigned int
+      find(const unsigned int first, const unsigned int second) const
+      {
+        unsigned int entry = first < lists.size() ? lists[first] : end;
+        while (entry != end && entries[entry].second != second)
+          entry = entries[entry].next;
+        return entry;
       }
 
-      std::unordered_map<std::uint64_t, unsigned int> middles;
+      std::vector<unsigned int> lists; ///< their first entries
+      std::vector<Entry>        entries;
     };
 
 

@@ -308,6 +308,64 @@ namespace
 
 
 
+  /// How many times the cells the next mesh has at most, which is measured in
+  /// doc/notes/speed.md, with what is cut for others (up to 10 %).
+  void
+  check_growth(const std::string &name,
+               const Values      &values,
+               const double       least,
+               const double       most)
+  {
+    const Parameters   parameters = parameters_of(values);
+    const MethodChoice choice =
+      choose_method(parameters, parameters.solver, parameters.accuracy);
+    double     before = 0., largest = 0.;
+    const auto report = [&](const AdaptiveLevel &level) {
+      if (before > 0.)
+        largest = std::max(largest, level.cells / before);
+      before = level.cells;
+    };
+    auto scene = make_first_scene<2>(parameters,
+                                     parameters.accuracy,
+                                     matrix_storage(choice));
+    solve_adaptively(choice,
+                     parameters.solver,
+                     parameters.accuracy,
+                     parameters.certificate.kind,
+                     parameters.verification.tolerance,
+                     report,
+                     scene);
+    check(name + ", largest growth", largest, most);
+    check(name + ", as much as it may", largest > least);
+  }
+
+
+
+  void
+  check_growths()
+  {
+    const Values base = {"Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)",
+                         "Contact law/Quadrature=exact"};
+    // Of 671 unknowns: 16 times as many in two steps, more in three.
+    check_growth("linear, two steps",
+                 with(base, {"Accuracy/Maximum unknowns=11000"}),
+                 3.5,
+                 4.4);
+    check_growth("linear, three steps",
+                 with(base, {"Accuracy/Maximum unknowns=15000"}),
+                 2.,
+                 4.4);
+    check_growth("quadratic",
+                 with(base,
+                      {"Mesh/Degree=2",
+                       "Mesh/Cells=20, 2",
+                       "Accuracy/Maximum unknowns=4000"}),
+                 1.25,
+                 1.54);
+  }
+
+
+
   /// Of a run of the whole program.
   void
   check_run(const Values      &values,
@@ -391,6 +449,7 @@ main(int argc, char **)
   check_closed_forms();
   check_benchmark();
   check_loop();
+  check_growths();
   check_tetrahedra();
 
   const Values small = {"Mesh/Cells=20, 2",

@@ -78,6 +78,15 @@ namespace Debond
            const LoadFactors  factors,
            const Barycentric &point = middle()) const;
 
+    /// The same of a cell whose gradients and nodes are known.
+    dealii::SymmetricTensor<2, dim>
+    stress(const Cell                  &cell,
+           const BernsteinSimplex<dim> &simplex,
+           const CellNodes<dim>        &nodes,
+           const DofVector             &cartesian_displacement,
+           const LoadFactors            factors,
+           const Barycentric           &point) const;
+
     /// The same with what the hypothesis of plane bodies implies.
     dealii::SymmetricTensor<2, 3>
     solid_stress(const Cell        &cell,
