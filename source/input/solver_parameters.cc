@@ -181,7 +181,7 @@ namespace Debond
          {"none", BondSearchChoice::none},
          {"quick", BondSearchChoice::quick},
          {"full", BondSearchChoice::full}},
-        "Whether a lower minimum than the one found is searched for by changing which bonds are broken, with a direct linear solver: quick starts from rest and from all bonds broken and moves the edges of the broken patches by a node, full moves them by up to four nodes and breaks, closes and splits patches; automatic is none unless the method is automatic, and then as much of this as it takes until a lower bound of J (with nodal quadrature) or the minimum on coarser contact nodes says that it is enough, with more than 200 contact nodes on coarser ones but for the starts from rest and from all bonds broken",
+        "Whether a lower minimum than the one found is searched for by changing which bonds are broken, with a direct linear solver: quick starts from rest and from all bonds broken and moves the edges of the broken patches by a node, full does what automatic does, and then moves them by up to four nodes and breaks, closes and splits patches; automatic is none unless the method is automatic, and then as much of this as it takes until a lower bound of J (with nodal quadrature) or the minimum on coarser contact nodes says that it is enough, with more than 200 contact nodes on coarser ones but for the starts from rest and from all bonds broken",
         AtRestart::any);
       table.declare(
         "Solver/Search moves",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
+#include <debond/input/bad_input.h>
 #include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/global/guided_search.h>
 #include <debond/optimization/majorise/coarse_start.h>
@@ -501,12 +502,18 @@ namespace Debond
       {
         MinimumSearch<dim> search(
           parameters, boundary, law, adhesion, condensed, may_go_on, s, result);
-        if (parameters.search != BondSearchChoice::automatic)
-          search.search_nodes(search_parameters(parameters));
-        else if (s.size() <= largest_automatic_search)
-          search.search_all_nodes();
-        else
-          search.search_coarse_nodes();
+        // Full is what automatic does, and more.
+        if (parameters.search != BondSearchChoice::quick)
+          {
+            if (s.size() <= largest_automatic_search)
+              search.search_all_nodes();
+            else
+              search.search_coarse_nodes();
+          }
+        if (parameters.search != BondSearchChoice::automatic &&
+            result.kind != MinimumKind::global &&
+            search.search_nodes(search_parameters(parameters)))
+          result.closed_nodes = 0;
         if (result.kind != MinimumKind::best_known &&
             result.kind != MinimumKind::global)
           result.kind = kind_without_search(law, adhesion, s);

@@ -278,8 +278,17 @@ namespace Debond
         for (const unsigned int i : trial.up)
           if (lumped.f[i].index(next(i)) >= trial.piece)
             next(i) = lumped.f[i].point_inside(trial.piece - 1);
+        // Beside what holds a vertex off the foundation points are farther from
+        // it than the node: its bonds hold from there only if it is closed.
+        const bool from_contact =
+          trial.move == BranchMove::start && trial.down.empty() &&
+          (phi.curvature(Eigen::VectorXd::Zero(next.size())) -
+           phi.curvature(next))
+              .norm() > 0.;
+        if (from_contact)
+          next.setZero();
         const bool is_known = !tried.insert(state_of(next)).second;
-        if (is_known && !to_the_end)
+        if (is_known && !to_the_end && !from_contact)
           return false;
 
         ++result.trials[static_cast<unsigned int>(trial.move)];

@@ -14,6 +14,9 @@ namespace Debond
     constexpr double       most_operations = 4e8;
     constexpr unsigned int most_nodes      = 500;
 
+    /// Each is begun because the one before found a lower point.
+    constexpr unsigned int most_proofs = 4;
+
 
 
     /// For one problem.
@@ -67,11 +70,17 @@ namespace Debond
             (!(is_same && parameters.proof_first) && is_proved(s, 1)))
           return result;
         search({}, s);
-        const double n = double(s.size());
-        if (monitor())
-          is_proved(s,
-                    static_cast<unsigned int>(std::ceil(std::min(
-                      double(most_nodes), most_operations / (n * n * n)))));
+        const double       n       = double(s.size());
+        const unsigned int n_nodes = static_cast<unsigned int>(std::ceil(
+          std::min(double(most_nodes), most_operations / (n * n * n))));
+        // What the proof finds is where moves have not been tried from.
+        for (unsigned int k = 0; k < most_proofs && monitor(); ++k)
+          {
+            const Eigen::VectorXd searched = s;
+            if (is_proved(s, n_nodes) || s == searched || !monitor())
+              break;
+            search({}, s);
+          }
         return result;
       }
 
