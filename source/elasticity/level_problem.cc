@@ -4,6 +4,7 @@
 #include <deal.II/lac/vector_memory.templates.h>
 
 #include <debond/elasticity/level_problem.h>
+#include <debond/linear_algebra/stagnation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -244,11 +245,13 @@ namespace Debond
             dealii::SolverControl  control(maximum_cycles, 0.9 * required);
             dealii::PrimitiveVectorMemory<LevelVector<dim>> memory;
             dealii::SolverCG<LevelVector<dim>>              cg(control, memory);
-            cg.connect([this](const unsigned int,
-                              const double,
-                              const LevelVector<dim> &) {
-              return may_go_on() ? dealii::SolverControl::success :
-                                   dealii::SolverControl::failure;
+            Stagnation                                      stagnation;
+            cg.connect([this, &stagnation](const unsigned int,
+                                           const double value,
+                                           const LevelVector<dim> &) {
+              return may_go_on() && !stagnation.is_reached(value) ?
+                       dealii::SolverControl::success :
+                       dealii::SolverControl::failure;
             });
             const LinearOperator<dim> majorant = {
               [this](DofVector &dst, const DofVector &src) {

@@ -3,6 +3,7 @@
 #include <deal.II/lac/solver_control.h>
 
 #include <debond/elasticity/multigrid_problem.h>
+#include <debond/linear_algebra/stagnation.h>
 
 #include <algorithm>
 
@@ -146,9 +147,13 @@ namespace Debond
             std::max(required, linear_reduction * free_force.l2_norm()));
         correction = 0.;
         dealii::SolverCG<DofVector> cg(control);
-        cg.connect([this](const unsigned int, const double, const DofVector &) {
-          return may_go_on() ? dealii::SolverControl::success :
-                               dealii::SolverControl::failure;
+        Stagnation                  stagnation;
+        cg.connect([this, &stagnation](const unsigned int,
+                                       const double value,
+                                       const DofVector &) {
+          return may_go_on() && !stagnation.is_reached(value) ?
+                   dealii::SolverControl::success :
+                   dealii::SolverControl::failure;
         });
         bool solved = true;
         try

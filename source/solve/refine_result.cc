@@ -60,7 +60,12 @@ namespace Debond
     if (!can_be_verified(result.status) && !has_failed)
       return false;
     if (has_failed && scene.piece() != nullptr)
-      return false;
+      {
+        result.message +=
+          " If rounding is the cause, as on very slender bodies, one rank in "
+          "place of several will do, which refines in extended precision.";
+        return false;
+      }
     if (scene.piece() != nullptr)
       {
         const std::string note = note_on_rounding(scene, result.u);
