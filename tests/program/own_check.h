@@ -16,6 +16,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <random>
 #include <set>
@@ -328,16 +329,45 @@ namespace OwnCheck
       return b;
     }
 
-    /// The largest measure of a contact node.
+    /// The most that the bonds of a contact node can bear: those that there
+    /// are, which may be none though the scene has a law.
     Real
-    largest_measure() const
+    largest_strength() const
     {
-      VectorX measure = VectorX::Zero(n_contact());
-      for (const Face &face : faces)
-        for (const int i : face.contact)
-          if (i >= 0)
-            measure(i) += face.measure / dim;
-      return n_contact() > 0 ? measure.maxCoeff() : 0;
+      VectorX strength = VectorX::Zero(n_contact());
+      integrate(VectorX::Zero(n_contact()),
+                [&](const Face &face,
+                    const Real  weight,
+                    const Real,
+                    const std::array<Real, dim> &phi,
+                    const Real                   a,
+                    const Real                   M) {
+                  for (unsigned int v = 0; v < dim; ++v)
+                    if (face.contact[v] >= 0)
+                      strength(face.contact[v]) += weight * phi[v] * a * M;
+                });
+      return n_contact() > 0 ? strength.maxCoeff() : 0;
+    }
+
+    /// The body with loads, and prescribed displacements and gaps as loads,
+    /// that differ by one rounding in double of their largest component. What
+    /// this changes, the loads do not decide.
+    Body
+    with_rounded_loads(const unsigned int seed) const
+    {
+      std::mt19937  signs(seed);
+      const VectorX of_supports = A.cwiseAbs() * at_zero().cwiseAbs();
+      Body          body        = *this;
+      for (unsigned int i = 0; i < n_dofs(); ++i)
+        {
+          Real size = of_supports(i);
+          for (unsigned int k = 0; k < dim; ++k)
+            size = std::max(size, std::abs(f(i / dim * dim + k)));
+          body.f(i) += (signs() % 2 == 0 ? 1 : -1) *
+                       Real(std::numeric_limits<double>::epsilon()) * size;
+        }
+      body.condense_loads();
+      return body;
     }
 
     /// Majorise-minimise from the state of the bonds at s. Of a body that
@@ -372,15 +402,49 @@ namespace OwnCheck
       return -gap;
     }
 
-    /// Whether a result of descend() is far away: the weak springs bear the
-    /// loads.
+    /// What the foundation cannot balance of the resultants of the loads along
+    /// the rigid motions that neither supports nor the bonds that hold at s
+    /// resist, relative to the terms that are summed up in them: the body goes
+    /// off unless this is zero. Bonds that hold beside a node about which the
+    /// body turns off are on a part of a face, and resist by its cube.
+    Real
+    unbalanced(const VectorX &s) const
+    {
+      if (free_normals.cols() == 0)
+        return 0;
+      const MatrixX B_0 = bonds(VectorX::Zero(n_contact()));
+      const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(
+        MatrixX(free_normals.transpose() * bonds(s) * free_normals));
+      const int n_loose =
+        (eigen.eigenvalues().array() <= Real(1e-10) * B_0.norm()).count();
+      if (n_loose == 0)
+        return 0;
+      const MatrixX turn  = eigen.eigenvectors().leftCols(n_loose);
+      const VectorX work  = (free_motions * turn).transpose() * f;
+      const Real    terms = (free_motions.cwiseAbs().transpose() * f.cwiseAbs())
+                           .template lpNorm<Eigen::Infinity>();
+      return terms > 0 ?
+               not_balanced(work, free_normals * turn).norm() / terms :
+               0;
+    }
+
+    /// Whether s is a result of descend() that nothing holds. What is less
+    /// rounding in double.
     bool
     is_off(const VectorX &s) const
     {
       return scene.held_by_bonds && s.size() > 0 &&
-             held_weakly().diagonal().maxCoeff() *
-                 s.template lpNorm<Eigen::Infinity>() >
-               1e-3 * g.template lpNorm<Eigen::Infinity>();
+             unbalanced(s) > 100 * std::numeric_limits<double>::epsilon();
+    }
+
+    /// Whether this is a question of rounding.
+    bool
+    is_hardly_off(const VectorX &s) const
+    {
+      const Real rest = unbalanced(s);
+      return scene.held_by_bonds && s.size() > 0 &&
+             rest > 100 * std::numeric_limits<Real>::epsilon() &&
+             rest <= 100 * std::numeric_limits<double>::epsilon();
     }
 
     /// All unknowns, at the minimum for the given normal displacements.
@@ -711,24 +775,39 @@ namespace OwnCheck
       A_ii.setFromTriplets(inside.begin(), inside.end());
       A_ic.setFromTriplets(coupling.begin(), coupling.end());
       A_cc.setFromTriplets(outside.begin(), outside.end());
-      VectorX start = fixed_values;
-      for (unsigned int i = 0; i < n_c; ++i)
-        start(contact_dofs[i]) = sense[i] * gap(i);
-      const VectorX load = f - A * start;
-      VectorX       f_i(n), f_c(n_c);
-      for (unsigned int i = 0; i < n; ++i)
-        f_i(i) = load(free_dofs[i]);
-      for (unsigned int i = 0; i < n_c; ++i)
-        f_c(i) = sense[i] * load(contact_dofs[i]);
-
-      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<Real>> factor(A_ii);
-      X   = factor.solve(MatrixX(A_ic));
-      X_f = factor.solve(f_i);
-      S   = MatrixX(A_cc) - A_ic.transpose() * X;
-      S   = ((S + S.transpose()) / 2).eval();
-      g   = f_c - A_ic.transpose() * X_f;
+      factor =
+        std::make_shared<Eigen::SimplicialLDLT<Eigen::SparseMatrix<Real>>>(
+          A_ii);
+      X = factor->solve(MatrixX(A_ic));
+      S = MatrixX(A_cc) - A_ic.transpose() * X;
+      S = ((S + S.transpose()) / 2).eval();
+      A_inside_contact.swap(A_ic);
+      condense_loads();
       if (scene.held_by_bonds)
         remove_rigid_motions();
+    }
+
+    /// What is prescribed, and contact nodes on the foundation.
+    VectorX
+    at_zero() const
+    {
+      VectorX u = fixed_values;
+      for (unsigned int i = 0; i < n_contact(); ++i)
+        u(contact_dofs[i]) = sense[i] * gap(i);
+      return u;
+    }
+
+    void
+    condense_loads()
+    {
+      const VectorX load = f - A * at_zero();
+      VectorX       f_i(free_dofs.size()), f_c(n_contact());
+      for (unsigned int i = 0; i < free_dofs.size(); ++i)
+        f_i(i) = load(free_dofs[i]);
+      for (unsigned int i = 0; i < n_contact(); ++i)
+        f_c(i) = sense[i] * load(contact_dofs[i]);
+      X_f = factor->solve(f_i);
+      g   = f_c - A_inside_contact.transpose() * X_f;
     }
 
     /// What rounding leaves of S along motions that nothing resists.
@@ -760,23 +839,98 @@ namespace OwnCheck
         if (is_fixed(i))
           gram += motions.row(i).transpose() * motions.row(i);
       const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(gram);
-      MatrixX                                      free(n_contact(), 0);
+      MatrixX free(n_contact(), 0), whole(n_dofs(), 0);
       for (int k = 0; k < n_motions; ++k)
         if (eigen.eigenvalues()(k) <= Real(1e-15) * n_dofs())
           {
-            const VectorX motion = motions * eigen.eigenvectors().col(k);
-            VectorX       normal(n_contact());
+            VectorX motion = motions * eigen.eigenvectors().col(k);
+            VectorX normal(n_contact());
             for (unsigned int i = 0; i < n_contact(); ++i)
               normal(i) = sense[i] * motion(contact_dofs[i]);
             for (int l = 0; l < free.cols(); ++l)
-              normal -= free.col(l) * free.col(l).dot(normal);
+              {
+                const Real part = free.col(l).dot(normal);
+                normal -= free.col(l) * part;
+                motion -= whole.col(l) * part;
+              }
             if (normal.norm() == 0)
               continue;
             free.conservativeResize(Eigen::NoChange, free.cols() + 1);
             free.col(free.cols() - 1) = normal / normal.norm();
+            whole.conservativeResize(Eigen::NoChange, free.cols());
+            whole.col(free.cols() - 1) = motion / normal.norm();
           }
       S -= (free * (free.transpose() * S)).eval();
       S -= ((S * free) * free.transpose()).eval();
+      free_normals = free;
+      free_motions = whole;
+    }
+
+    /// w - Z'p with pressures p >= 0 that leave the least of w (Lawson and
+    /// Hanson's algorithm; Z has few columns).
+    static VectorX
+    not_balanced(const VectorX &w, const MatrixX &Z)
+    {
+      const MatrixX    columns = Z.transpose();
+      const int        n       = static_cast<int>(columns.cols());
+      const Real       noise   = 1e-17 * w.norm();
+      const Real       longest = columns.colwise().norm().maxCoeff();
+      std::vector<int> loaded;
+      VectorX          p    = VectorX::Zero(n);
+      VectorX          rest = w;
+      for (int k = 0; k < 10 * n; ++k)
+        {
+          int  next = -1;
+          Real most = 0;
+          for (int i = 0; i < n; ++i)
+            if (std::find(loaded.begin(), loaded.end(), i) == loaded.end())
+              {
+                // Nodes about which the body turns move by rounding.
+                const Real size = columns.col(i).norm();
+                const Real gain = columns.col(i).dot(rest);
+                if (size > 1e-9 * longest && gain > noise * size && gain > most)
+                  {
+                    next = i;
+                    most = gain;
+                  }
+              }
+          if (next < 0)
+            break;
+          loaded.push_back(next);
+          while (true)
+            {
+              MatrixX part(columns.rows(), loaded.size());
+              for (unsigned int i = 0; i < loaded.size(); ++i)
+                part.col(i) = columns.col(loaded[i]);
+              const VectorX best = part.colPivHouseholderQr().solve(w);
+              // As far as all stay positive.
+              Real step = 1;
+              int  ends = -1;
+              for (unsigned int i = 0; i < loaded.size(); ++i)
+                if (best(i) <= 0)
+                  {
+                    const Real until = p(loaded[i]) / (p(loaded[i]) - best(i));
+                    if (until < step || ends < 0)
+                      {
+                        step = until;
+                        ends = i;
+                      }
+                  }
+              for (unsigned int i = 0; i < loaded.size(); ++i)
+                p(loaded[i]) += step * (best(i) - p(loaded[i]));
+              if (ends < 0)
+                break;
+              p(loaded[ends]) = 0;
+              loaded.erase(loaded.begin() + ends);
+              if (loaded.empty())
+                break;
+            }
+          const VectorX before = rest;
+          rest                 = w - columns * p;
+          if (!(rest.norm() < before.norm()))
+            break;
+        }
+      return rest;
     }
 
     using Integrand = std::function<void(const Face &,
@@ -1005,9 +1159,16 @@ namespace OwnCheck
     std::vector<int>          number, sense;
     std::vector<unsigned int> free_dofs, contact_dofs;
 
-    Eigen::SparseMatrix<Real> A;
+    Eigen::SparseMatrix<Real> A, A_inside_contact;
     VectorX                   f, g, X_f, fixed_values, gap;
     MatrixX                   S, X;
+
+    std::shared_ptr<const Eigen::SimplicialLDLT<Eigen::SparseMatrix<Real>>>
+      factor; ///< of A inside
+
+    /// Rigid motions that supports do not resist: what they move the contact
+    /// nodes by, orthonormal, and all unknowns.
+    MatrixX free_normals, free_motions;
   };
 } // namespace OwnCheck
 

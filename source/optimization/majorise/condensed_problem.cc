@@ -23,7 +23,9 @@ namespace Debond
     /// but far from rounding.
     constexpr double proximal_stiffness = 1e-8;
 
-    constexpr unsigned int maximum_proximal_steps = 100;
+    /// Of a plate that tips over its edge they shrink by a tenth each until
+    /// they are the rigid motion.
+    constexpr unsigned int maximum_proximal_steps = 500;
 
     /// What is left of a resultant, relative to the forces, when it is
     /// balanced.
@@ -225,8 +227,8 @@ namespace Debond
         n_systems += qp.steps;
         if (!can_be_verified(qp.status))
           return {qp.status, n_systems, 0};
-        const Eigen::VectorXd motion = Z.transpose() * (qp.x - x);
         const Eigen::VectorXd step   = qp.x - x;
+        const Eigen::VectorXd motion = Z.transpose() * step;
         x                            = qp.x;
         // The proximal force balances what the foundation does not.
         const bool is_balanced = delta * motion.norm() <= balanced * forces;
@@ -236,12 +238,14 @@ namespace Debond
             return {qp.status, n_systems, 0};
           }
         // It would go on like this for ever, or until it meets the foundation.
+        // Bonds that are about to break beside a node that stays in contact
+        // turn the softest motions a little out of the one about that node.
+        const Eigen::VectorXd rigid = N * (N.transpose() * step);
         if (last_step.size() > 0 &&
             (step - last_step).norm() <= same_step * step.norm() &&
-            (step - Z * motion).norm() <= same_step * step.norm())
+            (step - rigid).norm() <= same_step * step.norm())
           {
-            const Eigen::VectorXd rigid = Z * motion;
-            const double          least = towards_foundation * rigid.norm();
+            const double least = towards_foundation * rigid.norm();
             if (rigid.maxCoeff() <= least)
               return {SolverStatus::comes_off, n_systems, 0};
             double until = std::numeric_limits<double>::max();
