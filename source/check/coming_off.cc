@@ -140,8 +140,6 @@ namespace Debond
 
 
 
-  template std::optional<ComingOff<2>>
-  coming_off(const ElasticProblem<2> &, const AdhesiveLaw &, const LoadFactors);
-  template std::optional<ComingOff<3>>
-  coming_off(const ElasticProblem<3> &, const AdhesiveLaw &, const LoadFactors);
+  template decltype(coming_off<2>) coming_off<2>;
+  template decltype(coming_off<3>) coming_off<3>;
 } // namespace Debond

@@ -797,26 +797,6 @@ namespace Debond
 
 
 
-  template ErrorEstimate
-  estimate_error(const ElasticProblem<2> &,
-                 const AdhesionIntegral<2> &,
-                 const BoundaryConditions &,
-                 const Supports<2> &,
-                 const Loads<2> &,
-                 const DofVector &,
-                 const double,
-                 const LoadFactors,
-                 const Loads<2> *,
-                 const ProblemPiece<2> *);
-  template ErrorEstimate
-  estimate_error(const ElasticProblem<3> &,
-                 const AdhesionIntegral<3> &,
-                 const BoundaryConditions &,
-                 const Supports<3> &,
-                 const Loads<3> &,
-                 const DofVector &,
-                 const double,
-                 const LoadFactors,
-                 const Loads<3> *,
-                 const ProblemPiece<3> *);
+  template decltype(estimate_error<2>) estimate_error<2>;
+  template decltype(estimate_error<3>) estimate_error<3>;
 } // namespace Debond
