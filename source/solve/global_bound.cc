@@ -21,11 +21,11 @@ namespace Debond
     /// leave, and relative to the interval as it is. That of the first one is
     /// as wide as this, relative to J.
     constexpr double proof_tolerance      = 1e-6;
-    constexpr double part_of_the_interval = 0.02;
+    constexpr double part_of_the_interval = 0.002;
     constexpr double first_interval       = 1e-2;
 
-    /// Nodes of each bound after the first: what is then not decided is left
-    /// to the ranges.
+    /// Nodes of each bound after the first of the first mesh: what is then not
+    /// decided is left to the ranges.
     constexpr unsigned int n_later_nodes = 400;
 
     /// Shifts at the kinks, relative to the stiffness of the bonds. Large ones
@@ -918,19 +918,23 @@ namespace Debond
     constexpr double infinity = std::numeric_limits<double>::infinity();
     std::vector<CertifiedSide> &ranges = known;
 
+    const bool is_known =
+      std::any_of(ranges.begin(), ranges.end(), [](const CertifiedSide &side) {
+        return std::isfinite(side.linear().upper);
+      });
     BranchAndBoundParameters   parameters = proof_parameters;
     GlobalBound                result;
     std::optional<MeanProblem> best, latest;
     Eigen::VectorXd            latest_values;
+    const std::vector<double>  none(ranges.size(), 0.);
     /// Returns the bound.
-    const std::vector<double> none(ranges.size(), 0.);
-    const auto                add_bound = [&](const std::vector<double> &D) {
+    const auto add_bound = [&](const std::vector<double> &D) {
       const double interval = std::isfinite(result.lower) ?
-                                               upper - result.lower :
-                                               first_interval * std::abs(upper);
-      parameters.tolerance = std::max(proof_tolerance * std::abs(upper),
+                                upper - result.lower :
+                                first_interval * std::abs(upper);
+      parameters.tolerance  = std::max(proof_tolerance * std::abs(upper),
                                       part_of_the_interval * interval);
-      if (std::isfinite(result.lower))
+      if (is_known || std::isfinite(result.lower))
         parameters.maximum_nodes =
           std::min(parameters.maximum_nodes, n_later_nodes);
       MeanProblem problem = sides.mean_problem(ranges, means, D, none);
@@ -943,8 +947,8 @@ namespace Debond
                     [&](const ProofProgress &) { return may_go_on(); });
       result.nodes += proof.nodes;
       const double lower = proof.status == ProofStatus::no_bound ?
-                                            -infinity :
-                                            problem.constant + proof.lower - problem.rounding;
+                             -infinity :
+                             problem.constant + proof.lower - problem.rounding;
       latest_values      = problem.all(proof.s);
       latest             = std::move(problem);
       if (lower > result.lower)
@@ -957,12 +961,8 @@ namespace Debond
       return lower;
     };
 
-    double          best_lower = -infinity;
-    Eigen::VectorXd best_values;
-    const bool      is_known =
-      std::any_of(ranges.begin(), ranges.end(), [](const CertifiedSide &side) {
-        return std::isfinite(side.linear().upper);
-      });
+    double                           best_lower = -infinity;
+    Eigen::VectorXd                  best_values;
     std::vector<std::vector<double>> first_trials;
     if (is_known)
       {
