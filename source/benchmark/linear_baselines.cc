@@ -267,10 +267,10 @@ namespace Debond
 
 
 
-  template decltype(solve_by_ml<2>) solve_by_ml<2>;
-  template decltype(solve_by_ml<3>) solve_by_ml<3>;
-  template decltype(solve_by_hypre<2>) solve_by_hypre<2>;
-  template decltype(solve_by_hypre<3>) solve_by_hypre<3>;
+  template decltype(solve_by_ml<2>)     solve_by_ml<2>;
+  template decltype(solve_by_ml<3>)     solve_by_ml<3>;
+  template decltype(solve_by_hypre<2>)  solve_by_hypre<2>;
+  template decltype(solve_by_hypre<3>)  solve_by_hypre<3>;
   template decltype(solve_by_levels<2>) solve_by_levels<2>;
   template decltype(solve_by_levels<3>) solve_by_levels<3>;
 } // namespace Debond

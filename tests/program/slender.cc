@@ -333,7 +333,10 @@ namespace
     std::ostringstream name;
     name << dim << "D, " << aspect << ", cells " << strip.cells << ", clamped "
          << strip.clamped << ", " << strip.law << ", " << strip.tangential
-         << ", " << strip.method << (strip.length_unit == 1. ? "" : ", Pa, m");
+         << ", " << strip.method
+         << (strip.length_unit == 1.  ? "" :
+             strip.stress_unit == 1e6 ? ", Pa, m" :
+                                        ", GPa, m");
     test<dim>(name.str(), assignments, tally);
   }
 
