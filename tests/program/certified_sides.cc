@@ -221,7 +221,7 @@ namespace
         const DofVector u =
           solution(scene_values + Values{"Mesh/Cells=" + finer_cells, load});
         std::map<double, double> values;
-        const DofVector          s = contact.trace(u);
+        const Eigen::VectorXd    s = contact.trace(u);
         for (unsigned int i = 0; i < s.size(); ++i)
           values[contact.boundary().nodes[i].position[0]] = s(i);
         for (const double x : clamped)
