@@ -449,9 +449,9 @@ namespace
     check("  error of J of the global branch at factor 1",
           std::abs(full.global->functional / -2.3973127534e-04 - 1.),
           1e-10);
-    check("  it is known to be no global minimum",
+    check("  it is known to be no global minimum, which is found",
           full.state.minimum == "local minimum" &&
-            full.global->minimum == "best known");
+            full.global->minimum == "global");
 
     // The gap of the intact state is proportional to the factor.
     const LoadPathTotals totals = load_path_totals(path.steps, 51);
