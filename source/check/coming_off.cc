@@ -105,11 +105,15 @@ namespace Debond
     const Eigen::MatrixXd towards =
       free_motions_of_contact(problem.unknowns()).transpose();
     const Work work = work_of_loads(problem, factors, motions);
-    // Once more, as its errors are relative to what it projects.
-    Eigen::VectorXd parts =
-      project_on_polar_cone(towards,
-                            project_on_polar_cone(towards, work.along));
-    const double largest_normal =
+    // Twice, as its errors are relative to what it projects.
+    std::optional<Eigen::VectorXd> projection =
+      project_on_polar_cone(towards, work.along);
+    if (projection)
+      projection = project_on_polar_cone(towards, *projection);
+    if (!projection)
+      return {};
+    Eigen::VectorXd &parts = *projection;
+    const double     largest_normal =
       (towards.transpose() * parts).cwiseAbs().maxCoeff();
     if (!(largest_normal > 0.))
       return {};

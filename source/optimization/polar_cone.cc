@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
 #include <vector>
 
 namespace Debond
@@ -18,7 +17,7 @@ namespace Debond
 
 
 
-  Eigen::VectorXd
+  std::optional<Eigen::VectorXd>
   project_on_polar_cone(const MatrixView &B, const Eigen::VectorXd &f)
   {
     Eigen::MatrixXd directions = B;
@@ -94,7 +93,6 @@ namespace Debond
         else
           is_useless[next] = true;
       }
-    throw std::runtime_error("The projection on a cone does not end: its "
-                             "directions differ by rounding only.");
+    return {};
   }
 } // namespace Debond

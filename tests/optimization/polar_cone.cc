@@ -67,7 +67,7 @@ namespace
   void
   add_errors(const Eigen::MatrixXd &B, const Eigen::VectorXd &f, Errors &errors)
   {
-    const Eigen::VectorXd p = project_on_polar_cone(B, f);
+    const Eigen::VectorXd p = project_on_polar_cone(B, f).value();
     for (Eigen::Index i = 0; i < B.cols(); ++i)
       if (B.col(i).norm() > 0.)
         errors.violation =
@@ -133,7 +133,7 @@ main(int argc, char *[])
     for (int j = 0; j < 40; ++j)
       pad.col(40 * i + j) << -1., -(i / 39. - 0.5), j / 39. - 0.5;
   const auto turned = [&](const double x, const double y) {
-    return project_on_polar_cone(pad, Eigen::Vector3d(-1., -x, y));
+    return project_on_polar_cone(pad, Eigen::Vector3d(-1., -x, y)).value();
   };
   std::cout << "A pad of 40x40 nodes" << std::endl;
   check("pressed within it", turned(0.3, -0.49).norm(), 1e-13);

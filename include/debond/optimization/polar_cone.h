@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include <optional>
+
 namespace Debond
 {
   /**
@@ -17,9 +19,9 @@ namespace Debond
    * rows. Columns may be of any lengths, zero and parallel; b'p is at most
    * rounding of |b| |f|.
    *
-   * Throws std::runtime_error if rounding lets the sets repeat.
+   * Nothing if rounding lets the sets repeat.
    */
-  Eigen::VectorXd
+  std::optional<Eigen::VectorXd>
   project_on_polar_cone(const MatrixView &B, const Eigen::VectorXd &f);
 } // namespace Debond
 
