@@ -651,9 +651,8 @@ namespace Debond
         double r_nu      = r * normal - adhesion.traction(face, barycentric, s);
         bool   is_closed = true;
         for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
-          is_closed = is_closed &&
-                      (face.node(k) == dealii::numbers::invalid_unsigned_int ||
-                       s(face.node(k)) >= -tolerance * largest_s);
+          is_closed = is_closed && (face.is_held(k) ||
+                                    s(face.node(k)) >= -tolerance * largest_s);
         if (is_closed)
           r_nu = std::min(r_nu, 0.);
         return conditions.fixes_tangential(face.id) ?

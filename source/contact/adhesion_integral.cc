@@ -69,11 +69,10 @@ namespace Debond
     };
     for (const auto &face : boundary.faces)
       for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
-        if (const unsigned int node = face.node(k);
-            node != dealii::numbers::invalid_unsigned_int)
-          add(at(face, boundary.nodes[node].position),
+        if (!face.is_held(k))
+          add(at(face, boundary.nodes[face.node(k)].position),
               face.measure,
-              nodes[node]);
+              nodes[face.node(k)]);
         else if (!held.empty())
           add(at(face, boundary.held_vertices[face.held_at(k)].position),
               face.measure,
@@ -144,8 +143,7 @@ namespace Debond
       raise(s(i), bonds_at(i), least_of_nodes[i]);
     for (const auto &face : boundary.faces)
       for (unsigned int k = 0; k < dim; ++k)
-        if (face.nodes[k] == dealii::numbers::invalid_unsigned_int &&
-            !least_of_held.empty())
+        if (face.is_held(k) && !least_of_held.empty())
           raise(held_trace(face, k),
                 bonds_at(face, k),
                 least_of_held[face.held[k]]);
@@ -169,7 +167,7 @@ namespace Debond
     const typename ContactBoundary<dim>::Face &face,
     const unsigned int                         vertex) const
   {
-    if (face.nodes[vertex] != dealii::numbers::invalid_unsigned_int)
+    if (!face.is_held(vertex))
       return least_piece(face.nodes[vertex]);
     return least_of_held.empty() ? 0 : least_of_held[face.held[vertex]];
   }
@@ -289,7 +287,7 @@ namespace Debond
         const Trace trace = trace_on(face, s);
         Trace       speed = {};
         for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
-          if (face.node(k) != dealii::numbers::invalid_unsigned_int)
+          if (!face.is_held(k))
             speed[k] = ds(face.node(k));
         const auto range_at = [&](const double t) {
           Trace there = {};
@@ -341,9 +339,8 @@ namespace Debond
     const unsigned int                         vertex,
     const VectorView                          &s) const
   {
-    return face.nodes[vertex] == dealii::numbers::invalid_unsigned_int ?
-             held_trace(face, vertex) :
-             s(face.nodes[vertex]);
+    return face.is_held(vertex) ? held_trace(face, vertex) :
+                                  s(face.nodes[vertex]);
   }
 
 
@@ -357,7 +354,7 @@ namespace Debond
     // Only nodal quadrature has bonds of nodes.
     if (quadrature.is_nodal() && field != nullptr)
       {
-        if (face.nodes[vertex] != dealii::numbers::invalid_unsigned_int)
+        if (!face.is_held(vertex))
           return bonds_of_nodes[face.nodes[vertex]];
         if (!bonds_of_held.empty())
           return bonds_of_held[face.held[vertex]];
@@ -570,7 +567,7 @@ namespace Debond
             if (!least_of_points.empty())
               point.least_piece = least_of_points[point_list.size()];
             for (unsigned int k = 0; k < n_face_nodes; ++k)
-              if (face.node(k) == dealii::numbers::invalid_unsigned_int)
+              if (face.is_held(k))
                 point.offset += shape[k] * trace[k];
               else if (shape[k] != 0.)
                 {
@@ -700,9 +697,7 @@ namespace Debond
   {
     Trace trace = {};
     for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
-      trace[k] = face.node(k) == dealii::numbers::invalid_unsigned_int ?
-                   held_trace(face, k) :
-                   s(face.node(k));
+      trace[k] = face.is_held(k) ? held_trace(face, k) : s(face.node(k));
     return trace;
   }
 
@@ -753,7 +748,7 @@ namespace Debond
         const unsigned int n_face_nodes = boundary.n_face_nodes();
         bool               is_held      = false;
         for (unsigned int k = 0; k < n_face_nodes; ++k)
-          is_held |= face.node(k) == dealii::numbers::invalid_unsigned_int;
+          is_held |= face.is_held(k);
         if (!is_held)
           continue;
         const Trace trace = trace_on(face, s);
@@ -779,7 +774,7 @@ namespace Debond
               point.weight * face.measure * bonds.energy / bonds.stretch *
               law.derivative(at_point / bonds.stretch, least);
             for (unsigned int k = 0; k < n_face_nodes; ++k)
-              if (face.node(k) == dealii::numbers::invalid_unsigned_int)
+              if (face.is_held(k))
                 forces[face.held_at(k)] += shape[k] * force;
           }
       }

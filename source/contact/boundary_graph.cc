@@ -11,12 +11,8 @@ namespace Debond
     for (const auto &face : boundary.faces)
       for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
         for (unsigned int l = 0; l < boundary.n_face_nodes(); ++l)
-          {
-            const unsigned int i = face.node(k), j = face.node(l);
-            if (i != j && i != dealii::numbers::invalid_unsigned_int &&
-                j != dealii::numbers::invalid_unsigned_int)
-              result[i].insert(j);
-          }
+          if (k != l && !face.is_held(k) && !face.is_held(l))
+            result[face.node(k)].insert(face.node(l));
     return result;
   }
 

@@ -376,11 +376,10 @@ namespace Debond
                   add_middle(last);
                 }
 
-              const unsigned int node = face.node(part[k]);
               add(static_cast<double>(
-                    node == dealii::numbers::invalid_unsigned_int ?
+                    face.is_held(part[k]) ?
                       BondState::held :
-                      verification.nodes[node].state),
+                      verification.nodes[face.node(part[k])].state),
                   grid.in_cells[0]);
               for (unsigned int m = 0; m < more.size(); ++m)
                 add(more[m].second[f], grid.in_cells[m + 1]);

@@ -85,6 +85,12 @@ namespace Debond
         return k < dim ? nodes[k] : edge_nodes[k - dim];
       }
 
+      bool
+      is_held(const unsigned int k) const
+      {
+        return node(k) == dealii::numbers::invalid_unsigned_int;
+      }
+
       /// See `held`.
       unsigned int
       held_at(const unsigned int k) const
