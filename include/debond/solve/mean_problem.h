@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_mean_problem_h
+#define debond_solve_mean_problem_h
+
+#include <debond/elasticity/equilibrium_problem.h>
+#include <debond/optimization/branch_minimum.h>
+#include <debond/optimization/global/separable_branches.h>
+#include <debond/solve/certified_side.h>
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace Debond
+{
+  /// The right side of theorem 2 for shifts D. What the terms that are not
+  /// quadratic or m <= 0 are for is a function of some means s,
+  ///     constant + 1/2 s'S s - g's + phi(s);
+  /// the others, and after them the slopes k of all sides, are eliminated:
+  /// offset + to_others s are those that belong to s. J is at least this, and
+  /// 1/2 the sum of the rests times the squared deviations.
+  struct MeanProblem
+  {
+    double constant;
+    double rounding; ///< what elimination may have lost of it
+
+    Eigen::MatrixXd                    S;
+    Eigen::VectorXd                    g;
+    std::unique_ptr<SeparableBranches> phi;
+
+    // Of the sides: D, the delta of lemma 4, and the pieces of the law that are
+    // certain (theorem 2).
+    std::vector<double>                      shifts;
+    std::vector<double>                      rests;
+    std::vector<std::optional<unsigned int>> pieces;
+
+    std::vector<unsigned int> kept; ///< sides of s
+    std::vector<unsigned int> eliminated;
+
+    Eigen::VectorXd offset;
+    Eigen::MatrixXd to_others;
+    Eigen::MatrixXd inverse_in_others;
+
+    unsigned int
+    n_sides() const
+    {
+      return static_cast<unsigned int>(pieces.size());
+    }
+
+    /// The means of all sides, then the slopes.
+    Eigen::VectorXd
+    all(const Eigen::VectorXd &s) const
+    {
+      const Eigen::VectorXd others = offset + to_others * s;
+      Eigen::VectorXd       result(2 * n_sides());
+      for (unsigned int i = 0; i < kept.size(); ++i)
+        result(kept[i]) = s(i);
+      for (unsigned int i = 0; i < eliminated.size(); ++i)
+        result(eliminated[i]) = others(i);
+      result.tail(n_sides()) = others.tail(n_sides());
+      return result;
+    }
+
+    /// Of the means of all sides those of s.
+    Eigen::VectorXd
+    kept_of(const Eigen::VectorXd &means) const
+    {
+      Eigen::VectorXd result(kept.size());
+      for (unsigned int i = 0; i < kept.size(); ++i)
+        result(i) = means(kept[i]);
+      return result;
+    }
+  };
+
+
+
+  /**
+   * Makes these problems (theorems 1 and 2 and lemma 4 of
+   * doc/reference/certificate.md) of a body, for shifts that are chosen here.
+   * All that is given or returned by side is in the order of
+   * EquilibriumProblem::contact_sides().
+   */
+  class MeanProblems
+  {
+  public:
+    /// @p trace_constants: Lambda of each side; @p energies: of the strains in
+    /// the cells above the sides, of a good displacement, for the choice of
+    /// shifts. References to all are kept.
+    MeanProblems(const EquilibriumProblem  &equilibrium,
+                 const std::vector<double> &trace_constants,
+                 const BranchMinimum       &law,
+                 const std::vector<double> &energies);
+
+    /// Large enough for the law not to be rounded at the mean, if that can be
+    /// with the given multiple of the bonds' stiffness.
+    std::vector<double>
+    shifts_for_means(const Eigen::VectorXd &means, const double multiple) const;
+
+    /// Those that lose least: large enough for the piece of the law to be
+    /// certain, if that can be, or for means and slopes near the given ones to
+    /// lose little by stiffness, slopes and rounding together, but at least the
+    /// given multiple of the bonds' stiffness.
+    std::vector<double>
+    shifts_for_ranges(const std::vector<CertifiedSide> &ranges,
+                      const Eigen::VectorXd            &means,
+                      const Eigen::VectorXd            &slopes,
+                      const double                      least_multiple) const;
+
+    /// What the sides lose at these means and slopes: by stiffness, and where
+    /// no piece is certain by slopes and the rounded law.
+    std::vector<double>
+    losses(const MeanProblem     &problem,
+           const Eigen::VectorXd &means_and_slopes) const;
+
+    /// What of a stiffness is left for deviations to be bounded with, beside
+    /// the shifts @p D: so much that it makes the bound lower by about @p
+    /// loss.
+    std::vector<double>
+    rests_for(const double loss, const std::vector<double> &D) const;
+
+    /// D and the rests are made smaller until there is one. At @p means it
+    /// measures its rounding. Throws EquilibriumError if there is none.
+    MeanProblem
+    mean_problem(const std::vector<CertifiedSide> &ranges,
+                 const Eigen::VectorXd            &means,
+                 std::vector<double>               D,
+                 std::vector<double>               rests) const;
+
+  private:
+    /// Nothing if it is not convex in the slopes, or the means do not determine
+    /// the stresses.
+    std::optional<MeanProblem>
+    try_mean_problem(const std::vector<CertifiedSide> &ranges,
+                     const Eigen::VectorXd            &means,
+                     const std::vector<double>        &D,
+                     const std::vector<double>        &rests) const;
+
+    /// The largest shift of a side: at least a tenth of an element's
+    /// stiffness stays.
+    double
+    available(const unsigned int i) const
+    {
+      return 0.9 * trace_constants[i] / sharers[sides[i].element];
+    }
+
+    const EquilibriumProblem                           &equilibrium;
+    const std::vector<double>                          &trace_constants;
+    const std::vector<double>                          &energies;
+    const BranchMinimum                                &law;
+    const std::vector<EquilibriumProblem::ContactSide> &sides;
+    const unsigned int                                  n;
+    std::vector<unsigned int> sharers; ///< of elements
+  };
+} // namespace Debond
+
+#endif

@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/optimization/global/convexity_shift.h>
+#include <debond/optimization/global/rounded_branches.h>
+#include <debond/solve/mean_problem.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Of those that are tried, relative to the stiffness of the bonds.
+    constexpr double least_shift = 0.005;
+
+
+    /// Larger shifts round the law by little more than nothing.
+    constexpr double largest_uncertain_shift = 40.;
+
+    /// What the rounded law is below the law, at the most, as far from a mean
+    /// as a tenth of the distance of the first kink.
+    double
+    largest_loss(const BranchMinimum   &law,
+                 const RoundedBranches &rounded,
+                 const double           mean)
+    {
+      const BranchMinimum own    = rounded.minimum();
+      const double        margin = 0.1 * std::abs(law[0].lower);
+      double              result = 0.;
+      for (const double part : {-1., -0.5, 0., 0.5, 1.})
+        {
+          const double s = std::min(mean + part * margin, 0.);
+          result         = std::max(result, law.value(s) - own.value(s));
+        }
+      return result;
+    }
+
+
+
+    /// A quadratic term, of a mean.
+    struct Quadratic
+    {
+      double curvature, slope, constant;
+    };
+
+    /// A law without the branches that it has nowhere in an interval: with one
+    /// left that one, with several their minimum, and what was taken from it to
+    /// be 0 at 0.
+    struct LawInRange
+    {
+      std::optional<Quadratic> quadratic;
+      BranchMinimum            minimum;
+      double                   constant = 0.;
+    };
+
+
+
+    /// @p factor times the law.
+    LawInRange
+    law_in_range(const BranchMinimum &whole,
+                 const Interval      &range,
+                 const double         factor)
+    {
+      unsigned int first = whole.index(range.upper);
+      unsigned int last  = std::max(whole.index(range.lower), first);
+      while (first < last && range.upper <= whole[first].lower)
+        ++first;
+      const BranchMinimum::Piece &nearest  = whole[first];
+      const auto                  in_whole = [&]() -> LawInRange {
+        return {{},
+                whole.with_first_curvature(factor * whole[0].curvature),
+                0.};
+      };
+      if (first == last)
+        return {Quadratic{factor * nearest.curvature,
+                          factor * nearest.slope,
+                          factor * static_cast<double>(nearest.constant)},
+                BranchMinimum({{0., 0., 0.L, ""}}),
+                0.};
+      if (first == 0 && last + 1 == whole.size())
+        return in_whole();
+      std::vector<ConvexBranch> branches;
+      for (unsigned int k = first; k <= last; ++k)
+        {
+          long double constant = whole[k].constant - nearest.constant;
+          // Branches without slopes have the constant of a near one.
+          if (std::abs(constant) < 1e-12L * whole[last].constant)
+            constant = 0.L;
+          branches.push_back({factor * whole[k].curvature,
+                              factor * whole[k].slope,
+                              factor * constant,
+                              ""});
+        }
+      try
+        {
+          return {{},
+                  BranchMinimum(branches),
+                  factor * static_cast<double>(nearest.constant)};
+        }
+      catch (const std::invalid_argument &)
+        {
+          // Some branch falls below its value at 0.
+          return in_whole();
+        }
+    }
+  } // namespace
+
+
+
+  MeanProblems::MeanProblems(const EquilibriumProblem  &equilibrium,
+                             const std::vector<double> &trace_constants,
+                             const BranchMinimum       &law,
+                             const std::vector<double> &energies)
+    : equilibrium(equilibrium)
+    , trace_constants(trace_constants)
+    , energies(energies)
+    , law(law)
+    , sides(equilibrium.contact_sides())
+    , n(static_cast<unsigned int>(sides.size()))
+    , sharers(equilibrium.elements().size(), 0)
+  {
+    for (const EquilibriumProblem::ContactSide &side : sides)
+      ++sharers[side.element];
+  }
+
+
+
+  std::vector<double>
+  MeanProblems::shifts_for_means(const Eigen::VectorXd &means,
+                                 const double           multiple) const
+  {
+    const double        largest = multiple * law[0].curvature;
+    std::vector<double> shifts;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        double D = 0.02 * law[0].curvature;
+        while (D < largest && RoundedBranches(law, D).is_rounded_near(means(i)))
+          D *= 1.25;
+        shifts.push_back(std::min({D, largest, available(i)}));
+      }
+    return shifts;
+  }
+
+
+
+  std::vector<double>
+  MeanProblems::shifts_for_ranges(const std::vector<CertifiedSide> &ranges,
+                                  const Eigen::VectorXd            &means,
+                                  const Eigen::VectorXd            &slopes,
+                                  const double least_multiple) const
+  {
+    const double        a = law[0].curvature;
+    std::vector<double> shifts;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const double of_stiffness = 0.5 * energies[i] / trace_constants[i];
+        const double of_slope = sides[i].length * slopes(i) * slopes(i) / 6.;
+        double       best     = least_shift * a;
+        double       least    = std::numeric_limits<double>::infinity();
+        for (double D = best; D < available(i); D *= 1.2)
+          {
+            const RoundedBranches rounded(law, D);
+            const bool            is_certain =
+              rounded.exact_piece(ranges[i].linear()).has_value();
+            if (!is_certain && D > largest_uncertain_shift * a)
+              continue;
+            double cost = D * of_stiffness;
+            if (!is_certain)
+              cost += D * of_slope +
+                      sides[i].length * largest_loss(law, rounded, means(i));
+            if (cost < least)
+              {
+                least = cost;
+                best  = D;
+              }
+            if (is_certain)
+              break;
+          }
+        if (!RoundedBranches(law, best).exact_piece(ranges[i].linear()))
+          best = std::max(best, least_multiple * a);
+        shifts.push_back(std::min(best, available(i)));
+      }
+    return shifts;
+  }
+
+
+
+  std::vector<double>
+  MeanProblems::losses(const MeanProblem     &problem,
+                       const Eigen::VectorXd &means_and_slopes) const
+  {
+    std::vector<double> result;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const double D = problem.shifts[i];
+        result.push_back(0.5 * (D + problem.rests[i]) / trace_constants[i] *
+                         energies[i]);
+        if (problem.pieces[i])
+          continue;
+        const double s       = std::min(means_and_slopes(i), 0.);
+        const double k       = means_and_slopes(n + i);
+        const double rounded = RoundedBranches(law, D).minimum().value(s);
+        const double c       = law[law.index(s)].curvature;
+        result.back() +=
+          sides[i].length * (law.value(s) - rounded + (c + D) * k * k / 6.);
+      }
+    return result;
+  }
+
+
+
+  std::vector<double>
+  MeanProblems::rests_for(const double loss, const std::vector<double> &D) const
+  {
+    // Half of an element's stiffness at the most: what is taken has to be
+    // small beside it for the energy to be that of the displacement.
+    constexpr double    largest = 0.5;
+    std::vector<double> rests;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const double allowed      = std::max(largest * available(i) - D[i], 0.);
+        const double of_stiffness = 0.5 * energies[i] / trace_constants[i];
+        rests.push_back(allowed * of_stiffness * n > loss ?
+                          loss / (of_stiffness * n) :
+                          allowed);
+      }
+    return rests;
+  }
+
+
+
+  std::optional<MeanProblem>
+  MeanProblems::try_mean_problem(const std::vector<CertifiedSide> &ranges,
+                                 const Eigen::VectorXd            &means,
+                                 const std::vector<double>        &D,
+                                 const std::vector<double>        &rests) const
+  {
+    std::vector<double> weights(equilibrium.elements().size(), 1.);
+    for (unsigned int i = 0; i < n; ++i)
+      weights[sides[i].element] -= (D[i] + rests[i]) / trace_constants[i];
+    std::unique_ptr<const Condensation> condensed;
+    try
+      {
+        condensed = equilibrium.condense(true, weights);
+      }
+    catch (const std::runtime_error &)
+      {
+        return {};
+      }
+    Eigen::MatrixXd A = condensed->schur_complement();
+    Eigen::VectorXd b = condensed->load();
+
+    MeanProblem result;
+    result.shifts   = D;
+    result.rests    = rests;
+    result.constant = condensed->energy_at_zero();
+    std::vector<BranchMinimum> laws;
+    const BranchMinimum        zero({{0., 0., 0.L, ""}});
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const double             length = sides[i].length;
+        const RoundedBranches    rounded(law, D[i]);
+        std::optional<Quadratic> quadratic;
+        result.pieces.push_back(rounded.exact_piece(ranges[i].linear()));
+        if (result.pieces.back())
+          {
+            const BranchMinimum::Piece &piece = law[*result.pieces.back()];
+            quadratic = Quadratic{length * piece.curvature,
+                                  length * piece.slope,
+                                  length * static_cast<double>(piece.constant)};
+            A(n + i, n + i) += length * piece.curvature / 3.;
+          }
+        else
+          {
+            A(n + i, n + i) -= length * D[i] / 3.;
+            const LawInRange own =
+              law_in_range(rounded.minimum(), ranges[i].mean, length);
+            quadratic = own.quadratic;
+            if (!quadratic)
+              {
+                laws.push_back(own.minimum);
+                result.constant += own.constant;
+              }
+          }
+        if (quadratic)
+          {
+            A(i, i) += quadratic->curvature;
+            b(i) -= quadratic->slope;
+            result.constant += quadratic->constant;
+            // m <= 0 says nothing.
+            if (ranges[i].mean.upper < 0.)
+              {
+                result.eliminated.push_back(i);
+                continue;
+              }
+            laws.push_back(zero);
+          }
+        result.kept.push_back(i);
+      }
+    // There is a problem without any, too.
+    if (result.kept.empty())
+      {
+        result.kept.push_back(result.eliminated.back());
+        result.eliminated.pop_back();
+        laws.push_back(zero);
+      }
+
+    std::vector<unsigned int> others = result.eliminated;
+    for (unsigned int i = 0; i < n; ++i)
+      others.push_back(n + i);
+    // That there is an inverse proves that it is convex in the others.
+    auto inverse = safe_inverse(A(others, others));
+    if (!inverse)
+      return {};
+    result.inverse_in_others       = std::move(*inverse);
+    const Eigen::VectorXd b_others = b(others);
+    const Eigen::MatrixXd mixed    = A(others, result.kept);
+    result.offset                  = result.inverse_in_others * b_others;
+    result.to_others               = -result.inverse_in_others * mixed;
+    result.constant -= 0.5 * b_others.dot(result.offset);
+    const Eigen::MatrixXd S =
+      A(result.kept, result.kept) + mixed.transpose() * result.to_others;
+    result.S = 0.5 * (S + S.transpose());
+    // What shifts take may be more than what the bonds of stiff laws leave.
+    if (!is_safely_positive_definite(result.S))
+      return {};
+    result.g   = b(result.kept) + result.to_others.transpose() * b_others;
+    result.phi = std::make_unique<SeparableBranches>(laws);
+
+    result.rounding = equilibrium.rounding_of(*condensed,
+                                              result.all(result.kept_of(means)),
+                                              weights);
+    return result;
+  }
+
+
+
+  MeanProblem
+  MeanProblems::mean_problem(const std::vector<CertifiedSide> &ranges,
+                             const Eigen::VectorXd            &means,
+                             std::vector<double>               D,
+                             std::vector<double>               rests) const
+  {
+    constexpr unsigned int trials = 12;
+    for (unsigned int trial = 0; trial < trials; ++trial)
+      {
+        if (auto problem = try_mean_problem(ranges, means, D, rests))
+          return std::move(*problem);
+        for (std::vector<double> *shifts : {&D, &rests})
+          for (double &shift : *shifts)
+            shift *= 0.5;
+      }
+    throw EquilibriumError("the equilibrated stresses are not determined by "
+                           "the mean displacements of the contact sides");
+  }
+} // namespace Debond

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/optimization/global/growth.h>
+#include <debond/optimization/global/node_bound.h>
+#include <debond/solve/side_ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Nodes that tell where minimisers are.
+    constexpr unsigned int n_nodes_of_ranges = 32;
+
+    /// Nodes to exclude one piece of the law on one side, and how often in a
+    /// row they may be too few before no more are tried.
+    constexpr unsigned int n_nodes_of_trial = 7;
+    constexpr unsigned int n_failed_trials  = 6;
+
+
+
+    /// Where displacements of a node can be if the functional of the means is
+    /// at most @p upper; nothing if they cannot.
+    std::optional<std::vector<CertifiedSide>>
+    ranges_of_node(const MeanProblem &problem,
+                   const NodeBound   &bound,
+                   const ProofNode   &node,
+                   const double       upper)
+    {
+      const unsigned int n = problem.n_sides();
+      const unsigned int n_kept =
+        static_cast<unsigned int>(problem.kept.size());
+      const unsigned int n_eliminated =
+        static_cast<unsigned int>(problem.eliminated.size());
+      // Means and slopes as functions of s, and what of their variance is that
+      // of what is eliminated.
+      Eigen::MatrixXd means  = Eigen::MatrixXd::Zero(n, n_kept);
+      Eigen::MatrixXd slopes = problem.to_others.bottomRows(n);
+      Eigen::VectorXd of_mean(Eigen::VectorXd::Zero(n));
+      Eigen::VectorXd mixed(Eigen::VectorXd::Zero(n));
+      Eigen::VectorXd of_slope = problem.inverse_in_others.diagonal().tail(n);
+      std::vector<CertifiedSide> ranges(n);
+      for (unsigned int i = 0; i < n_kept; ++i)
+        {
+          const unsigned int side = problem.kept[i];
+          means(side, i)          = 1.;
+          ranges[side].mean       = {node.lower(i), node.upper(i)};
+        }
+      for (unsigned int i = 0; i < n_eliminated; ++i)
+        {
+          const unsigned int side = problem.eliminated[i];
+          means.row(side)         = problem.to_others.row(i);
+          of_mean(side)           = problem.inverse_in_others(i, i);
+          mixed(side) = problem.inverse_in_others(i, n_eliminated + side);
+        }
+      for (const NodeBall &ball : bound.balls(node))
+        {
+          if (ball.value > upper)
+            return {};
+          const double radius =
+            std::sqrt(2. * (upper - ball.value)) * (1. + 1e-6);
+          const Eigen::VectorXd x         = problem.all(ball.x);
+          const Eigen::MatrixXd of_means  = means * ball.inverse;
+          const Eigen::MatrixXd of_slopes = slopes * ball.inverse;
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              const double mean_variance =
+                of_mean(i) + of_means.row(i).dot(means.row(i));
+              const double slope_variance =
+                of_slope(i) + of_slopes.row(i).dot(slopes.row(i));
+              const double covariance =
+                mixed(i) + of_means.row(i).dot(slopes.row(i));
+              /// Of the mean + xi times the slope.
+              const auto range_at = [&](const double xi) -> Interval {
+                const double variance = mean_variance + 2. * xi * covariance +
+                                        xi * xi * slope_variance;
+                const double centre = x(i) + xi * x(n + i);
+                const double distance =
+                  radius * std::sqrt(std::max(variance, 0.));
+                return {centre - distance, centre + distance};
+              };
+              ranges[i].mean = intersection(ranges[i].mean, range_at(0.));
+              for (const unsigned int end : {0, 1})
+                ranges[i].at_ends[end] =
+                  intersection(ranges[i].at_ends[end],
+                               range_at(end == 0 ? -1. : 1.));
+              if (problem.rests[i] > 0.)
+                ranges[i].deviation =
+                  std::min(ranges[i].deviation,
+                           radius / std::sqrt(problem.rests[i]));
+            }
+        }
+      return ranges;
+    }
+
+
+
+    /// Takes from the box of a node what is not in the ranges.
+    void
+    cut(ProofNode                        &node,
+        const MeanProblem                &problem,
+        const std::vector<CertifiedSide> &ranges)
+    {
+      for (unsigned int i = 0; i < problem.kept.size(); ++i)
+        {
+          const Interval &mean = ranges[problem.kept[i]].mean;
+          node.lower(i)        = std::max(node.lower(i), mean.lower);
+          node.upper(i)        = std::min(node.upper(i), mean.upper);
+        }
+    }
+
+
+
+    /// The two parts of a node on both sides of a kink.
+    std::array<ProofNode, 2>
+    halves(const ProofNode         &node,
+           const NodeResult        &result,
+           const SeparableBranches &phi)
+    {
+      const unsigned int       i     = *result.unknown;
+      const double             kink  = phi.f[i][result.piece].upper;
+      std::array<ProofNode, 2> parts = {{node, node}};
+      parts[0].lower(i)              = kink;
+      parts[0].number                = 2 * node.number + 1;
+      parts[1].upper(i)              = kink;
+      parts[1].number                = 2 * node.number + 2;
+      return parts;
+    }
+
+
+
+    /// Whether a few nodes prove that no point of the node is below @p best.
+    bool
+    is_excluded(const NodeBound         &bound,
+                const SeparableBranches &phi,
+                const double             best,
+                ProofNode                node)
+    {
+      std::vector<ProofNode> open = {std::move(node)};
+      for (unsigned int nodes = 0; nodes < n_nodes_of_trial; ++nodes)
+        {
+          ProofNode own = std::move(open.back());
+          open.pop_back();
+          const NodeResult result = bound.bound(own, best, 0.);
+          if (result.unknown)
+            for (ProofNode &half : halves(own, result, phi))
+              open.push_back(std::move(half));
+          else if (result.least < best)
+            return false;
+          if (open.empty())
+            return true;
+        }
+      return false;
+    }
+  } // namespace
+
+
+
+  void
+  exclude_pieces(const MeanProblem           &problem,
+                 const double                 upper,
+                 const Eigen::VectorXd       &means,
+                 const std::function<bool()> &may_go_on,
+                 std::vector<CertifiedSide>  &ranges)
+  {
+    struct Trial
+    {
+      unsigned int i;
+      bool         is_above; ///< the kink
+      double       kink, distance;
+    };
+    const double       best = upper - problem.constant + problem.rounding;
+    const NodeBound    bound(problem.S, problem.g, *problem.phi);
+    std::vector<Trial> trials;
+    for (unsigned int i = 0; i < problem.kept.size(); ++i)
+      {
+        const BranchMinimum &f     = problem.phi->f[i];
+        const Interval      &range = ranges[problem.kept[i]].mean;
+        const double         s     = means(problem.kept[i]);
+        const auto          &piece = f[f.index(s)];
+        for (const bool is_above : {false, true})
+          {
+            const double kink = is_above ? piece.upper : piece.lower;
+            if (kink < range.upper && kink > range.lower)
+              trials.push_back({i, is_above, kink, std::abs(s / kink - 1.)});
+          }
+      }
+    std::sort(trials.begin(), trials.end(), [](const Trial &a, const Trial &b) {
+      return a.distance != b.distance ? a.distance > b.distance : a.i < b.i;
+    });
+    auto root = bound.root(best);
+    if (!root)
+      return;
+    // With as few relaxations as later nodes.
+    root->number            = 1;
+    unsigned int n_failures = 0;
+    for (const Trial &trial : trials)
+      {
+        if (!may_go_on() || n_failures == n_failed_trials)
+          return;
+        ProofNode node = *root;
+        cut(node, problem, ranges);
+        (trial.is_above ? node.lower : node.upper)(trial.i) = trial.kink;
+        Interval &range = ranges[problem.kept[trial.i]].mean;
+        if (node.lower(trial.i) <= node.upper(trial.i) &&
+            !is_excluded(bound, *problem.phi, best, std::move(node)))
+          {
+            ++n_failures;
+            continue;
+          }
+        n_failures                                   = 0;
+        (trial.is_above ? range.upper : range.lower) = trial.kink;
+      }
+  }
+
+
+
+  void
+  shrink_ranges(const MeanProblem           &problem,
+                const double                 upper,
+                const std::function<bool()> &may_go_on,
+                std::vector<CertifiedSide>  &ranges)
+  {
+    const double           best = upper - problem.constant + problem.rounding;
+    const NodeBound        bound(problem.S, problem.g, *problem.phi);
+    std::vector<ProofNode> open;
+    if (auto root = bound.root(best))
+      {
+        cut(*root, problem, ranges);
+        open.push_back(std::move(*root));
+      }
+    else
+      return;
+    const Interval empty    = {1., -1.};
+    CertifiedSide  no_range = {};
+    no_range.mean           = empty;
+    no_range.at_ends        = {{empty, empty}};
+    no_range.deviation      = 0.;
+    std::vector<CertifiedSide> hulls(ranges.size(), no_range);
+    for (unsigned int nodes = 0; !open.empty(); ++nodes)
+      {
+        if (!may_go_on())
+          return;
+        ProofNode node = std::move(open.back());
+        open.pop_back();
+        NodeResult result;
+        if (nodes < n_nodes_of_ranges)
+          {
+            result = bound.bound(node, best, 0.);
+            if (!result.unknown && result.least >= best)
+              continue;
+          }
+        if (!result.unknown)
+          {
+            if (const auto own = ranges_of_node(problem, bound, node, best))
+              for (unsigned int i = 0; i < ranges.size(); ++i)
+                {
+                  hulls[i].mean = hull(hulls[i].mean, (*own)[i].mean);
+                  for (unsigned int k = 0; k < 2; ++k)
+                    hulls[i].at_ends[k] =
+                      hull(hulls[i].at_ends[k], (*own)[i].at_ends[k]);
+                  hulls[i].deviation =
+                    std::max(hulls[i].deviation, (*own)[i].deviation);
+                }
+            continue;
+          }
+        for (ProofNode &half : halves(node, result, *problem.phi))
+          open.push_back(std::move(half));
+      }
+    for (unsigned int i = 0; i < ranges.size(); ++i)
+      // No displacement at all would be one of rounding.
+      if (!hulls[i].mean.is_empty())
+        {
+          hulls[i].ends = ranges[i].ends;
+          ranges[i]     = intersection(ranges[i], hulls[i]);
+        }
+  }
+} // namespace Debond
