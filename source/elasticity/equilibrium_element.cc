@@ -234,6 +234,18 @@ namespace Debond
 
 
 
+  EquilibriumElement
+  EquilibriumElement::moved_to(
+    const std::vector<dealii::Point<2>> &other_corners) const
+  {
+    EquilibriumElement result = *this;
+    result.corners            = other_corners;
+    result.centre             = mean(other_corners);
+    return result;
+  }
+
+
+
   Eigen::VectorXd
   EquilibriumElement::stress(const Eigen::VectorXd &displacements,
                              const double           weight) const

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <map>
 
@@ -112,6 +113,26 @@ namespace Debond
 
 
 
+    /// Whether both are the same polygon at different places, but for the
+    /// rounding of coordinates.
+    bool
+    is_moved(const std::vector<dealii::Point<2>> &one,
+             const std::vector<dealii::Point<2>> &other)
+    {
+      constexpr double rounding = 1e-12;
+      if (one.size() != other.size())
+        return false;
+      const double size =
+        std::min((one[1] - one[0]).norm(), (one.back() - one[0]).norm());
+      for (unsigned int i = 1; i < one.size(); ++i)
+        if (((one[i] - one[0]) - (other[i] - other[0])).norm() >
+            rounding * size)
+          return false;
+      return true;
+    }
+
+
+
     /// Of a point of the cell.
     std::array<double, 3>
     barycentric_of(const LinearSimplex<2> &simplex,
@@ -198,6 +219,9 @@ namespace Debond
   EquilibriumProblem::make_elements(const Loads<2> &loads)
   {
     const dealii::QGaussSimplex<2> rule(2);
+    // The last ones that were no copies.
+    constexpr unsigned int   most_distinct = 64;
+    std::deque<unsigned int> distinct;
     for (Place &place : places)
       {
         std::vector<dealii::Point<2>> corners;
@@ -225,10 +249,25 @@ namespace Debond
               exact_loads = exact_loads && (force - place.body_force).norm() <=
                                              equilibrium_rounding * largest;
           }
-        all_elements.emplace_back(corners,
-                                  materials(place.cells[0]->material_id()),
-                                  place.body_force,
-                                  thermal_stress(place.cells[0]));
+        const Material &material = materials(place.cells[0]->material_id());
+        const double    p        = thermal_stress(place.cells[0]);
+        const auto      same     = std::find_if(
+          distinct.begin(), distinct.end(), [&](const unsigned int other) {
+            return is_moved(all_elements[other].corners, corners) &&
+                   &materials(places[other].cells[0]->material_id()) ==
+                     &material &&
+                   places[other].body_force == place.body_force &&
+                   thermal_stress(places[other].cells[0]) == p;
+          });
+        if (same != distinct.end())
+          all_elements.push_back(all_elements[*same].moved_to(corners));
+        else
+          {
+            distinct.push_back(static_cast<unsigned int>(all_elements.size()));
+            if (distinct.size() > most_distinct)
+              distinct.pop_front();
+            all_elements.emplace_back(corners, material, place.body_force, p);
+          }
       }
   }
 
@@ -629,6 +668,26 @@ namespace Debond
             result.back() +=
               std::abs(simplex.weight) * (epsilon * (C * epsilon));
           }
+      }
+    return result;
+  }
+
+
+
+  std::vector<double>
+  EquilibriumProblem::element_energies(
+    const std::vector<CellDisplacement> &u) const
+  {
+    const std::vector<double> of_cells = strain_energies(u);
+    std::vector<double>       result;
+    for (const Place &place : places)
+      {
+        // All three of a triangle are the same one.
+        const unsigned int n   = place.vertices.size() == 3 ? 1 : 4;
+        double             sum = 0.;
+        for (unsigned int i = 0; i < n; ++i)
+          sum += of_cells[place.cells[i]->active_cell_index()];
+        result.push_back(sum);
       }
     return result;
   }

@@ -421,10 +421,12 @@ namespace Debond
         std::vector<double> side_energies(certificate.n_sides, 0.);
         if (is_own)
           {
+            // Shifts soften the whole element.
             const std::vector<double> energies =
-              equilibrium.strain_energies(displacement);
+              equilibrium.element_energies(displacement);
             for (unsigned int i = 0; i < certificate.n_sides; ++i)
-              side_energies[i] = energies[equilibrium.contact_sides()[i].cell];
+              side_energies[i] =
+                energies[equilibrium.contact_sides()[i].element];
           }
         std::vector<CertifiedSide> known;
         const bool is_known = earlier != nullptr && is_for_least(*earlier) &&

@@ -44,6 +44,11 @@ namespace Debond
                        const dealii::Tensor<1, 2>          &body_force,
                        const double                         thermal_stress);
 
+    /// The same at another place: @p other_corners are its corners but for a
+    /// motion without rotation.
+    EquilibriumElement
+    moved_to(const std::vector<dealii::Point<2>> &other_corners) const;
+
     /// The stress that is reached for @p displacements l, with C made @p weight
     /// times as stiff: for each side the triangle above it, for each of its
     /// corners (those of the side, then the centre) xx, yy and xy.

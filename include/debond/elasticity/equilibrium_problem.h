@@ -121,6 +121,10 @@ namespace Debond
     std::vector<double>
     strain_energies(const std::vector<CellDisplacement> &u) const;
 
+    /// The same of each element.
+    std::vector<double>
+    element_energies(const std::vector<CellDisplacement> &u) const;
+
     /// Of each active cell
     ///     1/2 int |C^{1/2} epsilon(u) - C^{-1/2} (sigma + p 1)|^2
     /// of u as above and of the stress for @p unknowns, which are those of a
