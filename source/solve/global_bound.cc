@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace Debond
 {
@@ -44,6 +45,9 @@ namespace Debond
     constexpr unsigned int n_idle_stages = 3;
 
     constexpr double least_gain = 0.05;
+
+    /// What another one may save of what the sides lose.
+    constexpr double part_of_losses = 0.5;
 
 
 
@@ -237,31 +241,47 @@ namespace Debond
     for (const double multiple : first_shifts)
       first_trials.push_back(sides.shifts_for_means(means, multiple));
     for (const std::vector<double> &D : first_trials)
-      if (const double lower = add_bound(D); !best || lower > best_lower)
-        {
-          best        = std::move(latest);
-          best_values = latest_values;
-          best_lower  = lower;
-        }
+      {
+        if (const double lower = add_bound(D); !best || lower > best_lower)
+          {
+            best        = std::move(latest);
+            best_values = latest_values;
+            best_lower  = lower;
+          }
+        if (result.status == ProofStatus::proved)
+          break;
+      }
+    /// Makes the ranges narrower by the best problem.
+    const auto look = [&]() {
+      shrink_ranges(*best, upper, may_go_on, ranges);
+      // Trials of single sides are for problems in which most are decided.
+      if (2 * best->kept.size() <= ranges.size())
+        exclude_pieces(
+          *best, upper, best_values.head(means.size()), may_go_on, ranges);
+    };
     unsigned int n_idle = 0;
     for (unsigned int stage = 0; stage < n_stages && may_go_on(); ++stage)
       {
-        shrink_ranges(*best, upper, may_go_on, ranges);
-        exclude_pieces(
-          *best, upper, best_values.head(means.size()), may_go_on, ranges);
+        look();
         const double before = upper - result.lower;
         add_bound(
           sides.shifts_for_ranges(ranges,
                                   best_values.head(means.size()),
                                   best_values.tail(means.size()),
                                   least_shifts[stage % least_shifts.size()]));
-        best        = std::move(latest);
-        best_values = latest_values;
-        n_idle =
-          upper - result.lower > (1. - least_gain) * before ? n_idle + 1 : 0;
-        if (n_idle == n_idle_stages)
+        best                  = std::move(latest);
+        best_values           = latest_values;
+        const double interval = upper - result.lower;
+        const double loss =
+          std::accumulate(result.losses.begin(), result.losses.end(), 0.);
+        n_idle = interval > (1. - least_gain) * before ? n_idle + 1 : 0;
+        // The first one has only the ranges of a problem that knew nothing.
+        if (n_idle == n_idle_stages ||
+            (stage > 0 && part_of_losses * loss < least_gain * interval))
           break;
       }
+    if (may_go_on())
+      look();
 
     if (with_deviations && may_go_on())
       {
