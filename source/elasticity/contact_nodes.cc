@@ -79,38 +79,6 @@ namespace Debond
 
 
 
-    /// The places of the nodes in lexicographic order of their positions.
-    /// Rounding of the coordinates, as in a turned body, must not change it.
-    template <int dim>
-    std::vector<unsigned int>
-    lexicographic_order(
-      const std::vector<typename ContactBoundary<dim>::Node> &nodes,
-      const double                                            tolerance)
-    {
-      std::array<std::vector<unsigned int>, dim> coordinate_ranks;
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          std::vector<double> coordinates;
-          for (const auto &node : nodes)
-            coordinates.push_back(node.position[d]);
-          coordinate_ranks[d] = ranks(coordinates, tolerance);
-        }
-      std::vector<unsigned int> order(nodes.size());
-      std::iota(order.begin(), order.end(), 0u);
-      std::stable_sort(order.begin(),
-                       order.end(),
-                       [&](const unsigned int a, const unsigned int b) {
-                         for (unsigned int d = 0; d < dim; ++d)
-                           if (coordinate_ranks[d][a] != coordinate_ranks[d][b])
-                             return coordinate_ranks[d][a] <
-                                    coordinate_ranks[d][b];
-                         return false;
-                       });
-      return order;
-    }
-
-
-
     constexpr unsigned int no_node = dealii::numbers::invalid_unsigned_int;
 
 
@@ -144,8 +112,7 @@ namespace Debond
       {
         std::vector<dealii::types::global_dof_index> boundary_normals;
         std::vector<unsigned int>                    place(nodes.size());
-        for (const unsigned int node :
-             lexicographic_order<dim>(nodes, 1e-10 * diameter))
+        for (const unsigned int node : contact_order<dim>(nodes, diameter))
           {
             place[node] = static_cast<unsigned int>(boundary.nodes.size());
             boundary.nodes.push_back(nodes[node]);
@@ -338,6 +305,35 @@ namespace Debond
 
 
   template <int dim>
+  std::vector<unsigned int>
+  contact_order(const std::vector<typename ContactBoundary<dim>::Node> &nodes,
+                const double diameter)
+  {
+    std::array<std::vector<unsigned int>, dim> coordinate_ranks;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        std::vector<double> coordinates;
+        for (const auto &node : nodes)
+          coordinates.push_back(node.position[d]);
+        coordinate_ranks[d] = ranks(coordinates, 1e-10 * diameter);
+      }
+    std::vector<unsigned int> order(nodes.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(),
+                     order.end(),
+                     [&](const unsigned int a, const unsigned int b) {
+                       for (unsigned int d = 0; d < dim; ++d)
+                         if (coordinate_ranks[d][a] != coordinate_ranks[d][b])
+                           return coordinate_ranks[d][a] <
+                                  coordinate_ranks[d][b];
+                       return false;
+                     });
+    return order;
+  }
+
+
+
+  template <int dim>
   ContactSpace<dim>
   make_contact_space(const std::vector<BoundaryFace<dim>> &faces,
                      const unsigned int                    degree,
@@ -354,6 +350,8 @@ namespace Debond
 
 
 
+  template decltype(contact_order<2>)      contact_order<2>;
+  template decltype(contact_order<3>)      contact_order<3>;
   template decltype(make_contact_space<2>) make_contact_space<2>;
   template decltype(make_contact_space<3>) make_contact_space<3>;
 } // namespace Debond

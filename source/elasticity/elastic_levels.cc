@@ -56,15 +56,19 @@ namespace Debond
   ElasticLevels<dim>::make(const Body<dim>           &body,
                            const ElasticProblem<dim> &problem)
   {
-    const std::vector<dealii::Point<dim>> points =
-      node_points(problem.unknowns());
-    std::vector<CoarseLevel<dim>> coarse = body.coarse_levels(points);
+    const std::vector<unsigned int> vertices =
+      node_vertices(problem.unknowns());
+    const auto &mesh = problem.unknowns().dof_handler().get_triangulation();
+    std::vector<CoarseLevel<dim>> coarse = body.coarse_levels(mesh, vertices);
     if (coarse.empty())
       return nullptr;
+    const std::vector<unsigned int> slabs_of_mesh = body.slabs(mesh);
+    std::vector<unsigned int>       slabs;
+    for (const unsigned int vertex : vertices)
+      slabs.push_back(slabs_of_mesh[vertex]);
     std::vector<Level>         levels(1 + coarse.size());
     std::vector<Interpolation> interpolations;
-    levels[0].own_nodes =
-      std::make_unique<SharedNodes>(dim, body.slabs(points));
+    levels[0].own_nodes = std::make_unique<SharedNodes>(dim, std::move(slabs));
     for (std::size_t l = 1; l < levels.size(); ++l)
       {
         levels[l].vertices = std::move(coarse[l - 1].vertices);
@@ -89,10 +93,13 @@ namespace Debond
                            const ElasticProblem<dim> &problem,
                            const unsigned int         end_shared)
   {
-    const BoxPiece<dim> &body   = piece.body();
-    const MPI_Comm       ranks  = piece.nodes().communicator();
+    const BodyPiece<dim> &body  = piece.body();
+    const MPI_Comm        ranks = piece.nodes().communicator();
     const unsigned int n_shared = std::min(body.n_shared_levels(), end_shared);
-    auto pieces = body.coarse_pieces(node_points(problem.unknowns()), n_shared);
+    auto               pieces =
+      body.coarse_pieces(problem.unknowns().dof_handler().get_triangulation(),
+                         node_vertices(problem.unknowns()),
+                         n_shared);
 
     std::vector<Level>         levels(n_shared);
     std::vector<Interpolation> interpolations;

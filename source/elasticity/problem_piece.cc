@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/bounding_box.h>
+
+#include <debond/elasticity/contact_nodes.h>
 #include <debond/elasticity/problem_piece.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 
 namespace Debond
@@ -16,19 +21,65 @@ namespace Debond
 
     template <int dim>
     SharedNodes
-    share_nodes(const BoxPiece<dim>        &piece,
+    share_nodes(const BodyPiece<dim>       &piece,
                 const ElasticUnknowns<dim> &unknowns,
                 const MPI_Comm              communicator)
     {
-      const std::vector<dealii::Point<dim>> points = node_points(unknowns);
-      const std::vector<unsigned int>       slabs  = piece.slabs(points);
-      SharedNodes::Piece                    nodes;
-      nodes.numbers      = piece.numbers(points);
+      const auto &mesh = unknowns.dof_handler().get_triangulation();
+      const std::vector<unsigned int> slabs_of_mesh   = piece.slabs(mesh);
+      const std::vector<unsigned int> numbers_of_mesh = piece.numbers(mesh);
+      std::vector<unsigned int>       slabs;
+      SharedNodes::Piece              nodes;
       nodes.communicator = communicator;
-      for (const unsigned int slab : slabs)
-        nodes.is_own.push_back(piece.first_slab() <= slab &&
-                               slab < piece.end_slab());
+      for (const unsigned int vertex : node_vertices(unknowns))
+        {
+          slabs.push_back(slabs_of_mesh[vertex]);
+          nodes.numbers.push_back(numbers_of_mesh[vertex]);
+          nodes.is_own.push_back(piece.owns_slab(slabs.back()));
+        }
       return SharedNodes(dim, slabs, piece.n_slabs(), nodes);
+    }
+
+
+
+    /// Of the box around the meshes of all ranks.
+    template <int dim>
+    double
+    diameter_of_whole(const dealii::Triangulation<dim> &mesh,
+                      const MPI_Comm                    communicator)
+    {
+      const auto corners =
+        dealii::BoundingBox<dim>(mesh.get_vertices()).get_boundary_points();
+      std::vector<double> lower(corners.first.begin_raw(),
+                                corners.first.end_raw());
+      std::vector<double> upper(corners.second.begin_raw(),
+                                corners.second.end_raw());
+      dealii::Utilities::MPI::min(lower, communicator, lower);
+      dealii::Utilities::MPI::max(upper, communicator, upper);
+      double square = 0.;
+      for (unsigned int d = 0; d < dim; ++d)
+        square += (upper[d] - lower[d]) * (upper[d] - lower[d]);
+      return std::sqrt(square);
+    }
+
+
+
+    /// For each contact face the cell that it is a side of, in whose order the
+    /// faces are.
+    template <int dim>
+    std::vector<unsigned int>
+    cells_of_faces(const ContactBoundary<dim>    &boundary,
+                   const dealii::DoFHandler<dim> &dofs)
+    {
+      std::set<dealii::types::boundary_id> ids;
+      for (const auto &face : boundary.faces)
+        ids.insert(face.id);
+      std::vector<unsigned int> result;
+      for (const auto &cell : dofs.active_cell_iterators())
+        for (const auto &face : cell->face_iterators())
+          if (face->at_boundary() && ids.count(face->boundary_id()) > 0)
+            result.push_back(cell->active_cell_index());
+      return result;
     }
 
 
@@ -69,10 +120,10 @@ namespace Debond
 
 
   template <int dim>
-  std::vector<dealii::Point<dim>>
-  node_points(const ElasticUnknowns<dim> &unknowns)
+  std::vector<unsigned int>
+  node_vertices(const ElasticUnknowns<dim> &unknowns)
   {
-    std::vector<dealii::Point<dim>> points(unknowns.n_dofs() / dim);
+    std::vector<unsigned int> vertices(unknowns.n_dofs() / dim);
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
       for (const unsigned int v : cell->vertex_indices())
         {
@@ -80,19 +131,19 @@ namespace Debond
           for (unsigned int d = 0; d < dim; ++d)
             Assert(cell->vertex_dof_index(v, d) == node * dim + d,
                    dealii::ExcInternalError());
-          points[node] = cell->vertex(v);
+          vertices[node] = cell->vertex_index(v);
         }
-    return points;
+    return vertices;
   }
 
 
 
   template <int dim>
   std::vector<unsigned int>
-  node_order(const BoxPiece<dim> &piece, const dealii::Triangulation<dim> &mesh)
+  node_order(const BodyPiece<dim>             &piece,
+             const dealii::Triangulation<dim> &mesh)
   {
-    const std::vector<unsigned int> numbers =
-      piece.numbers(mesh.get_vertices());
+    const std::vector<unsigned int> numbers = piece.numbers(mesh);
     std::vector<unsigned int> order(numbers.size()), place(numbers.size());
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(),
@@ -108,7 +159,7 @@ namespace Debond
 
 
   template <int dim>
-  ProblemPiece<dim>::ProblemPiece(const BoxPiece<dim>        &body_piece,
+  ProblemPiece<dim>::ProblemPiece(const BodyPiece<dim>       &body_piece,
                                   const ElasticUnknowns<dim> &unknowns,
                                   const MPI_Comm              communicator)
     : piece(body_piece)
@@ -134,20 +185,37 @@ namespace Debond
           append<dim>(node.normal, of_nodes);
           of_nodes.push_back(node.measure);
         }
-    numbers_of_normals = gather_everywhere(numbers, communicator);
-    of_nodes           = gather_everywhere(of_nodes, communicator);
+    numbers  = gather_everywhere(numbers, communicator);
+    of_nodes = gather_everywhere(of_nodes, communicator);
 
-    // Nodes are in the order of x, as ranks are.
-    const double                        *next = of_nodes.data();
-    std::map<unsigned int, unsigned int> index_of;
-    for (unsigned int i = 0; i < numbers_of_normals.size(); ++i)
+    // In the order of their numbers, and then in that of one rank.
+    std::vector<unsigned int> order(numbers.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(),
+              order.end(),
+              [&numbers](const unsigned int a, const unsigned int b) {
+                return numbers[a] < numbers[b];
+              });
+    std::vector<typename ContactBoundary<dim>::Node> all_nodes;
+    for (const unsigned int i : order)
       {
+        const double *next = of_nodes.data() + std::size_t(i) * (2 * dim + 1);
         typename ContactBoundary<dim>::Node node;
         read<dim>(next, node.position);
         read<dim>(next, node.normal);
-        node.measure = *next++;
-        contact_boundary.nodes.push_back(node);
-        index_of[numbers_of_normals[i]] = i;
+        node.measure = *next;
+        all_nodes.push_back(node);
+      }
+    std::map<unsigned int, unsigned int> index_of;
+    for (const unsigned int k : contact_order<dim>(
+           all_nodes,
+           diameter_of_whole(unknowns.dof_handler().get_triangulation(),
+                             communicator)))
+      {
+        const unsigned int number = numbers[order[k]];
+        index_of[number]          = static_cast<unsigned int>(index_of.size());
+        numbers_of_normals.push_back(number);
+        contact_boundary.nodes.push_back(all_nodes[k]);
       }
     local_normals.assign(numbers_of_normals.size(), elsewhere);
     for (const auto dof : dofs)
@@ -157,17 +225,18 @@ namespace Debond
       std::make_unique<SharedTrace>(shared_nodes, dim, local_normals);
 
     // Faces are in the order of their cells.
-    std::vector<std::size_t>  cells;
-    std::vector<unsigned int> nodes, ids;
-    std::vector<double>       of_faces;
+    std::vector<std::size_t>        cells;
+    std::vector<unsigned int>       nodes, ids;
+    std::vector<double>             of_faces;
+    const std::vector<unsigned int> cells_of_local =
+      cells_of_faces(local, unknowns.dof_handler());
+    auto cell_of_face = cells_of_local.begin();
     for (const auto &face : local.faces)
       {
-        dealii::Point<dim> middle;
-        for (const dealii::Point<dim> &vertex : face.vertices)
-          middle += vertex / dim;
-        if (!piece.owns_cell_at(middle))
+        const unsigned int cell = *cell_of_face++;
+        if (!piece.owns_cell(cell))
           continue;
-        cells.push_back(piece.cell_at(middle));
+        cells.push_back(piece.cell_number(cell));
         ids.push_back(face.id);
         for (const unsigned int node : face.nodes)
           nodes.push_back(
@@ -183,17 +252,17 @@ namespace Debond
     nodes    = gather_everywhere(nodes, communicator);
     ids      = gather_everywhere(ids, communicator);
     of_faces = gather_everywhere(of_faces, communicator);
-    std::vector<std::size_t> order(cells.size());
-    std::iota(order.begin(), order.end(), std::size_t(0));
-    std::stable_sort(order.begin(),
-                     order.end(),
+    std::vector<std::size_t> face_order(cells.size());
+    std::iota(face_order.begin(), face_order.end(), std::size_t(0));
+    std::stable_sort(face_order.begin(),
+                     face_order.end(),
                      [&](const std::size_t a, const std::size_t b) {
                        return cells[a] < cells[b];
                      });
-    for (const std::size_t f : order)
+    for (const std::size_t f : face_order)
       {
         typename ContactBoundary<dim>::Face face;
-        next = of_faces.data() + f * (dim * (dim + 1) + 1);
+        const double *next = of_faces.data() + f * (dim * (dim + 1) + 1);
         for (unsigned int v = 0; v < dim; ++v)
           {
             face.nodes[v] = nodes[f * dim + v];
@@ -209,7 +278,7 @@ namespace Debond
 
 
   template <int dim>
-  const BoxPiece<dim> &
+  const BodyPiece<dim> &
   ProblemPiece<dim>::body() const
   {
     return piece;
@@ -303,10 +372,10 @@ namespace Debond
 
     std::vector<std::size_t> cells;
     for (const auto &cell : dofs.active_cell_iterators())
-      if (piece.owns_cell_at(cell->center()))
+      if (piece.owns_cell(cell->active_cell_index()))
         {
           own_cells.push_back(cell->active_cell_index());
-          cells.push_back(piece.cell_at(cell->center()));
+          cells.push_back(piece.cell_number(own_cells.back()));
         }
     all_cells = make_gathering(cells);
   }
@@ -391,10 +460,10 @@ namespace Debond
 
 
 
-  template decltype(node_points<2>) node_points<2>;
-  template decltype(node_points<3>) node_points<3>;
-  template decltype(node_order<2>)  node_order<2>;
-  template decltype(node_order<3>)  node_order<3>;
+  template decltype(node_vertices<2>) node_vertices<2>;
+  template decltype(node_vertices<3>) node_vertices<3>;
+  template decltype(node_order<2>)    node_order<2>;
+  template decltype(node_order<3>)    node_order<3>;
   template class ProblemPiece<2>;
   template class ProblemPiece<3>;
 } // namespace Debond

@@ -28,7 +28,8 @@ namespace Debond
 
   template <int dim>
   std::vector<CoarseLevel<dim>>
-  Body<dim>::coarse_levels(const std::vector<dealii::Point<dim>> &) const
+  Body<dim>::coarse_levels(const dealii::Triangulation<dim> &,
+                           const std::vector<unsigned int> &) const
   {
     return {};
   }
@@ -37,9 +38,9 @@ namespace Debond
 
   template <int dim>
   std::vector<unsigned int>
-  Body<dim>::slabs(const std::vector<dealii::Point<dim>> &vertices) const
+  Body<dim>::slabs(const dealii::Triangulation<dim> &mesh) const
   {
-    return std::vector<unsigned int>(vertices.size(), 0);
+    return std::vector<unsigned int>(mesh.n_vertices(), 0);
   }
 
 

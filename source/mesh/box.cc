@@ -24,12 +24,6 @@ namespace Debond
     /// are rounder.
     constexpr double most_stretched = 1.9;
 
-    /// Coarser levels are not worth a smoother.
-    constexpr double fewest_vertices = 400.;
-
-    /// The coarsest level is factorised at each change of the contact set.
-    constexpr double most_coarsest_vertices = 5000.;
-
 
 
     /// The vertices of the lattice and P1 interpolation from them to points.
@@ -287,9 +281,14 @@ namespace Debond
 
   template <int dim>
   std::vector<CoarseLevel<dim>>
-  Box<dim>::coarse_levels(const std::vector<dealii::Point<dim>> &vertices) const
+  Box<dim>::coarse_levels(const dealii::Triangulation<dim> &mesh,
+                          const std::vector<unsigned int>  &vertices) const
   {
-    return levels_of(coarse_boxes(), vertices);
+    std::vector<dealii::Point<dim>> points;
+    points.reserve(vertices.size());
+    for (const unsigned int v : vertices)
+      points.push_back(mesh.get_vertices()[v]);
+    return levels_of(coarse_boxes(), points);
   }
 
 
@@ -316,7 +315,7 @@ namespace Debond
   {
     std::vector<BoxParameters> boxes;
     BoxParameters              finer = parameters;
-    while (Box(finer).n_vertices() >= fewest_vertices)
+    while (Box(finer).n_vertices() >= fewest_vertices_of_level)
       {
         const std::unique_ptr<const Body<dim>> body = Box(finer).coarser();
         if (!body)
@@ -338,12 +337,12 @@ namespace Debond
 
   template <int dim>
   std::vector<unsigned int>
-  Box<dim>::slabs(const std::vector<dealii::Point<dim>> &vertices) const
+  Box<dim>::slabs(const dealii::Triangulation<dim> &mesh) const
   {
     const CrossedLattice<dim> lattice(parameters);
     std::vector<unsigned int> result;
-    result.reserve(vertices.size());
-    for (const dealii::Point<dim> &vertex : vertices)
+    result.reserve(mesh.n_vertices());
+    for (const dealii::Point<dim> &vertex : mesh.get_vertices())
       result.push_back(
         std::min(lattice.coordinates(vertex)[0] / 2, parameters.cells[0] - 1));
     return result;

@@ -117,22 +117,29 @@ namespace Debond
 
 
   template <int dim>
-  BoxPiece<dim>::BoxPiece(const Box<dim>    &box,
-                          const unsigned int rank,
-                          const unsigned int n_ranks)
-    : Box<dim>(box)
-    , n_ranks(n_ranks)
-    , first(static_cast<unsigned int>(std::size_t(n_slabs()) * rank / n_ranks))
-    , end(static_cast<unsigned int>(std::size_t(n_slabs()) * (rank + 1) /
-                                    n_ranks))
+  BoxPiece<dim>::BoxPiece(const std::shared_ptr<const Box<dim>> &box,
+                          const unsigned int                     rank,
+                          const unsigned int                     n_ranks)
+    : BodyPiece<dim>(box, box->parameters.cells[0], rank, n_ranks)
+    , box(box)
   {
-    if (n_ranks > n_slabs())
+    if (n_ranks > this->n_slabs())
       throw std::invalid_argument(
-        "a box with " + std::to_string(n_slabs()) +
+        "a box with " + std::to_string(this->n_slabs()) +
         " cells along x can be cut for at most as many ranks, not " +
         std::to_string(n_ranks));
-    if (this->parameters.rotation != 0.)
+    if (box->parameters.rotation != 0.)
       throw std::invalid_argument("a turned box cannot be cut for ranks");
+  }
+
+
+
+  template <int dim>
+  std::array<unsigned int, 2>
+  BoxPiece<dim>::range() const
+  {
+    return {{std::max(this->first, n_ghost_slabs) - n_ghost_slabs,
+             std::min(this->end + n_ghost_slabs, this->n_slabs())}};
   }
 
 
@@ -141,10 +148,11 @@ namespace Debond
   PieceNames
   BoxPiece<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
   {
-    const BoxParameters &box   = this->parameters;
-    const unsigned int   begin = std::max(first, n_ghost_slabs) - n_ghost_slabs;
-    std::array<unsigned int, 3> n = box.cells, n_vertices = {{1, 1, 1}};
-    n[0] = std::min(end + n_ghost_slabs, n[0]) - begin;
+    const BoxParameters &whole             = box->parameters;
+    const auto [begin, end]                = range();
+    const unsigned int          first_cell = begin; // no binding in a lambda
+    std::array<unsigned int, 3> n = whole.cells, n_vertices = {{1, 1, 1}};
+    n[0] = end - begin;
     if (dim == 2)
       n[2] = 1;
     for (unsigned int d = 0; d < dim; ++d)
@@ -163,8 +171,8 @@ namespace Debond
     for_each(n_vertices, [&](const std::array<unsigned int, 3> &i) {
       dealii::Point<dim> point;
       for (unsigned int d = 0; d < dim; ++d)
-        point[d] =
-          (d == 0 ? begin + i[d] : i[d]) * (box.lengths[d] / box.cells[d]);
+        point[d] = (d == 0 ? first_cell + i[d] : i[d]) *
+                   (whole.lengths[d] / whole.cells[d]);
       vertices.push_back(point);
     });
     for_each(n, [&](const std::array<unsigned int, 3> &i) {
@@ -180,10 +188,10 @@ namespace Debond
     for (const auto &cell : coarse.active_cell_iterators())
       for (const unsigned int f : cell->face_indices())
         if (cell->face(f)->at_boundary())
-          cell->face(f)->set_boundary_id(
-            (f == 0 && begin > 0) || (f == 1 && begin + n[0] < box.cells[0]) ?
-              id_of_cuts<dim> :
-              f);
+          cell->face(f)->set_boundary_id((f == 0 && begin > 0) ||
+                                             (f == 1 && end < whole.cells[0]) ?
+                                           id_of_cuts<dim> :
+                                           f);
     crossed_subdivision(coarse, mesh);
     return {box_boundaries<dim>(), {}};
   }
@@ -191,73 +199,26 @@ namespace Debond
 
 
   template <int dim>
-  unsigned int
-  BoxPiece<dim>::n_faces_on(const std::string &side) const
-  {
-    const unsigned int boundary = box_sides<dim>().at(side);
-    unsigned int       result   = dim == 2 ? 1 : 4;
-    for (unsigned int d = 0; d < dim; ++d)
-      if (d != boundary / 2)
-        result *= this->parameters.cells[d];
-    return result;
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  BoxPiece<dim>::n_slabs() const
-  {
-    return this->parameters.cells[0];
-  }
-
-
-
-  template <int dim>
   std::vector<unsigned int>
-  BoxPiece<dim>::numbers(const std::vector<dealii::Point<dim>> &vertices) const
+  BoxPiece<dim>::slabs(const dealii::Triangulation<dim> &mesh) const
   {
-    const CrossedLattice<dim> lattice(this->parameters);
-    const VertexNumbers<dim>  number(this->parameters.cells);
-    std::vector<unsigned int> result;
-    result.reserve(vertices.size());
-    for (const dealii::Point<dim> &vertex : vertices)
-      result.push_back(number(lattice.coordinates(vertex)));
-    return result;
+    return box->slabs(mesh);
   }
 
 
 
   template <int dim>
-  unsigned int
-  BoxPiece<dim>::first_slab() const
+  std::map<dealii::types::boundary_id, unsigned int>
+  BoxPiece<dim>::n_faces() const
   {
-    return first;
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  BoxPiece<dim>::end_slab() const
-  {
-    return end;
-  }
-
-
-
-  template <int dim>
-  std::size_t
-  BoxPiece<dim>::cell_at(const dealii::Point<dim> &point) const
-  {
-    std::size_t result = 0;
-    for (unsigned int d = dim; d-- > 0;)
+    std::map<dealii::types::boundary_id, unsigned int> result;
+    for (const auto &[side, id] : box_sides<dim>())
       {
-        const unsigned int n = this->parameters.cells[d];
-        result =
-          result * n + std::min(n - 1,
-                                static_cast<unsigned int>(
-                                  point[d] * n / this->parameters.lengths[d]));
+        unsigned int &n = result[id];
+        n               = dim == 2 ? 1 : 4;
+        for (unsigned int d = 0; d < dim; ++d)
+          if (d != id / 2)
+            n *= box->parameters.cells[d];
       }
     return result;
   }
@@ -265,11 +226,48 @@ namespace Debond
 
 
   template <int dim>
-  bool
-  BoxPiece<dim>::owns_cell_at(const dealii::Point<dim> &point) const
+  std::vector<unsigned int>
+  BoxPiece<dim>::numbers(const dealii::Triangulation<dim> &mesh) const
   {
-    const std::size_t slab = cell_at(point) % this->parameters.cells[0];
-    return first <= slab && slab < end;
+    const CrossedLattice<dim> lattice(box->parameters);
+    const VertexNumbers<dim>  number(box->parameters.cells);
+    std::vector<unsigned int> result;
+    result.reserve(mesh.n_vertices());
+    for (const dealii::Point<dim> &vertex : mesh.get_vertices())
+      result.push_back(number(lattice.coordinates(vertex)));
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::array<std::size_t, 2>
+  BoxPiece<dim>::place_and_number(const unsigned int active_cell) const
+  {
+    const auto [begin, end]  = range();
+    const unsigned int width = end - begin;
+    const std::size_t  cell  = active_cell / (dim == 2 ? 4 : 24);
+    const std::size_t  place = begin + cell % width;
+    return {{place, cell / width * this->n_slabs() + place}};
+  }
+
+
+
+  template <int dim>
+  std::size_t
+  BoxPiece<dim>::cell_number(const unsigned int active_cell) const
+  {
+    return place_and_number(active_cell)[1];
+  }
+
+
+
+  template <int dim>
+  bool
+  BoxPiece<dim>::owns_cell(const unsigned int active_cell) const
+  {
+    return this->owns_slab(
+      static_cast<unsigned int>(place_and_number(active_cell)[0]));
   }
 
 
@@ -278,9 +276,10 @@ namespace Debond
   unsigned int
   BoxPiece<dim>::n_shared_levels() const
   {
-    const std::vector<BoxParameters> boxes  = this->coarse_boxes();
+    const std::vector<BoxParameters> boxes  = box->coarse_boxes();
     unsigned int                     result = 1;
-    while (result < boxes.size() && 2 * boxes[result - 1].cells[0] >= n_ranks)
+    while (result < boxes.size() &&
+           2 * boxes[result - 1].cells[0] >= this->n_ranks)
       ++result;
     return result;
   }
@@ -289,12 +288,17 @@ namespace Debond
 
   template <int dim>
   std::vector<typename BoxPiece<dim>::CoarsePiece>
-  BoxPiece<dim>::coarse_pieces(const std::vector<dealii::Point<dim>> &vertices,
-                               const unsigned int                     n) const
+  BoxPiece<dim>::coarse_pieces(const dealii::Triangulation<dim> &mesh,
+                               const std::vector<unsigned int>  &vertices,
+                               const unsigned int                n) const
   {
-    const std::vector<BoxParameters> boxes = this->coarse_boxes();
+    std::vector<dealii::Point<dim>> points;
+    points.reserve(vertices.size());
+    for (const unsigned int v : vertices)
+      points.push_back(mesh.get_vertices()[v]);
+    const std::vector<BoxParameters> boxes = box->coarse_boxes();
     std::vector<CoarsePiece>         result(n);
-    std::size_t n_finer = n_slabs(), n_ghosts = n_coarse_ghosts;
+    std::size_t n_finer = this->n_slabs(), n_ghosts = n_coarse_ghosts;
     for (unsigned int l = 0; l < n; ++l)
       {
         // Of the lattice points along x, those in the cells of own slabs and
@@ -304,9 +308,9 @@ namespace Debond
         if (n_finer != n_cells && n_finer != 2 * n_cells)
           n_ghosts = n_ghosts_if_not_nested;
         n_finer                      = n_cells;
-        const std::size_t begin_cell = n_cells * first / n_slabs();
+        const std::size_t begin_cell = n_cells * this->first / this->n_slabs();
         const std::size_t end_cell =
-          (n_cells * end + n_slabs() - 1) / n_slabs();
+          (n_cells * this->end + this->n_slabs() - 1) / this->n_slabs();
         const std::size_t begin =
           2 * (std::max(begin_cell, n_ghosts) - n_ghosts);
         const std::size_t width =
@@ -324,13 +328,13 @@ namespace Debond
             piece.numbers.push_back(
               static_cast<unsigned int>(lattice.number(i)));
             piece.level.vertices.push_back(lattice.point(i));
-            const unsigned int slab = lattice.slab(i, n_slabs());
+            const unsigned int slab = lattice.slab(i, this->n_slabs());
             piece.level.slabs.push_back(slab);
-            piece.is_own.push_back(first <= slab && slab < end);
+            piece.is_own.push_back(this->owns_slab(slab));
           }
         piece.n_whole        = static_cast<unsigned int>(lattice.n_vertices());
         piece.level.to_finer = lattice.interpolation(
-          l == 0 ? vertices : result[l - 1].level.vertices,
+          l == 0 ? points : result[l - 1].level.vertices,
           static_cast<unsigned int>(piece.numbers.size()),
           [&](const std::size_t i) {
             return places[i / whole_width * width + i % whole_width - begin];
@@ -345,18 +349,18 @@ namespace Debond
   typename BoxPiece<dim>::CoarseWhole
   BoxPiece<dim>::coarse_whole(const unsigned int n) const
   {
-    std::vector<BoxParameters> boxes = this->coarse_boxes();
-    const BoxParameters        box   = boxes.at(n - 1);
+    std::vector<BoxParameters> boxes = box->coarse_boxes();
+    const BoxParameters        first = boxes.at(n - 1);
     boxes.erase(boxes.begin(), boxes.begin() + n);
-    const CrossedLattice<dim> lattice(box);
+    const CrossedLattice<dim> lattice(first);
     CoarseWhole               result;
     for (std::size_t i = 0; i < lattice.size(); ++i)
       if (lattice.is_vertex(i))
         {
           result.vertices.push_back(lattice.point(i));
-          result.slabs.push_back(lattice.slab(i, n_slabs()));
+          result.slabs.push_back(lattice.slab(i, this->n_slabs()));
         }
-    result.coarser = this->levels_of(boxes, result.vertices);
+    result.coarser = box->levels_of(boxes, result.vertices);
     return result;
   }
 

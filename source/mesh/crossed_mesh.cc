@@ -74,12 +74,47 @@ namespace Debond
   crossed_subdivision(const dealii::Triangulation<dim> &coarse,
                       dealii::Triangulation<dim>       &crossed)
   {
+    check_coarse_mesh(coarse);
+    std::vector<typename dealii::Triangulation<dim>::cell_iterator> cells;
+    cells.reserve(coarse.n_active_cells());
+    for (const auto &cell : coarse.active_cell_iterators())
+      cells.push_back(cell);
+    crossed_part(cells, dealii::numbers::invalid_boundary_id, crossed);
+  }
+
+
+
+  template <int dim>
+  void
+  crossed_part(
+    const std::vector<typename dealii::Triangulation<dim>::cell_iterator>
+                                    &coarse_cells,
+    const dealii::types::boundary_id id_of_cuts,
+    dealii::Triangulation<dim>      &crossed)
+  {
     if (crossed.n_levels() != 0)
       throw std::invalid_argument(
         "Crossed subdivision: the triangulation to be filled is not empty.");
-    check_coarse_mesh(coarse);
+    const dealii::Triangulation<dim> &coarse =
+      coarse_cells.front()->get_triangulation();
 
-    std::vector<dealii::Point<dim>> vertices = coarse.get_vertices();
+    // The vertices and the faces of the cells.
+    std::vector<unsigned int> new_index(coarse.n_vertices(), 0),
+      n_cells_at(coarse.n_raw_faces(), 0);
+    for (const auto &cell : coarse_cells)
+      {
+        for (const unsigned int v : cell->vertex_indices())
+          new_index[cell->vertex_index(v)] = 1;
+        for (const unsigned int f : cell->face_indices())
+          ++n_cells_at[cell->face_index(f)];
+      }
+    std::vector<dealii::Point<dim>> vertices;
+    for (unsigned int v = 0; v < new_index.size(); ++v)
+      if (new_index[v] != 0)
+        {
+          new_index[v] = static_cast<unsigned int>(vertices.size());
+          vertices.push_back(coarse.get_vertices()[v]);
+        }
 
     // Only in 3D do the faces have a centre of their own.
     std::vector<unsigned int> face_centres(
@@ -87,10 +122,10 @@ namespace Debond
       dealii::numbers::invalid_unsigned_int);
 
     std::vector<dealii::CellData<dim>> cells;
-    cells.reserve(coarse.n_active_cells() * (dim == 2 ? 4 : 24));
+    cells.reserve(coarse_cells.size() * (dim == 2 ? 4 : 24));
     dealii::SubCellData subcells;
 
-    for (const auto &cell : coarse.active_cell_iterators())
+    for (const auto &cell : coarse_cells)
       {
         const unsigned int cell_centre =
           static_cast<unsigned int>(vertices.size());
@@ -108,23 +143,26 @@ namespace Debond
         for (const unsigned int f : cell->face_indices())
           {
             const auto face = cell->face(f);
+            const bool is_cut =
+              !face->at_boundary() && n_cells_at[cell->face_index(f)] == 1;
 
             // The corners as the cell numbers them, so that the orientation
             // of the simplices is known beforehand.
             const auto corner = [&](const unsigned int v) {
-              return cell->vertex_index(
-                dealii::GeometryInfo<dim>::face_to_cell_vertices(f, v));
+              return new_index[cell->vertex_index(
+                dealii::GeometryInfo<dim>::face_to_cell_vertices(f, v))];
             };
 
             const auto add_face =
               [&](auto &faces, const std::vector<unsigned int> &corners) {
                 // Triangulation gives all other faces these ids by itself.
-                if (!face->at_boundary() &&
+                if (!face->at_boundary() && !is_cut &&
                     face->manifold_id() == dealii::numbers::flat_manifold_id)
                   return;
                 faces.emplace_back(dim);
-                faces.back().vertices    = corners;
-                faces.back().boundary_id = face->boundary_id();
+                faces.back().vertices = corners;
+                faces.back().boundary_id =
+                  is_cut ? id_of_cuts : face->boundary_id();
                 faces.back().manifold_id = face->manifold_id();
               };
 
@@ -173,4 +211,6 @@ namespace Debond
 
   template decltype(crossed_subdivision<2>) crossed_subdivision<2>;
   template decltype(crossed_subdivision<3>) crossed_subdivision<3>;
+  template decltype(crossed_part<2>)        crossed_part<2>;
+  template decltype(crossed_part<3>)        crossed_part<3>;
 } // namespace Debond

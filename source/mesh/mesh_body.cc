@@ -27,28 +27,69 @@ namespace Debond
 
 
   template <int dim>
+  typename MeshBody<dim>::Counts
+  MeshBody<dim>::Counts::halved(const unsigned int times) const
+  {
+    Counts result = *this;
+    for (unsigned int k = 0; k < times; ++k)
+      {
+        const Counts was = result;
+        result.corners   = was.corners + was.edges + was.squares + was.cubes;
+        result.edges     = 2. * was.edges + 4. * was.squares + 6. * was.cubes;
+        result.squares   = 4. * was.squares + 12. * was.cubes;
+        result.cubes     = 8. * was.cubes;
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
   MeshBody<dim>::MeshBody(const Source &make, const unsigned int n_refinements)
     : make(make)
     , n_refinements(n_refinements)
-    , source(make(n_refinements))
-    , is_simplicial(source->mesh.all_reference_cells_are_simplex())
   {
-    // A crossed hexahedron has a vertex on each of its faces.
-    std::map<std::string, std::set<unsigned int>> vertices, faces;
-    for (const auto &face : source->mesh.active_face_iterators())
+    std::unique_ptr<SourceMesh<dim>>  coarsest = make(0);
+    const dealii::Triangulation<dim> &mesh     = coarsest->mesh;
+    is_simplicial = mesh.all_reference_cells_are_simplex();
+    unit_level =
+      is_simplicial ?
+        n_refinements :
+        HalvedMesh<dim>::level_of_units(mesh.n_active_cells(), n_refinements);
+    all = {static_cast<double>(mesh.n_used_vertices()),
+           static_cast<double>(mesh.n_active_lines()),
+           static_cast<double>(dim == 2 ? mesh.n_active_cells() :
+                                          mesh.n_active_faces()),
+           static_cast<double>(dim == 2 ? 0 : mesh.n_active_cells())};
+
+    struct Found
+    {
+      std::set<unsigned int> corners, edges, squares;
+    };
+    std::map<std::string, Found> on_boundary;
+    for (const auto &face : mesh.active_face_iterators())
       if (face->at_boundary())
-        for (const auto &[name, ids] : source->names.boundaries)
+        for (const auto &[name, ids] : coarsest->names.boundaries)
           if (ids.count(face->boundary_id()) > 0)
             {
-              faces[name].insert(face->index());
+              Found &found = on_boundary[name];
               for (const unsigned int v : face->vertex_indices())
-                vertices[name].insert(face->vertex_index(v));
+                found.corners.insert(face->vertex_index(v));
+              if constexpr (dim == 3)
+                {
+                  found.squares.insert(face->index());
+                  for (const unsigned int e : face->line_indices())
+                    found.edges.insert(face->line_index(e));
+                }
+              else
+                found.edges.insert(face->index());
             }
-    const bool has_face_centres = dim == 3 && !is_simplicial;
-    for (const auto &[name, on_boundary] : vertices)
-      boundary_vertices[name] =
-        static_cast<double>(on_boundary.size()) +
-        (has_face_centres ? static_cast<double>(faces[name].size()) : 0.);
+    for (const auto &[name, found] : on_boundary)
+      on_boundaries[name] = {static_cast<double>(found.corners.size()),
+                             static_cast<double>(found.edges.size()),
+                             static_cast<double>(found.squares.size()),
+                             0.};
+    source = unit_level == 0 ? std::move(coarsest) : make(unit_level);
   }
 
 
@@ -75,8 +116,21 @@ namespace Debond
   double
   MeshBody<dim>::n_cells() const
   {
-    const double n = source->mesh.n_active_cells();
-    return is_simplicial ? n : (dim == 2 ? 4. : 24.) * n;
+    if (is_simplicial)
+      return source->mesh.n_active_cells();
+    const Counts counts = all.halved(n_refinements);
+    return dim == 2 ? 4. * counts.squares : 24. * counts.cubes;
+  }
+
+
+
+  template <int dim>
+  double
+  MeshBody<dim>::n_vertices_of_level(const unsigned int level) const
+  {
+    // Cells have a vertex in their centre, and hexahedra one on each face.
+    const Counts counts = all.halved(level);
+    return counts.corners + counts.squares + counts.cubes;
   }
 
 
@@ -85,11 +139,7 @@ namespace Debond
   double
   MeshBody<dim>::n_vertices() const
   {
-    const double corners = source->mesh.n_used_vertices();
-    if (is_simplicial)
-      return corners;
-    const double centres = source->mesh.n_active_cells();
-    return corners + centres + (dim == 3 ? source->mesh.n_active_faces() : 0.);
+    return is_simplicial ? all.corners : n_vertices_of_level(n_refinements);
   }
 
 
@@ -98,7 +148,11 @@ namespace Debond
   double
   MeshBody<dim>::n_vertices_on(const std::string &boundary) const
   {
-    return boundary_vertices.at(boundary);
+    const Counts &counts = on_boundaries.at(boundary);
+    if (is_simplicial)
+      return counts.corners;
+    const Counts halved = counts.halved(n_refinements);
+    return halved.corners + halved.squares;
   }
 
 
@@ -135,8 +189,10 @@ namespace Debond
         // Sides are flat between the vertices, wherever they came from.
         mesh.reset_all_manifolds();
       }
-    else
+    else if (unit_level == n_refinements)
       crossed_subdivision(source->mesh, mesh);
+    else
+      crossed_subdivision(make(n_refinements)->mesh, mesh);
     return source->names;
   }
 
@@ -161,6 +217,138 @@ namespace Debond
     const std::vector<dealii::Point<dim>>     &points) const
   {
     return interpolate_on_simplices(mesh, values, points);
+  }
+
+
+
+  template <int dim>
+  bool
+  MeshBody<dim>::is_of_simplices() const
+  {
+    return is_simplicial;
+  }
+
+
+
+  template <int dim>
+  bool
+  MeshBody<dim>::has_coarse_levels() const
+  {
+    return n_coarse_levels() > 0;
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  MeshBody<dim>::n_coarse_levels() const
+  {
+    // Some generators have halved cells already, maybe not all of them.
+    const dealii::Triangulation<dim> &mesh = source->mesh;
+    if (is_simplicial ||
+        mesh.n_cells(mesh.n_levels() - 1) != mesh.n_active_cells())
+      return 0;
+    unsigned int level = n_refinements;
+    while (level > 0 && n_vertices_of_level(level) >= fewest_vertices_of_level)
+      --level;
+    return n_vertices_of_level(level) > most_coarsest_vertices ?
+             0 :
+             n_refinements - level;
+  }
+
+
+
+  template <int dim>
+  HalvedMesh<dim>
+  MeshBody<dim>::halved(const unsigned int finest,
+                        const unsigned int rank,
+                        const unsigned int n_ranks) const
+  {
+    return HalvedMesh<dim>(make(unit_level),
+                           unit_level,
+                           std::max(unit_level, finest),
+                           rank,
+                           n_ranks);
+  }
+
+
+
+  template <int dim>
+  std::vector<CoarseLevel<dim>>
+  MeshBody<dim>::coarse_levels(const dealii::Triangulation<dim> &mesh,
+                               const std::vector<unsigned int>  &vertices) const
+  {
+    if (!has_coarse_levels())
+      return {};
+    const HalvedMesh<dim>           cells  = halved(n_refinements);
+    auto                            finest = cells.vertices(n_refinements);
+    const std::vector<unsigned int> places = cells.places(mesh, finest);
+    std::vector<unsigned int>       nodes(vertices.size());
+    for (unsigned int i = 0; i < vertices.size(); ++i)
+      nodes[places[vertices[i]]] = i;
+    finest.renumber(nodes);
+    return cells.coarse_levels(n_refinements, finest, n_coarse_levels());
+  }
+
+
+
+  template <int dim>
+  std::vector<unsigned int>
+  MeshBody<dim>::slabs(const dealii::Triangulation<dim> &mesh) const
+  {
+    if (!has_coarse_levels())
+      return Body<dim>::slabs(mesh);
+    // The first simplex that comes to a vertex is in its unit.
+    const HalvedMesh<dim>     units = halved(unit_level);
+    constexpr unsigned int    unset = dealii::numbers::invalid_unsigned_int;
+    const unsigned int        n     = mesh.n_active_cells() / units.n_units();
+    std::vector<unsigned int> result(mesh.n_vertices(), unset);
+    for (const auto &cell : mesh.active_cell_iterators())
+      for (const unsigned int v : cell->vertex_indices())
+        if (unsigned int &slab = result[cell->vertex_index(v)]; slab == unset)
+          slab = units.slab_of_unit(cell->active_cell_index() / n);
+    return result;
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  MeshBody<dim>::finest_level() const
+  {
+    return n_refinements;
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  MeshBody<dim>::level_of_units() const
+  {
+    return unit_level;
+  }
+
+
+
+  template <int dim>
+  const PieceNames &
+  MeshBody<dim>::names() const
+  {
+    return source->names;
+  }
+
+
+
+  template <int dim>
+  std::map<dealii::types::boundary_id, unsigned int>
+  MeshBody<dim>::n_faces() const
+  {
+    std::map<dealii::types::boundary_id, unsigned int> result;
+    for (const auto &face : source->mesh.active_face_iterators())
+      if (face->at_boundary())
+        result[face->boundary_id()] +=
+          (dim == 2 ? 1u : 4u) << (dim - 1) * (n_refinements - unit_level);
+    return result;
   }
 
 

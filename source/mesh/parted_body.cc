@@ -360,18 +360,19 @@ namespace Debond
   template <int dim>
   std::vector<CoarseLevel<dim>>
   PartedBody<dim>::coarse_levels(
-    const std::vector<dealii::Point<dim>> &vertices) const
+    const dealii::Triangulation<dim> &mesh,
+    const std::vector<unsigned int>  &vertices) const
   {
-    return whole->coarse_levels(vertices);
+    return whole->coarse_levels(mesh, vertices);
   }
 
 
 
   template <int dim>
   std::vector<unsigned int>
-  PartedBody<dim>::slabs(const std::vector<dealii::Point<dim>> &vertices) const
+  PartedBody<dim>::slabs(const dealii::Triangulation<dim> &mesh) const
   {
-    return whole->slabs(vertices);
+    return whole->slabs(mesh);
   }
 
 

@@ -108,7 +108,8 @@ namespace Debond
                                                none);
       for (const auto &cell : dofs.active_cell_iterators())
         {
-          if (piece != nullptr && !piece->body().owns_cell_at(cell->center()))
+          if (piece != nullptr &&
+              !piece->body().owns_cell(cell->active_cell_index()))
             continue;
           const CellNodes<dim> nodes(cell);
           for (unsigned int n = 0; n < nodes.size; ++n)

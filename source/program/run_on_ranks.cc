@@ -5,6 +5,8 @@
 #include <debond/base/append.h>
 #include <debond/base/directory_lock.h>
 #include <debond/check/plausibility.h>
+#include <debond/mesh/box_piece.h>
+#include <debond/mesh/mesh_piece.h>
 #include <debond/output/output_files.h>
 #include <debond/output/report.h>
 #include <debond/output/vtu.h>
@@ -29,7 +31,7 @@ namespace Debond
 
     /// Throws BadInput if ranks cannot share the scene.
     template <int dim>
-    std::shared_ptr<const BoxPiece<dim>>
+    std::shared_ptr<const BodyPiece<dim>>
     make_piece(const Parameters &parameters, const MPI_Comm ranks)
     {
       const auto refuse = [&parameters](const bool         is_refused,
@@ -40,12 +42,18 @@ namespace Debond
                           "; run the scene on one rank"});
       };
       const SolverParameters &solver = parameters.solver;
-      const auto *const       box =
-        dynamic_cast<const Box<dim> *>(parameters.body.get());
-      refuse(box == nullptr && parameters.body->shape().is_box,
+      const auto              box =
+        std::dynamic_pointer_cast<const Box<dim>>(parameters.body);
+      const auto mesh =
+        std::dynamic_pointer_cast<const MeshBody<dim>>(parameters.body);
+      refuse(box == nullptr && mesh == nullptr,
              "Parts",
              "several ranks share no bodies with parts");
-      refuse(box == nullptr, "Mesh/Source", "several ranks share boxes only");
+      refuse(mesh != nullptr && mesh->is_of_simplices(),
+             "Mesh/Source",
+             "several ranks share meshes of quadrilaterals or hexahedra that "
+             "Mesh/Refinements halves, and this one is of triangles or "
+             "tetrahedra");
       refuse(parameters.degree != 1,
              "Mesh/Degree",
              "several ranks share linear displacements only");
@@ -89,20 +97,25 @@ namespace Debond
       refuse(parameters.checkpoints.restart,
              "--restart",
              "several ranks have no checkpoints");
-      refuse(!box->has_coarse_levels(),
-             "Mesh/Cells",
-             "several ranks need coarser levels, and this box has none");
+      refuse(!parameters.body->has_coarse_levels(),
+             box != nullptr ? "Mesh/Cells" : "Mesh/Refinements",
+             "several ranks need coarser levels, and this " +
+               std::string(box != nullptr ? "box" : "mesh") + " has none");
+      const unsigned int n_ranks =
+        dealii::Utilities::MPI::n_mpi_processes(ranks);
       try
         {
+          if (box == nullptr)
+            return std::make_shared<const MeshPiece<dim>>(mesh, ranks);
           return std::make_shared<const BoxPiece<dim>>(
-            *box,
-            dealii::Utilities::MPI::this_mpi_process(ranks),
-            dealii::Utilities::MPI::n_mpi_processes(ranks));
+            box, dealii::Utilities::MPI::this_mpi_process(ranks), n_ranks);
         }
       catch (const std::invalid_argument &error)
         {
-          const bool is_too_short = dealii::Utilities::MPI::n_mpi_processes(
-                                      ranks) > box->shape().cells[0];
+          if (box == nullptr)
+            throw BadInput(
+              {parameters.scene + ": Mesh/Refinements: " + error.what()});
+          const bool is_too_short = n_ranks > box->shape().cells[0];
           throw BadInput({parameters.scene + ": " +
                           (is_too_short ? "Mesh/Cells" : "Mesh/Rotation") +
                           ": " + error.what() +

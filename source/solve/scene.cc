@@ -79,9 +79,9 @@ namespace Debond
 
 
   template <int dim>
-  Scene<dim>::Scene(const ProblemParameters             &given,
-                    std::shared_ptr<const BoxPiece<dim>> piece,
-                    const MPI_Comm                       ranks)
+  Scene<dim>::Scene(const ProblemParameters              &given,
+                    std::shared_ptr<const BodyPiece<dim>> piece,
+                    const MPI_Comm                        ranks)
     : Scene(given, piece, MatrixStorage::serial, "", piece.get(), ranks)
   {}
 
@@ -92,7 +92,7 @@ namespace Debond
                     std::shared_ptr<const Body<dim>> body,
                     const MatrixStorage              storage,
                     const std::string               &start,
-                    const BoxPiece<dim>             *box_piece,
+                    const BodyPiece<dim>            *body_piece,
                     const MPI_Comm                   ranks)
     : given(given)
     , elastic_body(std::move(body))
@@ -139,7 +139,7 @@ namespace Debond
 
     const auto throw_error_of_any = [&](const std::string &own_error) {
       std::vector<std::string> errors = {own_error};
-      if (box_piece != nullptr)
+      if (body_piece != nullptr)
         errors = dealii::Utilities::MPI::all_gather(ranks, own_error);
       for (const std::string &error : errors)
         if (!error.empty())
@@ -147,10 +147,10 @@ namespace Debond
     };
 
     throw_error_of_any(
-      attempt([&]() { add_problem(storage, box_piece, boundaries, entry); }));
-    if (box_piece != nullptr)
+      attempt([&]() { add_problem(storage, body_piece, boundaries, entry); }));
+    if (body_piece != nullptr)
       problem_piece =
-        std::make_unique<const ProblemPiece<dim>>(*box_piece,
+        std::make_unique<const ProblemPiece<dim>>(*body_piece,
                                                   elastic_problem->unknowns(),
                                                   ranks);
     throw_error_of_any(attempt([&]() {
@@ -166,10 +166,10 @@ namespace Debond
 
   template <int dim>
   void
-  Scene<dim>::add_problem(const MatrixStorage  storage,
-                          const BoxPiece<dim> *box_piece,
-                          BoundaryNames       &boundaries,
-                          std::string         &entry)
+  Scene<dim>::add_problem(const MatrixStorage   storage,
+                          const BodyPiece<dim> *body_piece,
+                          BoundaryNames        &boundaries,
+                          std::string          &entry)
   {
     dealii::Timer    timer;
     const PieceNames names = elastic_body->make_mesh(triangulation);
@@ -185,8 +185,8 @@ namespace Debond
       boundary_conditions,
       body_supports,
       given.degree,
-      box_piece == nullptr ? std::vector<unsigned int>() :
-                                 node_order(*box_piece, triangulation));
+      body_piece == nullptr ? std::vector<unsigned int>() :
+                                  node_order(*body_piece, triangulation));
     check_held_vertices(elastic_problem->unknowns(),
                         displacement_factors(given.load_path));
     entry                                   = "Material/Poisson ratio";
@@ -194,10 +194,8 @@ namespace Debond
     body_loads = make_loads<dim>(given.loads, dead_loads, false, boundaries);
     body_dead_loads =
       make_loads<dim>(given.loads, dead_loads, true, boundaries);
-    if (box_piece != nullptr)
-      for (const auto &[side, id] : box_sides<dim>())
-        body_loads.n_faces[id] = body_dead_loads.n_faces[id] =
-          box_piece->n_faces_on(side);
+    if (body_piece != nullptr)
+      body_loads.n_faces = body_dead_loads.n_faces = body_piece->n_faces();
     body_materials = make_materials(given.materials, names.regions);
     elastic_problem->assemble(body_materials,
                               body_loads,
@@ -206,7 +204,7 @@ namespace Debond
     piece_means = Probes<dim>(elastic_problem->unknowns(),
                               names,
                               means_of_pieces<dim>(names));
-    if (box_piece == nullptr)
+    if (body_piece == nullptr)
       named_probes = Probes<dim>(elastic_problem->unknowns(),
                                  names,
                                  make_probes<dim>(given.probes));

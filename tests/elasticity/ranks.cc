@@ -10,6 +10,8 @@
 #include <debond/elasticity/elastic_levels.h>
 #include <debond/elasticity/level_problem.h>
 #include <debond/mesh/box_piece.h>
+#include <debond/mesh/make_body.h>
+#include <debond/mesh/mesh_piece.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/majorise/restricted_function.h>
 
@@ -50,16 +52,26 @@ namespace
 
 
 
+  /// Which are clamped, have bonds, are pulled upwards and pressed down.
+  struct Sides
+  {
+    std::string clamped, contact, pulled, pressed;
+  };
+
+
+
   /// Bonds tear under a force that lifts one part and presses another one.
   template <int dim>
   struct BodyProblem
   {
-    BodyProblem(const Box<dim> &box, const BoxPiece<dim> *const piece)
+    BodyProblem(const Body<dim>            &body,
+                const Sides                &sides,
+                const BodyPiece<dim> *const piece)
     {
-      const BoundaryNames names = box.make_mesh(mesh).boundaries;
+      const BoundaryNames names = body.make_mesh(mesh).boundaries;
       BoundaryConditions  conditions;
-      conditions.clamped = names.at("left");
-      conditions.contact = names.at("bottom");
+      conditions.clamped = names.at(sides.clamped);
+      conditions.contact = names.at(sides.contact);
       problem =
         std::make_unique<ElasticProblem<dim>>(mesh,
                                               conditions,
@@ -72,15 +84,14 @@ namespace
       dealii::Tensor<1, dim> up, down;
       up[1]   = 0.02;
       down[1] = -0.003;
-      loads.tractions[*names.at("right").begin()] =
+      loads.tractions[*names.at(sides.pulled).begin()] =
         std::make_shared<dealii::Functions::ConstantFunction<dim>>(
           up.begin_raw(), dim);
-      loads.tractions[*names.at("top").begin()] =
+      loads.tractions[*names.at(sides.pressed).begin()] =
         std::make_shared<dealii::Functions::ConstantFunction<dim>>(
           down.begin_raw(), dim);
       if (piece != nullptr)
-        for (const std::string name : {"right", "top"})
-          loads.n_faces[*names.at(name).begin()] = piece->n_faces_on(name);
+        loads.n_faces = piece->n_faces();
       Material material;
       material.young_modulus = 69.;
       material.poisson_ratio = 0.33;
@@ -186,28 +197,23 @@ namespace
 
   template <int dim>
   void
-  test(const std::array<unsigned int, 3> &cells,
-       const unsigned int                 end_shared,
-       const std::array<double, 3>       &lengths = BoxParameters().lengths)
+  test(const Body<dim>      &body,
+       const BodyPiece<dim> &piece,
+       const Sides          &sides,
+       const double          stiffness,
+       const double          threshold,
+       const unsigned int    end_shared)
   {
-    BoxParameters parameters;
-    parameters.cells   = cells;
-    parameters.lengths = lengths;
-    const Box<dim>               box(parameters);
-    const BodyProblem<dim>       whole(box, nullptr);
-    const AdhesiveLaw            law(winkler_law(69., 2e-3).branches);
+    const BodyProblem<dim> whole(body, sides, nullptr);
+    const AdhesiveLaw      law(winkler_law(stiffness, threshold).branches);
     const ContactQuadrature<dim> quadrature(
       {ContactQuadratureParameters::Rule::nodal}, law.kinks());
     const ContactBoundary<dim> &boundary =
       whole.problem->unknowns().contact().boundary();
     const AdhesionIntegral<dim> adhesion(boundary, law, quadrature);
-    const auto levels = ElasticLevels<dim>::make(box, *whole.problem);
+    const auto levels = ElasticLevels<dim>::make(body, *whole.problem);
 
-    const BoxPiece<dim> piece(
-      box,
-      dealii::Utilities::MPI::this_mpi_process(communicator),
-      dealii::Utilities::MPI::n_mpi_processes(communicator));
-    const BodyProblem<dim>      part(piece, &piece);
+    const BodyProblem<dim>      part(piece, sides, &piece);
     const ProblemPiece<dim>     shared(piece,
                                    part.problem->unknowns(),
                                    communicator);
@@ -316,6 +322,50 @@ namespace
               J == whole.problem->fields().elastic_functional(u));
       }
   }
+
+
+
+  template <int dim>
+  void
+  test(const std::array<unsigned int, 3> &cells,
+       const unsigned int                 end_shared,
+       const std::array<double, 3>       &lengths = BoxParameters().lengths)
+  {
+    BoxParameters parameters;
+    parameters.cells        = cells;
+    parameters.lengths      = lengths;
+    const auto          box = std::make_shared<const Box<dim>>(parameters);
+    const BoxPiece<dim> piece(
+      box,
+      dealii::Utilities::MPI::this_mpi_process(communicator),
+      dealii::Utilities::MPI::n_mpi_processes(communicator));
+    test<dim>(
+      *box, piece, {"left", "bottom", "right", "top"}, 69., 2e-3, end_shared);
+  }
+
+
+
+  /// A mesh that is halved, with a curved contact boundary.
+  template <int dim>
+  void
+  test(const std::string &generator,
+       const std::string &arguments,
+       const unsigned int n_refinements,
+       const Sides       &sides,
+       const double       stiffness,
+       const double       threshold,
+       const unsigned int end_shared)
+  {
+    BodyParameters parameters;
+    parameters.source        = BodyParameters::Source::generator;
+    parameters.generator     = generator;
+    parameters.arguments     = arguments;
+    parameters.n_refinements = n_refinements;
+    const auto body          = std::dynamic_pointer_cast<const MeshBody<dim>>(
+      make_body(dim, parameters));
+    const MeshPiece<dim> piece(body, communicator);
+    test<dim>(*body, piece, sides, stiffness, threshold, end_shared);
+  }
 } // namespace
 
 
@@ -341,5 +391,33 @@ main(int argc, char *argv[])
       test<2>({{4, 512, 1}}, end_shared, {{0.01, 1.28, 1.}});
       std::cout << "3D, odd numbers" << std::endl;
       test<3>({{37, 5, 3}}, end_shared);
+      std::cout << "A quarter of a ring" << std::endl;
+      test<2>("quarter_hyper_shell",
+              "0, 0 : 0.1 : 0.2 : 3 : true",
+              5,
+              {"2", "1", "3", "0"},
+              69.,
+              2e-3,
+              end_shared);
+      std::cout << "A plate with a hole" << std::endl;
+      test<2>(
+        "plate_with_a_hole",
+        "0.05 : 0.1 : 0.02 : 0.02 : 0.02 : 0.02 : 0, 0 : 0 : 1 : 1 : 2 : true",
+        4,
+        {"0", "4", "1", "3"},
+        69.,
+        2e-3,
+        end_shared);
+      if (end_shared == 1)
+        continue;
+      std::cout << "A plate with a hole, 3D" << std::endl;
+      test<3>(
+        "plate_with_a_hole",
+        "0.05 : 0.1 : 0.02 : 0.02 : 0.02 : 0.02 : 0, 0, 0 : 0 : 1 : 0.1 : 4 : true",
+        2,
+        {"0", "4", "1", "3"},
+        69.,
+        2e-3,
+        end_shared);
     }
 }

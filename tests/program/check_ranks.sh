@@ -38,6 +38,50 @@ scene solid 3 "42, 4, 3" "0.4, 0.04, 0.03" "0; 0.02; 0"
 # Ranks share its first coarser level, too.
 scene fine 2 "479, 63" "0.479, 0.063" "0; 0.02"
 
+# A mesh of Gmsh that is halved, with curved sides (its finest level and the next one
+# are shared), and what a generator makes in 3D.
+sed "s=ring.msh=$tests/../prm/cookbook/ring.msh=" \
+  "$tests/../prm/cookbook/ring.prm" >ring.prm
+cat >>ring.prm <<END
+subsection Mesh
+  set Refinements = 3
+end
+subsection Solver
+  set Method = majorise minimise
+  set Linear solver = multigrid
+  set Search = none
+end
+subsection Output
+  set Displacement = true
+  set Machine details = false
+end
+END
+cat >pipe.prm <<END
+set Dimension = 3
+subsection Mesh
+  set Source = generator
+  set Generator = quarter_hyper_shell
+  set Arguments = 0, 0, 0 : 0.1 : 0.2 : 3 : true
+  set Refinements = 3
+end
+subsection Boundary conditions
+  set Clamped boundaries = 2
+  set Contact boundary = 1
+end
+subsection Loads
+  set Traction 3 = 0; 0.02; 0
+end
+subsection Solver
+  set Method = majorise minimise
+  set Linear solver = multigrid
+  set Search = none
+end
+subsection Output
+  set Displacement = true
+  set Machine details = false
+end
+END
+
 # What all ranks have: neither times nor the error estimate and the means.
 numbers() {
   python3 - "$1" <<'END'
@@ -75,9 +119,9 @@ assert sorted(row for piece in pieces for row in rows(piece, names)) == sorted(
     rows(whole, names))
 SCRIPT
 
-for name in plane solid fine; do
+for name in plane solid fine ring pipe; do
   ranks="2 3 4"
-  [ $name != fine ] || ranks=3
+  [[ $name != @(fine|ring) ]] || ranks=3
   expect_code 0 "$debond" $name.prm --set Output/Directory=$name-1
   numbers $name-1/summary.json >$name-1.numbers
   for n in $ranks; do
@@ -120,10 +164,15 @@ expect_code 2 mpirun --oversubscribe -n 5 "$debond" plane.prm \
 grep -q "at most as many ranks, not 5" errors || fail "$(cat errors)"
 
 # Bodies and displacements that ranks do not share, and a word of what they leave out.
-expect_code 2 mpirun --oversubscribe -n 2 "$debond" \
-  "$tests/../prm/cookbook/ring.prm" --set Output/Directory=refused
-[ "$(grep -c "Mesh/Source: several ranks share boxes only" errors)" -eq 1 ] ||
-  fail "$(cat errors)"
+# refused_ring VALUE MESSAGE
+refused_ring() {
+  expect_code 2 mpirun --oversubscribe -n 2 "$debond" ring.prm \
+    --set Output/Directory=refused --set "$1"
+  [ "$(grep -c "$2" errors)" -eq 1 ] || fail "$1: $(cat errors)"
+  [ ! -e refused ] || fail "$1: there is a directory"
+}
+refused_ring "Mesh/Refinements=0" "Mesh/Refinements: .*coarser levels"
+refused_ring "Parts/half=x > 0" "Parts: several ranks"
 expect_code 2 mpirun --oversubscribe -n 2 "$debond" plane.prm \
   --set Mesh/Degree=2 --set "Contact law/Quadrature=gauss 4" \
   --set "Solver/Linear solver=automatic" --set Output/Directory=refused

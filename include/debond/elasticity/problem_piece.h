@@ -10,17 +10,17 @@
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/linear_algebra/multigrid/shared_nodes.h>
 #include <debond/linear_algebra/multigrid/shared_trace.h>
-#include <debond/mesh/box_piece.h>
+#include <debond/mesh/body_piece.h>
 
 #include <memory>
 #include <vector>
 
 namespace Debond
 {
-  /// The points of the nodes (of degree 1), by number.
+  /// The vertices of the mesh that the nodes (of degree 1) are, by number.
   template <int dim>
-  std::vector<dealii::Point<dim>>
-  node_points(const ElasticUnknowns<dim> &unknowns);
+  std::vector<unsigned int>
+  node_vertices(const ElasticUnknowns<dim> &unknowns);
 
 
 
@@ -28,7 +28,7 @@ namespace Debond
   /// numbers in the whole.
   template <int dim>
   std::vector<unsigned int>
-  node_order(const BoxPiece<dim>              &piece,
+  node_order(const BodyPiece<dim>             &piece,
              const dealii::Triangulation<dim> &mesh);
 
 
@@ -45,13 +45,13 @@ namespace Debond
     /// To be called by all ranks, and so are the functions below that gather.
     /// The order of the unknowns has to be that of node_order(). Supports must
     /// have no displacements or gaps other than zero.
-    ProblemPiece(const BoxPiece<dim>        &piece,
+    ProblemPiece(const BodyPiece<dim>       &piece,
                  const ElasticUnknowns<dim> &unknowns,
                  const MPI_Comm              communicator);
 
     ProblemPiece(const ProblemPiece &) = delete;
 
-    const BoxPiece<dim> &
+    const BodyPiece<dim> &
     body() const;
 
     const SharedNodes &
@@ -113,7 +113,7 @@ namespace Debond
     void
     prepare_gathering(const dealii::DoFHandler<dim> &dofs);
 
-    const BoxPiece<dim>      &piece;
+    const BodyPiece<dim>     &piece;
     SharedNodes               shared_nodes;
     ContactBoundary<dim>      contact_boundary;
     std::vector<unsigned int> local_normals, numbers_of_normals;

@@ -25,6 +25,15 @@ namespace Debond
   using RegionNames =
     std::map<std::string, std::set<dealii::types::material_id>>;
 
+  /// Coarser levels of which the last has more vertices are no use: it is
+  /// factorised at each change of the contact set.
+  constexpr double most_coarsest_vertices = 5000.;
+
+  /// Levels below are not worth a smoother.
+  constexpr double fewest_vertices_of_level = 400.;
+
+
+
   /// The name of a boundary for messages, the narrowest of those that it has,
   /// "boundary 7" if it has none.
   std::string
@@ -143,16 +152,18 @@ namespace Debond
                 const std::vector<dealii::Point<dim>>     &points) const = 0;
 
     /// The meshes of the coarser bodies as far as they are good for multigrid,
-    /// finest first, down to one that takes nothing to solve; @p vertices are
-    /// those of the body's own mesh, in any order. Empty if there are none.
+    /// finest first, down to one that takes nothing to solve; interpolation is
+    /// to the vertices of @p mesh, which is the one of make_mesh(), in the
+    /// order @p vertices. Empty if there are none.
     virtual std::vector<CoarseLevel<dim>>
-    coarse_levels(const std::vector<dealii::Point<dim>> &vertices) const;
+    coarse_levels(const dealii::Triangulation<dim> &mesh,
+                  const std::vector<unsigned int>  &vertices) const;
 
     /// For each of the mesh's vertices the slab of the body that it lies in:
     /// sums are made slab by slab, so that they do not depend on where slabs
     /// are. One for all if there is no other.
     virtual std::vector<unsigned int>
-    slabs(const std::vector<dealii::Point<dim>> &vertices) const;
+    slabs(const dealii::Triangulation<dim> &mesh) const;
   };
 } // namespace Debond
 

@@ -82,14 +82,13 @@ namespace Debond
                 const std::vector<dealii::Point<dim>> &points) const override;
 
     std::vector<CoarseLevel<dim>>
-    coarse_levels(
-      const std::vector<dealii::Point<dim>> &vertices) const override;
+    coarse_levels(const dealii::Triangulation<dim> &mesh,
+                  const std::vector<unsigned int>  &vertices) const override;
 
     /// Layers of cells along x; what lies between two belongs to the second.
     std::vector<unsigned int>
-    slabs(const std::vector<dealii::Point<dim>> &vertices) const override;
+    slabs(const dealii::Triangulation<dim> &mesh) const override;
 
-  protected:
     /// Those of coarse_levels().
     std::vector<BoxParameters>
     coarse_boxes() const;

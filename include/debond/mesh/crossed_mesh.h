@@ -4,6 +4,8 @@
 
 #include <deal.II/grid/tria.h>
 
+#include <vector>
+
 namespace Debond
 {
   /**
@@ -25,6 +27,18 @@ namespace Debond
   void
   crossed_subdivision(const dealii::Triangulation<dim> &coarse,
                       dealii::Triangulation<dim>       &crossed);
+
+  /// The same of some cells of a mesh, in this order: simplices and vertices
+  /// are to the last bit and in the order in which the whole has them, but for
+  /// those that are not there. Faces inside of the body at which the cells end
+  /// get the id @p id_of_cuts.
+  template <int dim>
+  void
+  crossed_part(
+    const std::vector<typename dealii::Triangulation<dim>::cell_iterator>
+                                    &coarse_cells,
+    const dealii::types::boundary_id id_of_cuts,
+    dealii::Triangulation<dim>      &crossed);
 } // namespace Debond
 
 #endif

@@ -68,11 +68,11 @@ namespace Debond
 
     /// Those of the whole.
     std::vector<CoarseLevel<dim>>
-    coarse_levels(
-      const std::vector<dealii::Point<dim>> &vertices) const override;
+    coarse_levels(const dealii::Triangulation<dim> &mesh,
+                  const std::vector<unsigned int>  &vertices) const override;
 
     std::vector<unsigned int>
-    slabs(const std::vector<dealii::Point<dim>> &vertices) const override;
+    slabs(const dealii::Triangulation<dim> &mesh) const override;
 
   private:
     const std::shared_ptr<const Body<dim>> whole;

@@ -11,7 +11,7 @@
 
 namespace Debond
 {
-  /// run() by all ranks, which share the scene (BoxPiece): the first one
+  /// run() by all ranks, which share the scene (BodyPiece): the first one
   /// writes log, messages and files but body.pvtu, and all return its exit
   /// code. There are no probes. Throws BadInput on all of them if they cannot
   /// share the scene, before anything is written.

@@ -39,9 +39,9 @@ namespace Debond
 
     /// The piece that one of several ranks has. To be called by all of them; an
     /// error of one is thrown by all. There are no probes.
-    Scene(const ProblemParameters             &given,
-          std::shared_ptr<const BoxPiece<dim>> piece,
-          const MPI_Comm                       ranks);
+    Scene(const ProblemParameters              &given,
+          std::shared_ptr<const BodyPiece<dim>> piece,
+          const MPI_Comm                        ranks);
 
     Scene(const Scene &) = delete;
 
@@ -129,16 +129,16 @@ namespace Debond
           std::shared_ptr<const Body<dim>> body,
           const MatrixStorage              storage,
           const std::string               &start,
-          const BoxPiece<dim>             *box_piece,
+          const BodyPiece<dim>            *body_piece,
           const MPI_Comm                   ranks);
 
     /// All but what belongs to the contact boundary; @p entry is that of
     /// errors.
     void
-    add_problem(const MatrixStorage  storage,
-                const BoxPiece<dim> *box_piece,
-                BoundaryNames       &boundaries,
-                std::string         &entry);
+    add_problem(const MatrixStorage   storage,
+                const BodyPiece<dim> *body_piece,
+                BoundaryNames        &boundaries,
+                std::string          &entry);
 
     void
     add_start(const std::string &file);
