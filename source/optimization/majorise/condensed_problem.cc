@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/optimization/polar_cone.h>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace Debond
 {
@@ -23,15 +25,14 @@ namespace Debond
     /// but far from rounding.
     constexpr double proximal_stiffness = 1e-8;
 
-    /// Of a plate that tips over its edge they shrink by a tenth each until
-    /// they are the rigid motion.
+    /// Far more than scenes need.
     constexpr unsigned int maximum_proximal_steps = 500;
 
     /// What is left of a resultant, relative to the forces, when it is
     /// balanced.
     constexpr double balanced = 1e-12;
 
-    /// Repeated steps differ by less, relatively.
+    /// Of the repeated part of a step, relative to the step: what is left.
     constexpr double same_step = 1e-3;
 
     /// What a rigid motion away from the foundation may go towards it, relative
@@ -208,9 +209,26 @@ namespace Debond
 
 
 
+  bool
+  CondensedProblem::falls_along(const Eigen::MatrixXd &Z) const
+  {
+    Eigen::MatrixXd towards  = Z.transpose();
+    const double    furthest = towards.colwise().norm().maxCoeff();
+    for (auto node : towards.colwise())
+      if (node.norm() <= towards_foundation * furthest)
+        node.setZero();
+    const std::optional<Eigen::VectorXd> unbalanced =
+      project_on_polar_cone(towards, Z.transpose() * r);
+    return unbalanced && unbalanced->norm() > balanced * r.norm();
+  }
+
+
+
   MajorantProblem::Minimisation
   CondensedProblem::minimise_along(const Eigen::MatrixXd &Z)
   {
+    if (falls_along(Z))
+      return {SolverStatus::comes_off, 0, 0};
     const double          delta    = proximal_stiffness * stiffness;
     const Eigen::MatrixXd proximal = M + delta * Z * Z.transpose();
     const double          forces   = r.norm();
@@ -237,22 +255,29 @@ namespace Debond
             s = x;
             return {qp.status, n_systems, 0};
           }
-        // It would go on like this for ever, or until it meets the foundation.
+        // Where something soft holds, each is a part of the one before; else it
+        // would go on like this for ever. Both, until it meets the foundation.
         // Bonds that are about to break beside a node that stays in contact
         // turn the softest motions a little out of the one about that node.
-        const Eigen::VectorXd rigid = N * (N.transpose() * step);
-        if (last_step.size() > 0 &&
-            (step - last_step).norm() <= same_step * step.norm() &&
-            (step - rigid).norm() <= same_step * step.norm())
+        const Eigen::VectorXd rigid   = N * (N.transpose() * step);
+        const double          ratio   = last_step.size() > 0 ?
+                                          step.dot(last_step) / last_step.squaredNorm() :
+                                          0.;
+        const bool            is_same = ratio >= 1. - same_step;
+        const bool is_rigid = (step - rigid).norm() <= same_step * step.norm();
+        if (ratio > 0. && (is_rigid || !is_same) &&
+            (step - ratio * last_step).norm() <= same_step * step.norm())
           {
-            const double least = towards_foundation * rigid.norm();
-            if (rigid.maxCoeff() <= least)
+            const Eigen::VectorXd &way   = is_same ? rigid : step;
+            const double           least = towards_foundation * way.norm();
+            if (is_same && way.maxCoeff() <= least)
               return {SolverStatus::comes_off, n_systems, 0};
-            double until = std::numeric_limits<double>::max();
+            double further = is_same ? std::numeric_limits<double>::max() :
+                                       ratio / (1. - ratio);
             for (Eigen::Index j = 0; j < x.size(); ++j)
-              if (rigid[j] > least)
-                until = std::min(until, -x[j] / rigid[j]);
-            x += until * rigid;
+              if (way[j] > least)
+                further = std::min(further, -x[j] / way[j]);
+            x += further * way;
           }
         last_step = step;
       }

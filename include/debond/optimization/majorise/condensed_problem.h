@@ -63,6 +63,11 @@ namespace Debond
     Eigen::MatrixXd
     motions_without_stiffness() const;
 
+    /// Whether the majorant has no minimum: no pressures of the foundation
+    /// balance what its forces do along the columns of Z.
+    bool
+    falls_along(const Eigen::MatrixXd &Z) const;
+
     /// By proximal steps along the columns of Z.
     Minimisation
     minimise_along(const Eigen::MatrixXd &Z);
