@@ -4,19 +4,42 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
+#include <algorithm>
+
 namespace Debond
 {
   namespace
   {
-    using Corners = std::vector<dealii::Point<2>>;
+    template <int dim>
+    using Corners = std::vector<dealii::Point<dim>>;
 
-    /// The stresses of a triangle in the order of EquilibriumElement::stress().
-    constexpr int stresses_of_a_triangle = 9;
+    template <int dim>
+    constexpr int n_stress_components =
+      dealii::SymmetricTensor<2, dim>::n_independent_components;
 
-    int
-    stress_index(const int triangle, const int corner, const int component)
+    /// The stresses of a simplex.
+    template <int dim>
+    constexpr int n_of_simplex = LinearStress<dim>::RowsAtCompileTime;
+
+    /// The row and the column of a component.
+    template <int dim>
+    std::array<int, 2>
+    row_and_column(const int component)
     {
-      return stresses_of_a_triangle * triangle + 3 * corner + component;
+      const auto indices =
+        dealii::SymmetricTensor<2, dim>::unrolled_to_component_indices(
+          component);
+      return {{static_cast<int>(indices[0]), static_cast<int>(indices[1])}};
+    }
+
+
+
+    template <int dim>
+    int
+    stress_index(const int simplex, const int corner, const int component)
+    {
+      return n_of_simplex<dim> * simplex + n_stress_components<dim> * corner +
+             component;
     }
 
 
@@ -29,189 +52,374 @@ namespace Debond
 
 
 
-    /// Adds @p weight times the traction sigma n at a corner to two rows.
+    /// Adds @p weight times the traction sigma n at a corner to dim rows.
+    template <int dim>
     void
-    add_traction(const int                   triangle,
-                 const int                   corner,
-                 const dealii::Tensor<1, 2> &normal,
-                 const double                weight,
-                 const int                   row,
-                 Eigen::MatrixXd            &matrix)
+    add_traction(const int                     simplex,
+                 const int                     corner,
+                 const dealii::Tensor<1, dim> &normal,
+                 const double                  weight,
+                 const int                     row,
+                 Eigen::MatrixXd              &matrix)
     {
-      matrix(row, stress_index(triangle, corner, 0)) += weight * normal[0];
-      matrix(row, stress_index(triangle, corner, 2)) += weight * normal[1];
-      matrix(row + 1, stress_index(triangle, corner, 2)) += weight * normal[0];
-      matrix(row + 1, stress_index(triangle, corner, 1)) += weight * normal[1];
+      for (int k = 0; k < n_stress_components<dim>; ++k)
+        {
+          const auto [a, b] = row_and_column<dim>(k);
+          const int column  = stress_index<dim>(simplex, corner, k);
+          matrix(row + a, column) += weight * normal[b];
+          if (a != b)
+            matrix(row + b, column) += weight * normal[a];
+        }
     }
 
 
 
-    dealii::Point<2>
-    mean(const Corners &corners)
+    template <int dim>
+    dealii::Point<dim>
+    mean(const Corners<dim> &corners)
     {
-      dealii::Point<2> sum;
-      for (const dealii::Point<2> &corner : corners)
+      dealii::Point<dim> sum;
+      for (const dealii::Point<dim> &corner : corners)
         sum += corner;
-      return dealii::Point<2>(sum / static_cast<double>(corners.size()));
+      return dealii::Point<dim>(sum / static_cast<double>(corners.size()));
+    }
+
+
+
+    /// The corners of the simplex above a side: those of the side, the centre.
+    template <int dim>
+    std::array<dealii::Point<dim>, dim + 1>
+    simplex_above(const Corners<dim>       &corners,
+                  const dealii::Point<dim> &centre,
+                  const int                 side)
+    {
+      const auto local =
+        corners_of_side<dim>(static_cast<unsigned int>(corners.size()),
+                             static_cast<unsigned int>(side));
+      std::array<dealii::Point<dim>, dim + 1> result;
+      for (unsigned int k = 0; k < dim; ++k)
+        result[k] = corners[local[k]];
+      result[dim] = centre;
+      return result;
+    }
+
+
+
+    /// Adds the divergence of a simplex, up to a factor, to dim rows.
+    template <int dim>
+    void
+    add_divergence(const int                                      simplex,
+                   const std::array<dealii::Point<dim>, dim + 1> &points,
+                   const int                                      row,
+                   Eigen::MatrixXd                               &matrix)
+    {
+      // The gradients of the barycentric coordinates are normals of the
+      // opposite sides.
+      for (unsigned int k = 0; k <= dim; ++k)
+        {
+          std::array<dealii::Point<dim>, dim> side;
+          if constexpr (dim == 2)
+            side = {{points[(k + 1) % 3], points[(k + 2) % 3]}};
+          else
+            {
+              const auto local = corners_of_side<dim>(4, k);
+              for (unsigned int i = 0; i < dim; ++i)
+                side[i] = points[local[i]];
+            }
+          add_traction<dim>(simplex,
+                            static_cast<int>(k),
+                            scaled_normal<dim>(side),
+                            1.,
+                            row,
+                            matrix);
+        }
+    }
+
+
+
+    /// What is zero for stresses with continuous tractions and no divergence.
+    Eigen::MatrixXd
+    equilibrium_conditions(const Corners<2> &corners)
+    {
+      const int              n      = static_cast<int>(corners.size());
+      const dealii::Point<2> centre = mean(corners);
+      Eigen::MatrixXd        result =
+        Eigen::MatrixXd::Zero(6 * n, n_of_simplex<2> * n);
+      for (int i = 0; i < n; ++i)
+        {
+          // Between the triangles before and after corner i.
+          const dealii::Tensor<1, 2> normal   = turned(corners[i] - centre);
+          const int                  previous = (i + n - 1) % n;
+          add_traction(i, 0, normal, 1., 6 * i, result);
+          add_traction(previous, 1, normal, -1., 6 * i, result);
+          add_traction(i, 2, normal, 1., 6 * i + 2, result);
+          add_traction(previous, 2, normal, -1., 6 * i + 2, result);
+          add_divergence(i,
+                         simplex_above(corners, centre, i),
+                         6 * i + 4,
+                         result);
+        }
+      return result;
+    }
+
+
+
+    Eigen::MatrixXd
+    equilibrium_conditions(const Corners<3> &corners)
+    {
+      const dealii::Point<3> centre = mean(corners);
+      Eigen::MatrixXd result = Eigen::MatrixXd::Zero(66, 4 * n_of_simplex<3>);
+      int             row    = 0;
+      for (int i = 0; i < 4; ++i)
+        {
+          add_divergence(i, simplex_above(corners, centre, i), row, result);
+          row += 3;
+          // Between the tetrahedra above the faces i and j, two corners of
+          // which are in both, and the centre.
+          const auto of_i = corners_of_side<3>(4, static_cast<unsigned int>(i));
+          for (int j = 0; j < i; ++j)
+            {
+              const auto of_j =
+                corners_of_side<3>(4, static_cast<unsigned int>(j));
+              std::vector<std::array<int, 2>> common = {{{3, 3}}};
+              for (int a = 0; a < 3; ++a)
+                for (int b = 0; b < 3; ++b)
+                  if (of_i[a] == of_j[b])
+                    common.push_back({{a, b}});
+              const dealii::Tensor<1, 3> normal =
+                scaled_normal<3>({{centre,
+                                   corners[of_i[common[1][0]]],
+                                   corners[of_i[common[2][0]]]}});
+              for (const auto &[a, b] : common)
+                {
+                  add_traction(i, a, normal, 1., row, result);
+                  add_traction(j, b, normal, -1., row, result);
+                  row += 3;
+                }
+            }
+        }
+      return result;
     }
 
 
 
     /// A basis of the stresses with continuous tractions and no divergence, in
     /// columns.
+    template <int dim>
     Eigen::MatrixXd
-    divergence_free(const Corners &corners)
+    divergence_free(const Corners<dim> &corners)
     {
-      const int              n      = static_cast<int>(corners.size());
-      const dealii::Point<2> centre = mean(corners);
-      Eigen::MatrixXd        conditions =
-        Eigen::MatrixXd::Zero(6 * n, stresses_of_a_triangle * n);
-      for (int i = 0; i < n; ++i)
-        {
-          // Between the triangles before and after corner i.
-          const dealii::Tensor<1, 2> normal   = turned(corners[i] - centre);
-          const int                  previous = (i + n - 1) % n;
-          add_traction(i, 0, normal, 1., 6 * i, conditions);
-          add_traction(previous, 1, normal, -1., 6 * i, conditions);
-          add_traction(i, 2, normal, 1., 6 * i + 2, conditions);
-          add_traction(previous, 2, normal, -1., 6 * i + 2, conditions);
-
-          // Twice the area times the gradients are the turned opposite edges.
-          const dealii::Point<2> next = corners[(i + 1) % n];
-          add_traction(i, 0, turned(centre - next), 1., 6 * i + 4, conditions);
-          add_traction(
-            i, 1, turned(corners[i] - centre), 1., 6 * i + 4, conditions);
-          add_traction(
-            i, 2, turned(next - corners[i]), 1., 6 * i + 4, conditions);
-        }
       // The null space is what is orthogonal to the range of the transpose.
       const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(
-        conditions.transpose());
+        equilibrium_conditions(corners).transpose());
       const Eigen::MatrixXd Q = qr.matrixQ();
       return Q.rightCols(Q.cols() - qr.rank());
     }
 
 
 
-    /// The basis of a polygon that is the affine image of a reference polygon:
-    /// x = a + B y maps sigma to B sigma B', which keeps tractions continuous
-    /// and the divergence zero.
     Eigen::MatrixXd
-    mapped_basis(const Corners &corners)
+    reference_basis(const Corners<2> &corners)
     {
       static const Eigen::MatrixXd triangle =
-        divergence_free({{0., 0.}, {1., 0.}, {0., 1.}});
+        divergence_free<2>({{0., 0.}, {1., 0.}, {0., 1.}});
       static const Eigen::MatrixXd square =
-        divergence_free({{0., 0.}, {1., 0.}, {1., 1.}, {0., 1.}});
+        divergence_free<2>({{0., 0.}, {1., 0.}, {1., 1.}, {0., 1.}});
+      return corners.size() == 3 ? triangle : square;
+    }
 
-      const dealii::Tensor<1, 2> x = corners[1] - corners[0];
-      const dealii::Tensor<1, 2> y = corners.back() - corners[0];
+
+
+    Eigen::MatrixXd
+    reference_basis(const Corners<3> &)
+    {
+      static const Eigen::MatrixXd tetrahedron = divergence_free<3>(
+        {{0., 0., 0.}, {1., 0., 0.}, {0., 1., 0.}, {0., 0., 1.}});
+      return tetrahedron;
+    }
+
+
+
+    /// The basis of a cell that is the affine image of a reference cell:
+    /// x = a + B y maps sigma to B sigma B', which keeps tractions continuous
+    /// and the divergence zero.
+    template <int dim>
+    Eigen::MatrixXd
+    mapped_basis(const Corners<dim> &corners)
+    {
+      dealii::Tensor<2, dim> B;
+      double                 scale = 0.;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const dealii::Tensor<1, dim> edge =
+            (d + 1 == dim ? corners.back() : corners[d + 1]) - corners[0];
+          for (unsigned int e = 0; e < dim; ++e)
+            B[e][d] = edge[e];
+          scale += edge * edge;
+        }
+      using Map = Eigen::
+        Matrix<double, n_stress_components<dim>, n_stress_components<dim>>;
+      Map map;
+      for (int k = 0; k < n_stress_components<dim>; ++k)
+        for (int l = 0; l < n_stress_components<dim>; ++l)
+          {
+            const auto [a, b] = row_and_column<dim>(k);
+            const auto [p, q] = row_and_column<dim>(l);
+            map(k, l)         = B[a][p] * B[b][q];
+            if (p != q)
+              map(k, l) += B[a][q] * B[b][p];
+          }
       // Without it the basis would grow with the size of the cell.
-      const double    scale = 1. / (x * x + y * y);
-      Eigen::Matrix3d map;
-      map << x[0] * x[0], y[0] * y[0], 2. * x[0] * y[0], //
-        x[1] * x[1], y[1] * y[1], 2. * x[1] * y[1],      //
-        x[0] * x[1], y[0] * y[1], x[0] * y[1] + y[0] * x[1];
-      map *= scale;
-      Eigen::MatrixXd basis = corners.size() == 3 ? triangle : square;
-      for (int i = 0; i < basis.rows(); i += 3)
-        basis.middleRows<3>(i) = map * basis.middleRows<3>(i).eval();
+      map *= 1. / scale;
+      Eigen::MatrixXd basis = reference_basis(corners);
+      for (int i = 0; i < basis.rows(); i += n_stress_components<dim>)
+        basis.middleRows<n_stress_components<dim>>(i) =
+          map * basis.middleRows<n_stress_components<dim>>(i).eval();
       return basis;
     }
 
 
 
-    /// sigma : C^{-1} sigma for xx, yy and xy.
-    Eigen::Matrix3d
+    /// sigma : C^{-1} sigma.
+    template <int dim>
+    Eigen::Matrix<double, n_stress_components<dim>, n_stress_components<dim>>
     compliance(const Material &material)
     {
-      const double    mu      = material.shear_modulus();
-      const double    lambda  = material.lame_lambda<2>();
-      const double    coupled = lambda / (2. * (lambda + mu));
-      Eigen::Matrix3d result;
-      result << 1. - coupled, -coupled, 0., //
-        -coupled, 1. - coupled, 0.,         //
-        0., 0., 2.;
+      const double mu      = material.shear_modulus();
+      const double lambda  = material.lame_lambda<dim>();
+      const double coupled = lambda / (dim * lambda + 2. * mu);
+      Eigen::Matrix<double, n_stress_components<dim>, n_stress_components<dim>>
+        result;
+      result.setZero();
+      for (int k = 0; k < n_stress_components<dim>; ++k)
+        for (int l = 0; l < n_stress_components<dim>; ++l)
+          if (k < dim && l < dim)
+            result(k, l) = k == l ? 1. - coupled : -coupled;
+          else if (k == l)
+            result(k, l) = 2.;
       return result / (2. * mu);
     }
 
 
 
-    /// int sigma : C^{-1} sigma of linear stresses of a triangle.
-    Eigen::Matrix<double, 9, 9>
-    compliance_matrix(const double area, const Material &material)
+    /// int sigma : C^{-1} sigma of linear stresses of a simplex.
+    template <int dim>
+    Eigen::Matrix<double, n_of_simplex<dim>, n_of_simplex<dim>>
+    compliance_matrix(const double measure, const Material &material)
     {
-      const Eigen::Matrix3d       pointwise = compliance(material);
-      Eigen::Matrix<double, 9, 9> result;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-          result.block<3, 3>(3 * i, 3 * j) =
-            area / (i == j ? 6. : 12.) * pointwise;
+      constexpr int n         = n_stress_components<dim>;
+      const auto    pointwise = compliance<dim>(material);
+      Eigen::Matrix<double, n_of_simplex<dim>, n_of_simplex<dim>> result;
+      for (int i = 0; i <= dim; ++i)
+        for (int j = 0; j <= dim; ++j)
+          result.template block<n, n>(n * i, n * j) =
+            measure / ((dim + 1) * (dim + 2) / (i == j ? 2. : 1.)) * pointwise;
       return result;
     }
 
 
 
+    /// The value at a corner of a side of the function that the k-th vector of
+    /// a side's unknowns is the moment with, times the weight of the corner.
+    template <int dim>
     double
-    triangle_area(const dealii::Point<2> &a,
-                  const dealii::Point<2> &b,
-                  const dealii::Point<2> &c)
+    moment_weight(const int k, const int corner)
     {
-      return 0.5 * (turned(b - a) * (a - c));
+      if (dim == 3)
+        return k == corner ? 1. / 3. : 0.;
+      if (k == 0)
+        return 0.5;
+      return corner == 0 ? -1. / 6. : 1. / 6.;
     }
   } // namespace
 
 
 
-  double
-  complementary_energy(const Eigen::Matrix<double, 9, 1> &stress,
-                       const double                       area,
-                       const Material                    &material)
+  template <int dim>
+  std::array<unsigned int, dim>
+  corners_of_side(const unsigned int n_corners, const unsigned int side)
   {
-    return stress.dot(compliance_matrix(area, material) * stress);
+    if constexpr (dim == 2)
+      return {{side, (side + 1) % n_corners}};
+    else
+      {
+        constexpr std::array<std::array<unsigned int, 3>, 4> faces = {
+          {{{1, 2, 3}}, {{0, 3, 2}}, {{0, 1, 3}}, {{0, 2, 1}}}};
+        return faces[side];
+      }
   }
 
 
 
-  EquilibriumElement::EquilibriumElement(
-    const std::vector<dealii::Point<2>> &corners,
-    const Material                      &material,
-    const dealii::Tensor<1, 2>          &body_force,
-    const double                         thermal_stress)
+  template <int dim>
+  dealii::Tensor<1, dim>
+  scaled_normal(const std::array<dealii::Point<dim>, dim> &side)
+  {
+    if constexpr (dim == 2)
+      return turned(side[1] - side[0]);
+    else
+      return 0.5 *
+             dealii::cross_product_3d(side[1] - side[0], side[2] - side[0]);
+  }
+
+
+
+  template <int dim>
+  double
+  complementary_energy(const LinearStress<dim> &stress,
+                       const double             measure,
+                       const Material          &material)
+  {
+    return stress.dot(compliance_matrix<dim>(measure, material) * stress);
+  }
+
+
+
+  template <int dim>
+  EquilibriumElement<dim>::EquilibriumElement(
+    const std::vector<dealii::Point<dim>> &corners,
+    const Material                        &material,
+    const dealii::Tensor<1, dim>          &body_force,
+    const double                           thermal_stress)
     : corners(corners)
     , centre(mean(corners))
-    , area(0.)
+    , measure(0.)
   {
     const int n          = static_cast<int>(corners.size());
-    const int n_stresses = stresses_of_a_triangle * n;
+    const int n_stresses = n_of_simplex<dim> * n;
 
     // Moments of the tractions on the sides, and the flexibility.
-    Eigen::MatrixXd T = Eigen::MatrixXd::Zero(4 * n, n_stresses);
+    Eigen::MatrixXd T =
+      Eigen::MatrixXd::Zero(unknowns_of_a_side * n, n_stresses);
     Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n_stresses, n_stresses);
     // A stress with the given divergence, and the thermal stress.
     Eigen::VectorXd balance = Eigen::VectorXd::Zero(n_stresses);
     Eigen::VectorXd thermal = Eigen::VectorXd::Zero(n_stresses);
     for (int i = 0; i < n; ++i)
       {
-        const dealii::Point<2> &a = corners[i];
-        const dealii::Point<2> &b = corners[(i + 1) % n];
-        // As long as the side.
-        const dealii::Tensor<1, 2> normal = turned(b - a);
-        add_traction(i, 0, normal, 0.5, 4 * i, T);
-        add_traction(i, 1, normal, 0.5, 4 * i, T);
-        add_traction(i, 0, normal, -1. / 6., 4 * i + 2, T);
-        add_traction(i, 1, normal, 1. / 6., 4 * i + 2, T);
+        const auto points = simplex_above(corners, centre, i);
+        std::array<dealii::Point<dim>, dim> side;
+        std::copy_n(points.begin(), dim, side.begin());
+        const dealii::Tensor<1, dim> normal = scaled_normal<dim>(side);
+        for (int k = 0; k < dim; ++k)
+          for (int corner = 0; corner < dim; ++corner)
+            add_traction(i,
+                         corner,
+                         normal,
+                         moment_weight<dim>(k, corner),
+                         unknowns_of_a_side * i + dim * k,
+                         T);
 
-        const double part = triangle_area(a, b, centre);
-        area += part;
-        M.block<9, 9>(stresses_of_a_triangle * i, stresses_of_a_triangle * i) =
-          compliance_matrix(part, material);
+        const double part = normal * (side[0] - centre) / dim;
+        measure += part;
+        M.block<n_of_simplex<dim>, n_of_simplex<dim>>(n_of_simplex<dim> * i,
+                                                      n_of_simplex<dim> * i) =
+          compliance_matrix<dim>(part, material);
 
-        const dealii::Point<2> points[] = {a, b, centre};
-        for (int corner = 0; corner < 3; ++corner)
-          for (int d = 0; d < 2; ++d)
+        for (int corner = 0; corner <= dim; ++corner)
+          for (int d = 0; d < dim; ++d)
             {
-              const int k = stress_index(i, corner, d);
+              const int k = stress_index<dim>(i, corner, d);
               balance(k)  = -body_force[d] * (points[corner] - centre)[d];
               thermal(k)  = thermal_stress;
             }
@@ -234,9 +442,10 @@ namespace Debond
 
 
 
-  EquilibriumElement
-  EquilibriumElement::moved_to(
-    const std::vector<dealii::Point<2>> &other_corners) const
+  template <int dim>
+  EquilibriumElement<dim>
+  EquilibriumElement<dim>::moved_to(
+    const std::vector<dealii::Point<dim>> &other_corners) const
   {
     EquilibriumElement result = *this;
     result.corners            = other_corners;
@@ -246,10 +455,22 @@ namespace Debond
 
 
 
+  template <int dim>
   Eigen::VectorXd
-  EquilibriumElement::stress(const Eigen::VectorXd &displacements,
-                             const double           weight) const
+  EquilibriumElement<dim>::stress(const Eigen::VectorXd &displacements,
+                                  const double           weight) const
   {
     return weight * (to_stress * displacements) + particular;
   }
+
+
+
+  template decltype(corners_of_side<2>)      corners_of_side<2>;
+  template decltype(corners_of_side<3>)      corners_of_side<3>;
+  template decltype(scaled_normal<2>)        scaled_normal<2>;
+  template decltype(scaled_normal<3>)        scaled_normal<3>;
+  template decltype(complementary_energy<2>) complementary_energy<2>;
+  template decltype(complementary_energy<3>) complementary_energy<3>;
+  template struct EquilibriumElement<2>;
+  template struct EquilibriumElement<3>;
 } // namespace Debond

@@ -11,17 +11,33 @@
 #include <deque>
 #include <limits>
 #include <map>
+#include <type_traits>
 
 namespace Debond
 {
   namespace
   {
-    using Triangle = dealii::Triangulation<2>::cell_iterator;
+    template <int dim>
+    using CellOf = typename dealii::Triangulation<dim>::cell_iterator;
+
+    using Triangle = CellOf<2>;
 
     /// Of geometry and loads, relative.
     constexpr double equilibrium_rounding = 1e-10;
 
-    constexpr unsigned int unknowns_of_a_side = 4;
+    template <int dim>
+    constexpr unsigned int unknowns_of_a_side =
+      EquilibriumElement<dim>::unknowns_of_a_side;
+
+
+
+    /// Of a LinearStress, and at one of its corners.
+    template <int dim>
+    constexpr unsigned int n_of_part = LinearStress<dim>::RowsAtCompileTime;
+
+    template <int dim>
+    constexpr unsigned int n_at_corner =
+      dealii::SymmetricTensor<2, dim>::n_independent_components;
 
 
 
@@ -77,27 +93,32 @@ namespace Debond
 
 
 
-    /// Of a point of the reference triangle.
-    dealii::Point<2>
-    point_of(const Triangle &cell, const dealii::Point<2> &reference)
+    /// Of a point of the reference simplex.
+    template <int dim>
+    dealii::Point<dim>
+    point_of(const CellOf<dim> &cell, const dealii::Point<dim> &reference)
     {
-      return dealii::Point<2>(
-        cell->vertex(0) + reference[0] * (cell->vertex(1) - cell->vertex(0)) +
-        reference[1] * (cell->vertex(2) - cell->vertex(0)));
+      dealii::Point<dim> point = cell->vertex(0);
+      for (unsigned int d = 0; d < dim; ++d)
+        point += reference[d] * (cell->vertex(d + 1) - cell->vertex(0));
+      return point;
     }
 
 
 
-    /// The face of the cell with these vertices.
+    /// The face of the cell with these vertices, which are sorted.
+    template <int dim>
     unsigned int
-    face_between(const Triangle                    &cell,
-                 const std::array<unsigned int, 2> &vertices)
+    face_with(const CellOf<dim>                   &cell,
+              const std::array<unsigned int, dim> &vertices)
     {
       for (const unsigned int face : cell->face_indices())
         {
-          const unsigned int a = cell->face(face)->vertex_index(0);
-          const unsigned int b = cell->face(face)->vertex_index(1);
-          if (std::min(a, b) == vertices[0] && std::max(a, b) == vertices[1])
+          std::array<unsigned int, dim> own;
+          for (unsigned int k = 0; k < dim; ++k)
+            own[k] = cell->face(face)->vertex_index(k);
+          std::sort(own.begin(), own.end());
+          if (own == vertices)
             return face;
         }
       throw std::logic_error("The cell has no such face.");
@@ -105,19 +126,25 @@ namespace Debond
 
 
 
-    std::vector<double>
-    values(const dealii::Function<2> &function, const dealii::Point<2> &point)
+    template <int dim>
+    dealii::Tensor<1, dim>
+    values(const dealii::Function<dim> &function,
+           const dealii::Point<dim>    &point)
     {
-      return {field_value(function, point, 0), field_value(function, point, 1)};
+      dealii::Tensor<1, dim> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = field_value(function, point, d);
+      return result;
     }
 
 
 
-    /// Whether both are the same polygon at different places, but for the
-    /// rounding of coordinates.
+    /// Whether both are the same polygon or tetrahedron at different places,
+    /// but for the rounding of coordinates.
+    template <int dim>
     bool
-    is_moved(const std::vector<dealii::Point<2>> &one,
-             const std::vector<dealii::Point<2>> &other)
+    is_moved(const std::vector<dealii::Point<dim>> &one,
+             const std::vector<dealii::Point<dim>> &other)
     {
       constexpr double rounding = 1e-12;
       if (one.size() != other.size())
@@ -134,27 +161,185 @@ namespace Debond
 
 
     /// Of a point of the cell.
-    std::array<double, 3>
-    barycentric_of(const LinearSimplex<2> &simplex,
-                   const Triangle         &cell,
-                   const dealii::Point<2> &point)
+    template <int dim>
+    std::array<double, dim + 1>
+    barycentric_of(const LinearSimplex<dim> &simplex,
+                   const CellOf<dim>        &cell,
+                   const dealii::Point<dim> &point)
     {
-      std::array<double, 3> result;
-      for (unsigned int v = 0; v < 3; ++v)
+      std::array<double, dim + 1> result;
+      for (unsigned int v = 0; v <= dim; ++v)
         result[v] = 1. + simplex.gradients[v] * (point - cell->vertex(v));
+      return result;
+    }
+
+
+
+    /// The unit vectors of a side with this normal: the normal first.
+    dealii::Tensor<2, 2>
+    normal_frame(const dealii::Tensor<1, 2> &normal)
+    {
+      dealii::Tensor<2, 2> rows;
+      rows[0] = normal;
+      rows[1] = dealii::Tensor<1, 2>({-normal[1], normal[0]});
+      return rows;
+    }
+
+
+
+    dealii::Tensor<2, 3>
+    normal_frame(const dealii::Tensor<1, 3> &normal)
+    {
+      // Across the axis that the normal is farthest from.
+      unsigned int axis = 0;
+      for (unsigned int d = 1; d < 3; ++d)
+        if (std::abs(normal[d]) < std::abs(normal[axis]))
+          axis = d;
+      dealii::Tensor<1, 3> unit;
+      unit[axis] = 1.;
+      dealii::Tensor<2, 3> rows;
+      rows[0] = normal;
+      rows[1] = dealii::cross_product_3d(normal, unit);
+      rows[1] /= rows[1].norm();
+      rows[2] = dealii::cross_product_3d(normal, rows[1]);
+      return rows;
+    }
+
+
+
+    /// A point of a side with the part of it that belongs to it.
+    template <int dim>
+    struct SidePoint
+    {
+      std::array<double, dim> barycentric;
+      double                  weight;
+    };
+
+
+
+    /// Many of them, in which no load can hide that is not linear.
+    std::vector<SidePoint<2>>
+    points_of_side(std::integral_constant<int, 2>)
+    {
+      constexpr unsigned int    parts = 16;
+      const dealii::QGauss<1>   rule(3);
+      std::vector<SidePoint<2>> result;
+      for (unsigned int part = 0; part < parts; ++part)
+        for (unsigned int q = 0; q < rule.size(); ++q)
+          {
+            const double t = (part + rule.point(q)[0]) / parts;
+            result.push_back({{{1. - t, t}}, rule.weight(q) / parts});
+          }
+      return result;
+    }
+
+
+
+    std::vector<SidePoint<3>>
+    points_of_side(std::integral_constant<int, 3>)
+    {
+      constexpr unsigned int         parts = 4;
+      const dealii::QGaussSimplex<2> rule(3);
+      std::vector<SidePoint<3>>      result;
+      const auto add = [&](const double x, const double y, const double size) {
+        for (unsigned int q = 0; q < rule.size(); ++q)
+          {
+            const double a = x + size * rule.point(q)[0];
+            const double b = y + size * rule.point(q)[1];
+            result.push_back(
+              {{{1. - a - b, a, b}}, 2. * size * size * rule.weight(q)});
+          }
+      };
+      for (unsigned int i = 0; i < parts; ++i)
+        for (unsigned int j = 0; j < parts - i; ++j)
+          {
+            add(1. * i / parts, 1. * j / parts, 1. / parts);
+            if (i + j + 1 < parts)
+              add((i + 1.) / parts, (j + 1.) / parts, -1. / parts);
+          }
+      return result;
+    }
+
+
+
+    /// The values at the corners of the linear function that has the same
+    /// moments.
+    template <int dim>
+    std::array<dealii::Tensor<1, dim>, dim>
+    linear_part(const std::vector<SidePoint<dim>>         &points,
+                const std::vector<dealii::Tensor<1, dim>> &values)
+    {
+      std::array<dealii::Tensor<1, dim>, dim> result;
+      for (unsigned int q = 0; q < points.size(); ++q)
+        for (unsigned int k = 0; k < dim; ++k)
+          // The function that is orthogonal to the other coordinates.
+          result[k] += points[q].weight * dim *
+                       ((dim + 1) * points[q].barycentric[k] - 1.) * values[q];
+      return result;
+    }
+
+
+
+    /// The work-conjugates of a side's unknowns, relative to its length or
+    /// area, of a linear traction with these values at the corners: vector by
+    /// vector, see EquilibriumElement.
+    std::array<dealii::Tensor<1, 2>, 2>
+    conjugates(const std::array<dealii::Tensor<1, 2>, 2> &at_corners)
+    {
+      return {{0.5 * (at_corners[0] + at_corners[1]),
+               (at_corners[1] - at_corners[0]) / 6.}};
+    }
+
+
+
+    std::array<dealii::Tensor<1, 3>, 3>
+    conjugates(const std::array<dealii::Tensor<1, 3>, 3> &at_corners)
+    {
+      return {{at_corners[0] / 3., at_corners[1] / 3., at_corners[2] / 3.}};
+    }
+
+
+
+    /// The unknowns of a side of a displacement, vector by vector.
+    std::array<dealii::Tensor<1, 2>, 2>
+    side_unknowns(const CellDisplacement<2>::OnSide &u)
+    {
+      return {{1. / 3. * (u[0] + u[1] + u[2]), 0.5 * (u[1] - u[0])}};
+    }
+
+
+
+    std::array<dealii::Tensor<1, 3>, 3>
+    side_unknowns(const CellDisplacement<3>::OnSide &u)
+    {
+      dealii::Tensor<1, 3> sum;
+      for (const dealii::Tensor<1, 3> &coefficient : u)
+        sum += coefficient;
+      std::array<dealii::Tensor<1, 3>, 3> result;
+      // 3 int lambda_k of the basis is 3/10 of the corner, 1/5 of the edges
+      // that meet there, and 1/10 of the others.
+      for (unsigned int k = 0; k < 3; ++k)
+        {
+          result[k] = sum + 2. * u[k];
+          for (unsigned int e = 0; e < 3; ++e)
+            if (simplex_edges[e][0] == k || simplex_edges[e][1] == k)
+              result[k] += u[3 + e];
+          result[k] *= 0.1;
+        }
       return result;
     }
   } // namespace
 
 
 
-  EquilibriumProblem::EquilibriumProblem(
-    const dealii::Triangulation<2> &mesh,
-    const BoundaryConditions       &conditions,
-    const Supports<2>              &supports,
-    const ByRegion<Material>       &materials,
-    const Loads<2>                 &loads,
-    const std::vector<double>      &thermal_stresses)
+  template <int dim>
+  EquilibriumProblem<dim>::EquilibriumProblem(
+    const dealii::Triangulation<dim> &mesh,
+    const BoundaryConditions         &conditions,
+    const Supports<dim>              &supports,
+    const ByRegion<Material>         &materials,
+    const Loads<dim>                 &loads,
+    const std::vector<double>        &thermal_stresses)
     : mesh(mesh)
     , materials(materials)
     , thermal_stresses(thermal_stresses)
@@ -170,82 +355,100 @@ namespace Debond
 
 
 
+  template <int dim>
   void
-  EquilibriumProblem::find_elements()
+  EquilibriumProblem<dim>::find_parallelograms(
+    [[maybe_unused]] std::vector<char> &is_taken)
   {
-    std::vector<std::vector<Triangle>> cells_at(mesh.n_vertices());
-    for (const auto &cell : mesh.active_cell_iterators())
-      for (unsigned int v = 0; v < 3; ++v)
-        cells_at[cell->vertex_index(v)].push_back(cell);
-
-    std::vector<char> is_taken(mesh.n_active_cells(), 0);
-    for (unsigned int vertex = 0; vertex < mesh.n_vertices(); ++vertex)
+    if constexpr (dim == 2)
       {
-        const auto corners = parallelogram(mesh, vertex, cells_at[vertex]);
-        const bool is_free =
-          !corners.empty() &&
-          std::all_of(corners.begin(), corners.end(), [&](const auto &corner) {
-            const Triangle &cell = corner.second;
-            return is_taken[cell->active_cell_index()] == 0 &&
-                   cell->material_id() == corners[0].second->material_id() &&
-                   thermal_stress(cell) == thermal_stress(corners[0].second);
-          });
-        if (!is_free)
-          continue;
-        places.emplace_back();
-        for (const auto &[corner, cell] : corners)
+        std::vector<std::vector<Triangle>> cells_at(mesh.n_vertices());
+        for (const auto &cell : mesh.active_cell_iterators())
+          for (unsigned int v = 0; v < 3; ++v)
+            cells_at[cell->vertex_index(v)].push_back(cell);
+
+        for (unsigned int vertex = 0; vertex < mesh.n_vertices(); ++vertex)
           {
-            places.back().vertices.push_back(corner);
-            places.back().cells.push_back(cell);
-            is_taken[cell->active_cell_index()] = 1;
+            const auto corners = parallelogram(mesh, vertex, cells_at[vertex]);
+            const bool is_free =
+              !corners.empty() &&
+              std::all_of(corners.begin(),
+                          corners.end(),
+                          [&](const auto &corner) {
+                            const Triangle &cell = corner.second;
+                            return is_taken[cell->active_cell_index()] == 0 &&
+                                   cell->material_id() ==
+                                     corners[0].second->material_id() &&
+                                   thermal_stress(cell) ==
+                                     thermal_stress(corners[0].second);
+                          });
+            if (!is_free)
+              continue;
+            places.emplace_back();
+            for (const auto &[corner, cell] : corners)
+              {
+                places.back().vertices.push_back(corner);
+                places.back().cells.push_back(cell);
+                is_taken[cell->active_cell_index()] = 1;
+              }
           }
       }
+  }
+
+
+
+  template <int dim>
+  void
+  EquilibriumProblem<dim>::find_elements()
+  {
+    std::vector<char> is_taken(mesh.n_active_cells(), 0);
+    find_parallelograms(is_taken);
     for (const auto &cell : mesh.active_cell_iterators())
       if (is_taken[cell->active_cell_index()] == 0)
         {
-          const auto [second, third] = others(cell, cell->vertex_index(0));
-          places.push_back(
-            {{static_cast<unsigned int>(cell->vertex_index(0)), second, third},
-             {cell, cell, cell},
-             {},
-             {},
-             {}});
+          places.emplace_back();
+          for (unsigned int v = 0; v <= dim; ++v)
+            places.back().vertices.push_back(cell->vertex_index(v));
+          if (LinearSimplex<dim>(cell).volume < 0.)
+            std::swap(places.back().vertices[dim - 1],
+                      places.back().vertices[dim]);
+          places.back().cells.assign(dim + 1, cell);
         }
   }
 
 
 
+  template <int dim>
   void
-  EquilibriumProblem::make_elements(const Loads<2> &loads)
+  EquilibriumProblem<dim>::make_elements(const Loads<dim> &loads)
   {
-    const dealii::QGaussSimplex<2> rule(2);
+    const dealii::QGaussSimplex<dim> rule(2);
     // The last ones that were no copies.
     constexpr unsigned int   most_distinct = 64;
     std::deque<unsigned int> distinct;
     for (Place &place : places)
       {
-        std::vector<dealii::Point<2>> corners;
+        std::vector<dealii::Point<dim>> corners;
         for (const unsigned int vertex : place.vertices)
           corners.push_back(mesh.get_vertices()[vertex]);
         if (loads.body_force)
           {
             // The mean, and how far the values are from it.
-            std::vector<dealii::Tensor<1, 2>> forces;
-            double                            largest = 0.;
-            for (unsigned int i = 0; i < (corners.size() == 3 ? 1 : 4); ++i)
+            std::vector<dealii::Tensor<1, dim>> forces;
+            double                              largest = 0.;
+            const unsigned int n_cells = place.parts_of_a_cell() > 1. ? 1 : 4;
+            for (unsigned int i = 0; i < n_cells; ++i)
               for (unsigned int q = 0; q < rule.size(); ++q)
                 {
-                  const dealii::Point<2> point =
-                    point_of(place.cells[i], rule.point(q));
-                  const auto value = values(*loads.body_force, point);
-                  forces.emplace_back(
-                    dealii::Tensor<1, 2>({value[0], value[1]}));
+                  forces.push_back(
+                    values(*loads.body_force,
+                           point_of<dim>(place.cells[i], rule.point(q))));
                   largest = std::max(largest, forces.back().norm());
                 }
             // All points have the same weight, in all parts of the element.
-            for (const dealii::Tensor<1, 2> &force : forces)
+            for (const dealii::Tensor<1, dim> &force : forces)
               place.body_force += force / static_cast<double>(forces.size());
-            for (const dealii::Tensor<1, 2> &force : forces)
+            for (const dealii::Tensor<1, dim> &force : forces)
               exact_loads = exact_loads && (force - place.body_force).norm() <=
                                              equilibrium_rounding * largest;
           }
@@ -273,22 +476,24 @@ namespace Debond
 
 
 
+  template <int dim>
   bool
-  EquilibriumProblem::is_temperature_exact(const Loads<2> &loads) const
+  EquilibriumProblem<dim>::is_temperature_exact(const Loads<dim> &loads) const
   {
     if (!loads.temperature_change)
       return true;
-    const dealii::QGaussSimplex<2> rule(2);
+    const dealii::QGaussSimplex<dim> rule(2);
     for (const auto &cell : mesh.active_cell_iterators())
       {
         double least   = std::numeric_limits<double>::infinity();
         double largest = -least;
         for (unsigned int q = 0; q < rule.size(); ++q)
           {
-            const double value = field_value(*loads.temperature_change,
-                                             point_of(cell, rule.point(q)));
-            least              = std::min(least, value);
-            largest            = std::max(largest, value);
+            const double value =
+              field_value(*loads.temperature_change,
+                          point_of<dim>(cell, rule.point(q)));
+            least   = std::min(least, value);
+            largest = std::max(largest, value);
           }
         if (largest - least >
             equilibrium_rounding * std::max(std::abs(largest), std::abs(least)))
@@ -299,64 +504,78 @@ namespace Debond
 
 
 
+  template <int dim>
   void
-  EquilibriumProblem::make_sides()
+  EquilibriumProblem<dim>::make_sides()
   {
-    std::map<std::array<unsigned int, 2>, unsigned int> numbers;
+    std::map<std::array<unsigned int, dim>, unsigned int> numbers;
     for (Place &place : places)
       for (unsigned int i = 0; i < place.vertices.size(); ++i)
         {
-          std::array<unsigned int, 2> ends = {
-            {place.vertices[i],
-             place.vertices[(i + 1) % place.vertices.size()]}};
-          place.is_reversed.push_back(ends[1] < ends[0] ? 1 : 0);
-          std::sort(ends.begin(), ends.end());
+          const std::array<unsigned int, dim> own    = place.side(i);
+          std::array<unsigned int, dim>       sorted = own;
+          std::sort(sorted.begin(), sorted.end());
+          place.positions.emplace_back();
+          for (unsigned int k = 0; k < dim; ++k)
+            place.positions.back()[k] = static_cast<unsigned int>(
+              std::find(sorted.begin(), sorted.end(), own[k]) - sorted.begin());
           const auto [entry, is_new] =
-            numbers.emplace(ends, static_cast<unsigned int>(sides.size()));
+            numbers.emplace(sorted, static_cast<unsigned int>(sides.size()));
           if (is_new)
-            sides.push_back({ends, dealii::unit_symmetric_tensor<2>()});
+            sides.push_back({sorted, dealii::unit_symmetric_tensor<dim>()});
           place.sides.push_back(entry->second);
         }
-    is_fixed.assign(unknowns_of_a_side * sides.size(), 0);
+    is_fixed.assign(unknowns_of_a_side<dim> * sides.size(), 0);
     loads_on_sides = Eigen::VectorXd::Zero(is_fixed.size());
   }
 
 
 
+  template <int dim>
+  std::array<dealii::Point<dim>, dim>
+  EquilibriumProblem<dim>::corners(
+    const std::array<unsigned int, dim> &side_vertices) const
+  {
+    std::array<dealii::Point<dim>, dim> result;
+    for (unsigned int k = 0; k < dim; ++k)
+      result[k] = mesh.get_vertices()[side_vertices[k]];
+    return result;
+  }
+
+
+
+  template <int dim>
   void
-  EquilibriumProblem::fix_sides(const BoundaryConditions &conditions,
-                                const Supports<2>        &supports,
-                                const Loads<2>           &loads)
+  EquilibriumProblem<dim>::fix_sides(const BoundaryConditions &conditions,
+                                     const Supports<dim>      &supports,
+                                     const Loads<dim>         &loads)
   {
     for (unsigned int element = 0; element < places.size(); ++element)
       for (unsigned int i = 0; i < places[element].sides.size(); ++i)
         {
-          const Triangle    &cell   = places[element].cells[i];
+          const Cell        &cell   = places[element].cells[i];
           const unsigned int number = places[element].sides[i];
           Side              &side   = sides[number];
-          const unsigned int face   = face_between(cell, side.vertices);
+          const unsigned int face   = face_with<dim>(cell, side.vertices);
           if (!cell->face(face)->at_boundary())
             continue;
 
           const dealii::types::boundary_id id = cell->face(face)->boundary_id();
-          const auto                      &points = mesh.get_vertices();
-          const dealii::Tensor<1, 2>       along =
-            points[side.vertices[1]] - points[side.vertices[0]];
-          const double length = along.norm();
-          const double sign   = places[element].is_reversed[i] != 0 ? -1. : 1.;
-          const dealii::Tensor<1, 2> normal(
-            {sign * along[1] / length, -sign * along[0] / length});
+          const dealii::Tensor<1, dim>     outward =
+            scaled_normal<dim>(corners(places[element].side(i)));
+          const double                 measure = outward.norm();
+          const dealii::Tensor<1, dim> normal  = outward / measure;
 
           const auto fix = [&](const unsigned int direction) {
-            is_fixed[unknowns_of_a_side * number + direction]     = 1;
-            is_fixed[unknowns_of_a_side * number + 2 + direction] = 1;
+            for (unsigned int k = 0; k < dim; ++k)
+              is_fixed[unknowns_of_a_side<dim> * number + dim * k + direction] =
+                1;
           };
           const auto use_normal = [&]() {
-            side.directions[0] = normal;
-            side.directions[1] = dealii::Tensor<1, 2>({-normal[1], normal[0]});
+            side.directions = normal_frame(normal);
           };
           bool is_supported = false;
-          for (const PrescribedDisplacement<2> &support :
+          for (const PrescribedDisplacement<dim> &support :
                supports.displacements)
             if (support.boundaries.count(id) > 0)
               {
@@ -369,12 +588,13 @@ namespace Debond
                     use_normal();
                     fix(0);
                   }
-                for (unsigned int d = 0; d < 2; ++d)
+                for (unsigned int d = 0; d < dim; ++d)
                   if (!support.is_roller && support.components[d])
                     {
                       for (const unsigned int vertex : side.vertices)
-                        if (field_value(*support.values, points[vertex], d) !=
-                            0.)
+                        if (field_value(*support.values,
+                                        mesh.get_vertices()[vertex],
+                                        d) != 0.)
                           throw EquilibriumError(
                             "a prescribed displacement "
                             "that is not zero is not done");
@@ -382,10 +602,8 @@ namespace Debond
                     }
               }
           if (conditions.clamped.count(id) > 0)
-            {
-              fix(0);
-              fix(1);
-            }
+            for (unsigned int d = 0; d < dim; ++d)
+              fix(d);
           if (conditions.contact.count(id) > 0)
             {
               if (is_supported)
@@ -393,17 +611,21 @@ namespace Debond
                   "a contact boundary with supports is not done");
               use_normal();
               if (conditions.fixes_tangential(id))
-                fix(1);
-              sides_in_contact.push_back(
-                {{{points[side.vertices[0]], points[side.vertices[1]]}},
-                 side.vertices,
-                 normal,
-                 length,
-                 element,
-                 static_cast<unsigned int>(cell->active_cell_index()),
-                 cell->material_id(),
-                 unknowns_of_a_side * number,
-                 unknowns_of_a_side * number + 2});
+                for (unsigned int d = 1; d < dim; ++d)
+                  fix(d);
+              ContactSide contact = {corners(side.vertices),
+                                     side.vertices,
+                                     normal,
+                                     measure,
+                                     element,
+                                     static_cast<unsigned int>(
+                                       cell->active_cell_index()),
+                                     cell->material_id(),
+                                     {}};
+              for (unsigned int k = 0; k < dim; ++k)
+                contact.unknowns[k] =
+                  unknowns_of_a_side<dim> * number + dim * k;
+              sides_in_contact.push_back(contact);
             }
           const auto traction = loads.tractions.find(id);
           if (traction != loads.tractions.end())
@@ -413,81 +635,83 @@ namespace Debond
 
 
 
+  template <int dim>
   void
-  EquilibriumProblem::add_tractions(const unsigned int         number,
-                                    const dealii::Function<2> &traction)
+  EquilibriumProblem<dim>::add_tractions(const unsigned int           number,
+                                         const dealii::Function<dim> &traction)
   {
-    constexpr unsigned int            parts = 16;
-    const dealii::QGauss<1>           rule(3);
-    const Side                       &side   = sides[number];
-    const auto                       &points = mesh.get_vertices();
-    const dealii::Point<2>           &a      = points[side.vertices[0]];
-    const dealii::Tensor<1, 2>        along  = points[side.vertices[1]] - a;
-    std::vector<double>               xi;
-    std::vector<dealii::Tensor<1, 2>> tractions;
-    dealii::Tensor<1, 2>              mean, slope;
-    double                            largest = 0.;
-    for (unsigned int part = 0; part < parts; ++part)
-      for (unsigned int q = 0; q < rule.size(); ++q)
-        {
-          const double t      = (part + rule.point(q)[0]) / parts;
-          const double weight = rule.weight(q) / parts;
-          const auto value = values(traction, dealii::Point<2>(a + t * along));
-          xi.push_back(2. * t - 1.);
-          tractions.emplace_back(dealii::Tensor<1, 2>({value[0], value[1]}));
-          mean += weight * tractions.back();
-          slope += weight * 3. * xi.back() * tractions.back();
-          largest = std::max(largest, tractions.back().norm());
-        }
-    for (unsigned int q = 0; q < xi.size(); ++q)
-      exact_loads =
-        exact_loads && (tractions[q] - mean - xi[q] * slope).norm() <=
-                         equilibrium_rounding * largest;
-    const double length = along.norm();
-    for (unsigned int d = 0; d < 2; ++d)
+    static const std::vector<SidePoint<dim>> points =
+      points_of_side(std::integral_constant<int, dim>());
+    const Side                         &side = sides[number];
+    const auto                          at   = corners(side.vertices);
+    std::vector<dealii::Tensor<1, dim>> tractions;
+    double                              largest = 0.;
+    for (const SidePoint<dim> &point : points)
       {
-        const unsigned int first = unknowns_of_a_side * number + d;
-        loads_on_sides(first) += length * (mean * side.directions[d]);
-        loads_on_sides(first + 2) += length / 3. * (slope * side.directions[d]);
+        dealii::Point<dim> place;
+        for (unsigned int k = 0; k < dim; ++k)
+          place += point.barycentric[k] * at[k];
+        tractions.push_back(values(traction, place));
+        largest = std::max(largest, tractions.back().norm());
       }
+    const auto linear = linear_part<dim>(points, tractions);
+    for (unsigned int q = 0; q < points.size(); ++q)
+      {
+        dealii::Tensor<1, dim> rest = tractions[q];
+        for (unsigned int k = 0; k < dim; ++k)
+          rest -= points[q].barycentric[k] * linear[k];
+        exact_loads =
+          exact_loads && rest.norm() <= equilibrium_rounding * largest;
+      }
+    const double measure = scaled_normal<dim>(at).norm();
+    const auto   moments = conjugates(linear);
+    for (unsigned int k = 0; k < dim; ++k)
+      for (unsigned int d = 0; d < dim; ++d)
+        loads_on_sides(unknowns_of_a_side<dim> * number + dim * k + d) +=
+          measure * (moments[k] * side.directions[d]);
   }
 
 
 
-  const std::vector<EquilibriumElement> &
-  EquilibriumProblem::elements() const
+  template <int dim>
+  const std::vector<EquilibriumElement<dim>> &
+  EquilibriumProblem<dim>::elements() const
   {
     return all_elements;
   }
 
 
 
-  const std::vector<EquilibriumProblem::ContactSide> &
-  EquilibriumProblem::contact_sides() const
+  template <int dim>
+  const std::vector<typename EquilibriumProblem<dim>::ContactSide> &
+  EquilibriumProblem<dim>::contact_sides() const
   {
     return sides_in_contact;
   }
 
 
 
-  const std::vector<dealii::Point<2>> &
-  EquilibriumProblem::vertices() const
+  template <int dim>
+  const std::vector<dealii::Point<dim>> &
+  EquilibriumProblem<dim>::vertices() const
   {
     return mesh.get_vertices();
   }
 
 
 
+  template <int dim>
   void
-  EquilibriumProblem::fix(const unsigned int unknown)
+  EquilibriumProblem<dim>::fix(const unsigned int unknown)
   {
     is_fixed[unknown] = 1;
   }
 
 
 
+  template <int dim>
   unsigned int
-  EquilibriumProblem::n_unknowns() const
+  EquilibriumProblem<dim>::n_unknowns() const
   {
     return static_cast<unsigned int>(
       std::count(is_fixed.begin(), is_fixed.end(), 0));
@@ -495,16 +719,18 @@ namespace Debond
 
 
 
+  template <int dim>
   bool
-  EquilibriumProblem::loads_are_exact() const
+  EquilibriumProblem<dim>::loads_are_exact() const
   {
     return exact_loads;
   }
 
 
 
+  template <int dim>
   double
-  EquilibriumProblem::thermal_stress(const Triangle &cell) const
+  EquilibriumProblem<dim>::thermal_stress(const Cell &cell) const
   {
     return thermal_stresses.empty() ?
              0. :
@@ -513,43 +739,49 @@ namespace Debond
 
 
 
+  template <int dim>
   std::vector<unsigned int>
-  EquilibriumProblem::unknowns_of(const unsigned int element) const
+  EquilibriumProblem<dim>::unknowns_of(const unsigned int element) const
   {
     std::vector<unsigned int> result;
     for (const unsigned int side : places[element].sides)
-      for (unsigned int k = 0; k < unknowns_of_a_side; ++k)
-        result.push_back(unknowns_of_a_side * side + k);
+      for (unsigned int k = 0; k < unknowns_of_a_side<dim>; ++k)
+        result.push_back(unknowns_of_a_side<dim> * side + k);
     return result;
   }
 
 
 
+  template <int dim>
   Eigen::MatrixXd
-  EquilibriumProblem::to_element(const unsigned int element) const
+  EquilibriumProblem<dim>::to_element(const unsigned int element) const
   {
-    const Place    &place = places[element];
-    Eigen::MatrixXd result =
-      Eigen::MatrixXd::Zero(4 * place.sides.size(), 4 * place.sides.size());
+    constexpr unsigned int n     = unknowns_of_a_side<dim>;
+    const Place           &place = places[element];
+    Eigen::MatrixXd        result =
+      Eigen::MatrixXd::Zero(n * place.sides.size(), n * place.sides.size());
     for (unsigned int i = 0; i < place.sides.size(); ++i)
-      {
-        const auto  &directions = sides[place.sides[i]].directions;
-        const double sign       = place.is_reversed[i] != 0 ? -1. : 1.;
-        for (unsigned int d = 0; d < 2; ++d)
-          for (unsigned int k = 0; k < 2; ++k)
-            {
-              result(4 * i + d, 4 * i + k)         = directions[k][d];
-              result(4 * i + 2 + d, 4 * i + 2 + k) = sign * directions[k][d];
-            }
-      }
+      for (unsigned int k = 0; k < dim; ++k)
+        {
+          // In 2D the mean is that of the side, and the slope may have the
+          // other sign.
+          const unsigned int position = place.positions[i][k];
+          const unsigned int own      = dim == 2 ? k : position;
+          const double sign = dim == 2 && k != position && k == 1 ? -1. : 1.;
+          for (unsigned int d = 0; d < dim; ++d)
+            for (unsigned int j = 0; j < dim; ++j)
+              result(n * i + dim * k + d, n * i + dim * own + j) =
+                sign * sides[place.sides[i]].directions[j][d];
+        }
     return result;
   }
 
 
 
+  template <int dim>
   std::unique_ptr<Condensation>
-  EquilibriumProblem::condense(
-    const bool                                          keep_slopes,
+  EquilibriumProblem<dim>::condense(
+    const bool                                          keep_all,
     const std::vector<double>                          &weights,
     const std::vector<std::pair<unsigned int, double>> &added) const
   {
@@ -568,9 +800,9 @@ namespace Debond
     double                       constant = 0.;
     for (unsigned int element = 0; element < places.size(); ++element)
       {
-        const EquilibriumElement &own = all_elements[element];
-        const double          weight  = weights.empty() ? 1. : weights[element];
-        const Eigen::MatrixXd turn    = to_element(element);
+        const EquilibriumElement<dim> &own = all_elements[element];
+        const double          weight = weights.empty() ? 1. : weights[element];
+        const Eigen::MatrixXd turn   = to_element(element);
         const Eigen::MatrixXd matrix =
           weight * (turn.transpose() * own.K * turn);
         const Eigen::VectorXd           load     = turn.transpose() * own.F;
@@ -589,11 +821,9 @@ namespace Debond
       f(i) += loads_on_sides(i);
 
     std::vector<unsigned int> kept;
-    for (const ContactSide &side : sides_in_contact)
-      kept.push_back(side.mean);
-    if (keep_slopes)
+    for (unsigned int k = 0; k < (keep_all ? dim : 1); ++k)
       for (const ContactSide &side : sides_in_contact)
-        kept.push_back(side.slope);
+        kept.push_back(side.unknowns[k]);
     for (const auto &[unknown, value] : added)
       K.add(unknown, unknown, value);
     return std::make_unique<Condensation>(
@@ -608,9 +838,10 @@ namespace Debond
 
 
 
+  template <int dim>
   double
-  EquilibriumProblem::elastic_functional(
-    const std::vector<CellDisplacement> &u) const
+  EquilibriumProblem<dim>::elastic_functional(
+    const std::vector<CellDisplacement<dim>> &u) const
   {
     double sum = 0.;
     for (const double energy : strain_energies(u))
@@ -618,8 +849,8 @@ namespace Debond
     for (const auto &cell : mesh.active_cell_iterators())
       if (const double p = thermal_stress(cell); p != 0.)
         {
-          const CellDisplacement   &own = u[cell->active_cell_index()];
-          const BernsteinSimplex<2> simplex(cell, own.degree);
+          const CellDisplacement<dim> &own = u[cell->active_cell_index()];
+          const BernsteinSimplex<dim>  simplex(cell, own.degree);
           for (unsigned int q = 0; q < simplex.n_points; ++q)
             sum -= std::abs(simplex.weight) * p *
                    trace(own.strain(simplex, simplex.point(q)));
@@ -627,43 +858,43 @@ namespace Debond
     for (const Place &place : places)
       for (unsigned int i = 0; i < place.sides.size(); ++i)
         {
-          const CellDisplacement &own = u[place.cells[i]->active_cell_index()];
-          const double            area =
-            std::abs(LinearSimplex<2>(place.cells[i]).volume) /
-            (place.vertices.size() == 3 ? 3. : 1.);
-          sum -= area * (place.body_force * own.mean());
+          const CellDisplacement<dim> &own =
+            u[place.cells[i]->active_cell_index()];
+          const double volume =
+            std::abs(LinearSimplex<dim>(place.cells[i]).volume) /
+            place.parts_of_a_cell();
+          sum -= volume * (place.body_force * own.mean());
 
           // Only sides of the boundary have loads.
-          const Side &side                 = sides[place.sides[i]];
-          const auto [first, middle, last] = own.on_side(side.vertices);
-          for (unsigned int d = 0; d < 2; ++d)
-            {
-              const unsigned int k = unknowns_of_a_side * place.sides[i] + d;
-              const dealii::Tensor<1, 2> direction = side.directions[d];
-              sum -= loads_on_sides(k) / 6. *
-                       ((first + 4. * middle + last) * direction) +
-                     loads_on_sides(k + 2) / 2. * ((last - first) * direction);
-            }
+          const Side &side = sides[place.sides[i]];
+          const auto  l    = side_unknowns(own.on_side(side.vertices));
+          for (unsigned int k = 0; k < dim; ++k)
+            for (unsigned int d = 0; d < dim; ++d)
+              sum -= loads_on_sides(unknowns_of_a_side<dim> * place.sides[i] +
+                                    dim * k + d) *
+                     (l[k] * side.directions[d]);
         }
     return sum;
   }
 
 
 
+  template <int dim>
   std::vector<double>
-  EquilibriumProblem::strain_energies(
-    const std::vector<CellDisplacement> &u) const
+  EquilibriumProblem<dim>::strain_energies(
+    const std::vector<CellDisplacement<dim>> &u) const
   {
     std::vector<double> result;
     for (const auto &cell : mesh.active_cell_iterators())
       {
-        const CellDisplacement   &own = u[cell->active_cell_index()];
-        const BernsteinSimplex<2> simplex(cell, own.degree);
-        const auto C = materials(cell->material_id()).elasticity_tensor<2>();
+        const CellDisplacement<dim> &own = u[cell->active_cell_index()];
+        const BernsteinSimplex<dim>  simplex(cell, own.degree);
+        const auto                   C =
+          materials(cell->material_id()).template elasticity_tensor<dim>();
         result.push_back(0.);
         for (unsigned int q = 0; q < simplex.n_points; ++q)
           {
-            const dealii::SymmetricTensor<2, 2> epsilon =
+            const dealii::SymmetricTensor<2, dim> epsilon =
               own.strain(simplex, simplex.point(q));
             result.back() +=
               std::abs(simplex.weight) * (epsilon * (C * epsilon));
@@ -674,18 +905,19 @@ namespace Debond
 
 
 
+  template <int dim>
   std::vector<double>
-  EquilibriumProblem::element_energies(
-    const std::vector<CellDisplacement> &u) const
+  EquilibriumProblem<dim>::element_energies(
+    const std::vector<CellDisplacement<dim>> &u) const
   {
     const std::vector<double> of_cells = strain_energies(u);
     std::vector<double>       result;
     for (const Place &place : places)
       {
-        // All three of a triangle are the same one.
-        const unsigned int n   = place.vertices.size() == 3 ? 1 : 4;
-        double             sum = 0.;
-        for (unsigned int i = 0; i < n; ++i)
+        // All of a simplex are the same one.
+        const bool is_simplex = place.vertices.size() == dim + 1;
+        double     sum        = 0.;
+        for (unsigned int i = 0; i < (is_simplex ? 1 : place.cells.size()); ++i)
           sum += of_cells[place.cells[i]->active_cell_index()];
         result.push_back(sum);
       }
@@ -694,10 +926,11 @@ namespace Debond
 
 
 
+  template <int dim>
   Eigen::VectorXd
-  EquilibriumProblem::stress_of(const unsigned int element,
-                                const DofVector   &unknowns,
-                                const double       weight) const
+  EquilibriumProblem<dim>::stress_of(const unsigned int element,
+                                     const DofVector   &unknowns,
+                                     const double       weight) const
   {
     const std::vector<unsigned int> numbers = unknowns_of(element);
     Eigen::VectorXd                 own(numbers.size());
@@ -708,44 +941,48 @@ namespace Debond
 
 
 
+  template <int dim>
   std::vector<double>
-  EquilibriumProblem::constitutive_gaps(const std::vector<CellDisplacement> &u,
-                                        const DofVector &unknowns) const
+  EquilibriumProblem<dim>::constitutive_gaps(
+    const std::vector<CellDisplacement<dim>> &u,
+    const DofVector                          &unknowns) const
   {
     std::vector<double> gaps(mesh.n_active_cells(), 0.);
     for (unsigned int element = 0; element < places.size(); ++element)
       {
-        const Place              &place  = places[element];
-        const EquilibriumElement &shape  = all_elements[element];
-        const Eigen::VectorXd     stress = stress_of(element, unknowns);
+        const Place                   &place  = places[element];
+        const EquilibriumElement<dim> &shape  = all_elements[element];
+        const Eigen::VectorXd          stress = stress_of(element, unknowns);
         for (unsigned int i = 0; i < place.cells.size(); ++i)
           {
-            const Triangle           &cell = place.cells[i];
-            const CellDisplacement   &own  = u[cell->active_cell_index()];
-            const BernsteinSimplex<2> simplex(cell, own.degree);
-            const Material           &material = materials(cell->material_id());
-            const dealii::Point<2>    points[] = {
-                 shape.corners[i],
-                 shape.corners[(i + 1) % shape.corners.size()],
-                 shape.centre};
+            const Cell                  &cell = place.cells[i];
+            const CellDisplacement<dim> &own  = u[cell->active_cell_index()];
+            const BernsteinSimplex<dim>  simplex(cell, own.degree);
+            const Material &material = materials(cell->material_id());
+            const auto      local    = corners_of_side<dim>(
+              static_cast<unsigned int>(place.vertices.size()), i);
             // Linear, as both stresses are.
-            Eigen::Matrix<double, 9, 1> difference = stress.segment<9>(9 * i);
-            for (unsigned int corner = 0; corner < 3; ++corner)
+            LinearStress<dim> difference =
+              stress.segment<n_of_part<dim>>(n_of_part<dim> * i);
+            for (unsigned int corner = 0; corner <= dim; ++corner)
               {
-                const dealii::SymmetricTensor<2, 2> elastic =
-                  material.elasticity_tensor<2>() *
+                const dealii::Point<dim> &point =
+                  corner < dim ? shape.corners[local[corner]] : shape.centre;
+                const dealii::SymmetricTensor<2, dim> elastic =
+                  material.template elasticity_tensor<dim>() *
                   own.strain(simplex,
-                             barycentric_of(simplex, cell, points[corner]));
-                difference.segment<3>(3 * corner) -=
-                  Eigen::Vector3d(elastic[0][0] - thermal_stress(cell),
-                                  elastic[1][1] - thermal_stress(cell),
-                                  elastic[0][1]);
+                             barycentric_of<dim>(simplex, cell, point));
+                for (unsigned int k = 0; k < n_at_corner<dim>; ++k)
+                  difference(n_at_corner<dim> * corner + k) -=
+                    elastic.access_raw_entry(k) -
+                    (k < dim ? thermal_stress(cell) : 0.);
               }
-            // A triangle's three parts have the same area.
-            const double area =
-              std::abs(simplex.volume) / (place.vertices.size() == 3 ? 3. : 1.);
+            // A cell's parts have the same measure.
             gaps[cell->active_cell_index()] +=
-              0.5 * complementary_energy(difference, area, material);
+              0.5 * complementary_energy<dim>(difference,
+                                              std::abs(simplex.volume) /
+                                                place.parts_of_a_cell(),
+                                              material);
           }
       }
     return gaps;
@@ -753,10 +990,11 @@ namespace Debond
 
 
 
+  template <int dim>
   double
-  EquilibriumProblem::rounding_of(const Condensation        &condensed,
-                                  const Eigen::VectorXd     &kept,
-                                  const std::vector<double> &weights) const
+  EquilibriumProblem<dim>::rounding_of(const Condensation        &condensed,
+                                       const Eigen::VectorXd     &kept,
+                                       const std::vector<double> &weights) const
   {
     const DofVector unknowns = condensed.expand(kept);
     double          energy   = 0.;
@@ -765,19 +1003,21 @@ namespace Debond
         const Place          &place  = places[element];
         const double          weight = weights.empty() ? 1. : weights[element];
         const Eigen::VectorXd stress = stress_of(element, unknowns, weight);
-        const double          share  = place.vertices.size() == 3 ? 3. : 1.;
         for (unsigned int i = 0; i < place.cells.size(); ++i)
           {
-            const Triangle             &cell  = place.cells[i];
-            Eigen::Matrix<double, 9, 1> total = stress.segment<9>(9 * i);
-            for (unsigned int corner = 0; corner < 3; ++corner)
-              total.segment<2>(3 * corner).array() += thermal_stress(cell);
+            const Cell       &cell = place.cells[i];
+            LinearStress<dim> total =
+              stress.segment<n_of_part<dim>>(n_of_part<dim> * i);
+            for (unsigned int corner = 0; corner <= dim; ++corner)
+              total.template segment<dim>(n_at_corner<dim> * corner).array() +=
+                thermal_stress(cell);
             energy +=
               0.5 / weight *
-              complementary_energy(total,
-                                   std::abs(LinearSimplex<2>(cell).volume) /
-                                     share,
-                                   materials(cell->material_id()));
+              complementary_energy<dim>(total,
+                                        std::abs(
+                                          LinearSimplex<dim>(cell).volume) /
+                                          place.parts_of_a_cell(),
+                                        materials(cell->material_id()));
           }
       }
     const auto S = condensed.schur_complement();
@@ -788,24 +1028,28 @@ namespace Debond
 
 
 
-  std::vector<dealii::SymmetricTensor<2, 2>>
-  EquilibriumProblem::mean_stresses(const DofVector &unknowns) const
+  template <int dim>
+  std::vector<dealii::SymmetricTensor<2, dim>>
+  EquilibriumProblem<dim>::mean_stresses(const DofVector &unknowns) const
   {
-    std::vector<dealii::SymmetricTensor<2, 2>> result(mesh.n_active_cells());
+    std::vector<dealii::SymmetricTensor<2, dim>> result(mesh.n_active_cells());
     for (unsigned int element = 0; element < places.size(); ++element)
       {
         const Place          &place  = places[element];
         const Eigen::VectorXd stress = stress_of(element, unknowns);
-        const double          share  = place.vertices.size() == 3 ? 9. : 3.;
+        const double          share  = (dim + 1.) * place.parts_of_a_cell();
         for (unsigned int i = 0; i < place.cells.size(); ++i)
-          for (unsigned int k = 9 * i; k < 9 * (i + 1); k += 3)
-            {
-              auto &mean = result[place.cells[i]->active_cell_index()];
-              mean[0][0] += stress(k) / share;
-              mean[1][1] += stress(k + 1) / share;
-              mean[0][1] += stress(k + 2) / share;
-            }
+          for (unsigned int corner = 0; corner <= dim; ++corner)
+            for (unsigned int k = 0; k < n_at_corner<dim>; ++k)
+              result[place.cells[i]->active_cell_index()].access_raw_entry(k) +=
+                stress(n_of_part<dim> * i + n_at_corner<dim> * corner + k) /
+                share;
       }
     return result;
   }
+
+
+
+  template class EquilibriumProblem<2>;
+  template class EquilibriumProblem<3>;
 } // namespace Debond

@@ -31,14 +31,14 @@ namespace Debond
       BoundaryConditions conditions;
       conditions.contact                       = I;
       conditions.tangential_displacement_fixed = tangential_fixed;
-      EquilibriumProblem problem(mesh, conditions, {}, material, Loads<2>());
+      EquilibriumProblem<2> problem(mesh, conditions, {}, material, Loads<2>());
       // A motion along I does not change the energy.
       if (!tangential_fixed)
-        problem.fix(problem.contact_sides()[0].mean + 1);
+        problem.fix(problem.contact_sides()[0].unknowns[0] + 1);
 
       const auto         &sides = problem.contact_sides();
       std::vector<double> weights(problem.elements().size(), 1.);
-      for (const EquilibriumProblem::ContactSide &side : sides)
+      for (const EquilibriumProblem<2>::ContactSide &side : sides)
         weights[side.element] = 1. - theta;
 
       const double    h = width / n;
@@ -49,13 +49,15 @@ namespace Debond
       std::vector<std::pair<unsigned int, double>> springs;
       for (unsigned int i = 0; i < n; ++i)
         {
-          mass(i)          = h;
-          mass(n + i)      = h / 3.;
-          linear(i, 0)     = 1.;
-          linear(i, 1)     = 0.5 * (sides[i].ends[0][0] + sides[i].ends[1][0]);
-          linear(n + i, 1) = 0.5 * (sides[i].ends[1][0] - sides[i].ends[0][0]);
-          springs.emplace_back(sides[i].mean, spring * mass(i));
-          springs.emplace_back(sides[i].slope, spring * mass(n + i));
+          mass(i)      = h;
+          mass(n + i)  = h / 3.;
+          linear(i, 0) = 1.;
+          linear(i, 1) =
+            0.5 * (sides[i].corners[0][0] + sides[i].corners[1][0]);
+          linear(n + i, 1) =
+            0.5 * (sides[i].corners[1][0] - sides[i].corners[0][0]);
+          springs.emplace_back(sides[i].unknowns[0], spring * mass(i));
+          springs.emplace_back(sides[i].unknowns[1], spring * mass(n + i));
         }
       const auto condensed       = problem.condense(true, weights, springs);
       const Eigen::MatrixXd S    = condensed->schur_complement();

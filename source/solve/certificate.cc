@@ -14,7 +14,7 @@ namespace Debond
 {
   namespace
   {
-    using ContactSide = EquilibriumProblem::ContactSide;
+    using ContactSide = EquilibriumProblem<2>::ContactSide;
 
 
 
@@ -28,18 +28,18 @@ namespace Debond
 
 
 
-    EquilibriumProblem
+    EquilibriumProblem<2>
     equilibrium_problem(const Scene<2> &scene)
     {
       const auto &dofs = scene.problem().unknowns().dof_handler();
-      return EquilibriumProblem(dofs.get_triangulation(),
-                                scene.conditions(),
-                                scene.supports(),
-                                scene.materials(),
-                                scene.loads(),
-                                thermal_stresses(dofs,
-                                                 scene.materials(),
-                                                 scene.loads()));
+      return EquilibriumProblem<2>(dofs.get_triangulation(),
+                                   scene.conditions(),
+                                   scene.supports(),
+                                   scene.materials(),
+                                   scene.loads(),
+                                   thermal_stresses(dofs,
+                                                    scene.materials(),
+                                                    scene.loads()));
     }
 
 
@@ -61,9 +61,9 @@ namespace Debond
 
     /// Means of u_nu on sides, from a mesh at least as fine.
     Eigen::VectorXd
-    side_means(const EquilibriumProblem &equilibrium,
-               const ContactBoundary<2> &boundary,
-               const VectorView         &trace)
+    side_means(const EquilibriumProblem<2> &equilibrium,
+               const ContactBoundary<2>    &boundary,
+               const VectorView            &trace)
     {
       const auto     &sides = equilibrium.contact_sides();
       Eigen::VectorXd means = Eigen::VectorXd::Zero(sides.size());
@@ -87,7 +87,7 @@ namespace Debond
               const double part = here * along / along.norm_square();
               if (part > 0. && part < 1. &&
                   (here - part * along).norm() < 1e-8 * along.norm())
-                means(i) += face.measure / sides[i].length * value;
+                means(i) += face.measure / sides[i].measure * value;
             }
         }
       return means.cwiseMin(0.);
@@ -154,17 +154,18 @@ namespace Debond
     class Trace
     {
     public:
-      Trace(const ContactSide                   &side,
-            const std::vector<CellDisplacement> &displacement)
-        : length(side.length)
+      Trace(const ContactSide                      &side,
+            const std::vector<CellDisplacement<2>> &displacement)
+        : length(side.measure)
       {
-        const auto values = displacement[side.cell].on_side(side.vertices);
-        const auto normal = [&](const unsigned int k) {
-          return values[k] * side.normal;
-        };
-        middle    = normal(1);
-        slope     = 0.5 * (normal(2) - normal(0));
-        curvature = 0.5 * (normal(2) + normal(0)) - middle;
+        const auto   u     = displacement[side.cell].on_side(side.vertices);
+        const double first = u[0] * side.normal;
+        const double last  = u[1] * side.normal;
+        const dealii::Tensor<1, 2> at_middle =
+          0.5 * (0.5 * (u[0] + u[1])) + 0.5 * u[2];
+        middle    = at_middle * side.normal;
+        slope     = 0.5 * (last - first);
+        curvature = 0.5 * (last + first) - middle;
       }
 
       double
@@ -204,10 +205,10 @@ namespace Debond
 
     /// The least J with given branches.
     void
-    bound_fixed_state(const EquilibriumProblem            &equilibrium,
-                      const BranchMinimum                 &law,
-                      const std::vector<CellDisplacement> &displacement,
-                      Certificate                         &certificate)
+    bound_fixed_state(const EquilibriumProblem<2>            &equilibrium,
+                      const BranchMinimum                    &law,
+                      const std::vector<CellDisplacement<2>> &displacement,
+                      Certificate                            &certificate)
     {
       const std::vector<ContactSide> &sides = equilibrium.contact_sides();
       const Eigen::Index    n         = static_cast<Eigen::Index>(sides.size());
@@ -229,10 +230,10 @@ namespace Debond
         {
           const Trace trace(sides[i], displacement);
           pieces.push_back(law[law.index(trace.mean())]);
-          const double weight = sides[i].length * pieces.back().curvature;
+          const double weight = sides[i].measure * pieces.back().curvature;
           M(i, i) += weight;
           M(n + i, n + i) += weight / 3.;
-          r(i) -= sides[i].length * pieces.back().slope;
+          r(i) -= sides[i].measure * pieces.back().slope;
         }
       ActiveSet           active(2 * n, 0);
       const BoundQPResult minimum = solve_bound_qp(T.transpose() * M * T,
@@ -254,7 +255,7 @@ namespace Debond
           largest_traction =
             std::max(largest_traction,
                      (std::abs((*f)(i)) + 3. * std::abs((*f)(n + i))) /
-                       sides[i].length);
+                       sides[i].measure);
       certificate.lower   = condensed->energy_at_zero() - 0.5 * x.dot(S * x);
       certificate.reserve = equilibrium.rounding_of(*condensed, x);
       certificate.upper   = equilibrium.elastic_functional(displacement);
@@ -263,7 +264,7 @@ namespace Debond
       certificate.stresses = equilibrium.mean_stresses(unknowns);
       for (Eigen::Index i = 0; i < n; ++i)
         {
-          const double length = sides[i].length;
+          const double length = sides[i].measure;
           const double mean   = moments(i) / length;
           const double slope  = 3. * moments(n + i) / length;
           const double bonds =
@@ -369,9 +370,9 @@ namespace Debond
   {
     const bool is_own = &solved == scene.get();
     Assert(is_own || is_for_finer_meshes(), dealii::ExcInternalError());
-    dealii::Timer                       timer;
-    const BranchMinimum                &law = scene->law().branches();
-    const std::vector<CellDisplacement> displacement =
+    dealii::Timer                          timer;
+    const BranchMinimum                   &law = scene->law().branches();
+    const std::vector<CellDisplacement<2>> displacement =
       cell_displacements(solved.problem(), u);
     Certificate certificate;
     certificate.minimum         = minimum;
@@ -434,7 +435,7 @@ namespace Debond
         if (is_known)
           certificate.upper = std::min(certificate.upper, earlier->upper);
         for (const ContactSide &side : equilibrium.contact_sides())
-          known.push_back(known_between(side.ends,
+          known.push_back(known_between(side.corners,
                                         is_known ?
                                           earlier->sides :
                                           std::vector<CertifiedSide>()));
@@ -475,8 +476,8 @@ namespace Debond
 
   double
   Certifier::elastic_functional(
-    const Scene<2>                      &solved,
-    const std::vector<CellDisplacement> &displacement) const
+    const Scene<2>                         &solved,
+    const std::vector<CellDisplacement<2>> &displacement) const
   {
     if (&solved == scene.get())
       return equilibrium.elastic_functional(displacement);

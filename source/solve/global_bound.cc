@@ -12,7 +12,7 @@ namespace Debond
 {
   namespace
   {
-    using ContactSide = EquilibriumProblem::ContactSide;
+    using ContactSide = EquilibriumProblem<2>::ContactSide;
 
 
 
@@ -53,36 +53,38 @@ namespace Debond
 
     /// Nothing if the element is none.
     std::optional<RectangleAboveSide>
-    rectangle(const ContactSide &side, const EquilibriumElement &element)
+    rectangle(const ContactSide &side, const EquilibriumElement<2> &element)
     {
       const dealii::Tensor<1, 2> a = element.corners[1] - element.corners[0];
       const dealii::Tensor<1, 2> b = element.corners[2] - element.corners[1];
       if (element.corners.size() != 4 ||
           std::abs(a * b) > 1e-10 * a.norm() * b.norm())
         return {};
-      return RectangleAboveSide{side.length, element.area / side.length};
+      return RectangleAboveSide{side.measure, element.measure / side.measure};
     }
 
 
 
     /// Between the side and the opposite corner of its cell.
     TriangleAboveSide
-    triangle(const ContactSide &side, const EquilibriumElement &element)
+    triangle(const ContactSide &side, const EquilibriumElement<2> &element)
     {
       dealii::Point<2> apex = element.centre;
       if (element.corners.size() == 3)
         for (unsigned int i = 0; i < 3; ++i)
-          if (element.corners[i].distance(side.ends[0]) > 1e-8 * side.length &&
-              element.corners[i].distance(side.ends[1]) > 1e-8 * side.length)
+          if (element.corners[i].distance(side.corners[0]) >
+                1e-8 * side.measure &&
+              element.corners[i].distance(side.corners[1]) >
+                1e-8 * side.measure)
             apex = element.corners[i];
       const dealii::Tensor<1, 2> along =
-        (side.ends[1] - side.ends[0]) / side.length;
-      const dealii::Tensor<1, 2> to_apex = apex - side.ends[0];
+        (side.corners[1] - side.corners[0]) / side.measure;
+      const dealii::Tensor<1, 2> to_apex = apex - side.corners[0];
       const double               place   = to_apex * along;
       // Mirrored triangles have the same constant.
-      return {side.length,
+      return {side.measure,
               (to_apex - place * along).norm(),
-              std::min(place, side.length - place)};
+              std::min(place, side.measure - place)};
     }
 
 
@@ -101,9 +103,9 @@ namespace Debond
 
 
   std::vector<double>
-  side_constants(const EquilibriumProblem &equilibrium,
-                 const ByRegion<Material> &materials,
-                 const bool                tangential_fixed)
+  side_constants(const EquilibriumProblem<2> &equilibrium,
+                 const ByRegion<Material>    &materials,
+                 const bool                   tangential_fixed)
   {
     // Of shapes with a side of length 1.
     struct Known
@@ -117,7 +119,7 @@ namespace Debond
     std::vector<double> constants;
     for (const ContactSide &side : equilibrium.contact_sides())
       {
-        const EquilibriumElement &element =
+        const EquilibriumElement<2> &element =
           equilibrium.elements()[side.element];
         Known own = {0., {}, materials(side.material), 0.};
         if (const auto Q = rectangle(side, element))
@@ -154,7 +156,7 @@ namespace Debond
           }
         // Shapes count as the same if they are to less than this.
         constexpr double rounding = 1e-7;
-        constants.push_back((1. - rounding) * same->constant / side.length);
+        constants.push_back((1. - rounding) * same->constant / side.measure);
       }
     return constants;
   }
@@ -162,7 +164,7 @@ namespace Debond
 
 
   GlobalBound
-  bound_global(const EquilibriumProblem       &equilibrium,
+  bound_global(const EquilibriumProblem<2>    &equilibrium,
                const std::vector<double>      &trace_constants,
                const BranchMinimum            &law,
                const Eigen::VectorXd          &means,

@@ -109,10 +109,10 @@ namespace Debond
 
 
 
-  MeanProblems::MeanProblems(const EquilibriumProblem  &equilibrium,
-                             const std::vector<double> &trace_constants,
-                             const BranchMinimum       &law,
-                             const std::vector<double> &energies)
+  MeanProblems::MeanProblems(const EquilibriumProblem<2> &equilibrium,
+                             const std::vector<double>   &trace_constants,
+                             const BranchMinimum         &law,
+                             const std::vector<double>   &energies)
     : equilibrium(equilibrium)
     , trace_constants(trace_constants)
     , energies(energies)
@@ -121,7 +121,7 @@ namespace Debond
     , n(static_cast<unsigned int>(sides.size()))
     , sharers(equilibrium.elements().size(), 0)
   {
-    for (const EquilibriumProblem::ContactSide &side : sides)
+    for (const EquilibriumProblem<2>::ContactSide &side : sides)
       ++sharers[side.element];
   }
 
@@ -156,7 +156,7 @@ namespace Debond
     for (unsigned int i = 0; i < n; ++i)
       {
         const double of_stiffness = 0.5 * energies[i] / trace_constants[i];
-        const double of_slope = sides[i].length * slopes(i) * slopes(i) / 6.;
+        const double of_slope = sides[i].measure * slopes(i) * slopes(i) / 6.;
         double       best     = least_shift * a;
         double       least    = std::numeric_limits<double>::infinity();
         for (double D = best; D < available(i); D *= 1.2)
@@ -169,7 +169,7 @@ namespace Debond
             double cost = D * of_stiffness;
             if (!is_certain)
               cost += D * of_slope +
-                      sides[i].length * largest_loss(law, rounded, means(i));
+                      sides[i].measure * largest_loss(law, rounded, means(i));
             if (cost < least)
               {
                 least = cost;
@@ -204,7 +204,7 @@ namespace Debond
         const double rounded = RoundedBranches(law, D).minimum().value(s);
         const double c       = law[law.index(s)].curvature;
         result.back() +=
-          sides[i].length * (law.value(s) - rounded + (c + D) * k * k / 6.);
+          sides[i].measure * (law.value(s) - rounded + (c + D) * k * k / 6.);
       }
     return result;
   }
@@ -260,7 +260,7 @@ namespace Debond
     const BranchMinimum        zero({{0., 0., 0.L, ""}});
     for (unsigned int i = 0; i < n; ++i)
       {
-        const double             length = sides[i].length;
+        const double             length = sides[i].measure;
         const RoundedBranches    rounded(law, D[i]);
         std::optional<Quadratic> quadratic;
         result.pieces.push_back(rounded.exact_piece(ranges[i].linear()));

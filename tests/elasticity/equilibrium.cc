@@ -25,30 +25,48 @@ using dealii::Tensor;
 
 namespace
 {
-  std::shared_ptr<const dealii::Function<2>>
+  template <int dim = 2>
+  std::shared_ptr<const dealii::Function<dim>>
   function(const std::string &expressions)
   {
-    auto result = std::make_shared<dealii::FunctionParser<2>>(2);
-    result->initialize("x,y", expressions, std::map<std::string, double>());
+    auto result = std::make_shared<dealii::FunctionParser<dim>>(dim);
+    result->initialize(dim == 2 ? "x,y" : "x,y,z",
+                       expressions,
+                       std::map<std::string, double>());
     return result;
   }
 
 
 
-  /// l of a linear displacement u = G x on the sides of an element.
+  /// l of an affine displacement u = t + G (x - centre) on the sides of an
+  /// element.
+  template <int dim>
   Eigen::VectorXd
-  linear_displacement(const EquilibriumElement &element, const Tensor<2, 2> &G)
+  affine_displacement(const EquilibriumElement<dim> &element,
+                      const Tensor<1, dim>          &t,
+                      const Tensor<2, dim>          &G)
   {
     const unsigned int n = element.corners.size();
-    Eigen::VectorXd    l(4 * n);
+    Eigen::VectorXd    l(dim * dim * n);
     for (unsigned int i = 0; i < n; ++i)
       {
-        const Tensor<1, 2> first = G * element.corners[i];
-        const Tensor<1, 2> last  = G * element.corners[(i + 1) % n];
-        for (unsigned int d = 0; d < 2; ++d)
+        std::array<Tensor<1, dim>, dim> u;
+        Tensor<1, dim>                  sum;
+        for (unsigned int k = 0; k < dim; ++k)
           {
-            l(4 * i + d)     = 0.5 * (first + last)[d];
-            l(4 * i + 2 + d) = 0.5 * (last - first)[d];
+            const unsigned int corner = corners_of_side<dim>(n, i)[k];
+            u[k] = t + G * (element.corners[corner] - element.centre);
+            sum += u[k];
+          }
+        for (unsigned int k = 0; k < dim; ++k)
+          {
+            Tensor<1, dim> own;
+            if (dim == 3)
+              own = (sum + u[k]) / 4.;
+            else
+              own = k == 0 ? 0.5 * sum : 0.5 * (u[1] - u[0]);
+            for (unsigned int d = 0; d < dim; ++d)
+              l(dim * (dim * i + k) + d) = own[d];
           }
       }
     return l;
@@ -56,86 +74,119 @@ namespace
 
 
 
+  template <int dim>
   void
-  test_element(const std::vector<Point<2>> &corners,
-               const Material              &material,
-               const std::string           &name)
+  test_element(const std::vector<Point<dim>> &corners,
+               const Material                &material,
+               const std::string             &name)
   {
-    const Tensor<1, 2>       force({0.3, -0.7});
-    const EquilibriumElement element(corners, material, {}, 0.);
-    const Eigen::VectorXd    eigenvalues =
+    constexpr unsigned int n_components =
+      dealii::SymmetricTensor<2, dim>::n_independent_components;
+    constexpr unsigned int n_motions = dim * (dim + 1) / 2;
+    Tensor<1, dim>         force;
+    force[0] = 0.3;
+    for (unsigned int d = 1; d < dim; ++d)
+      force[d] = -0.7 / d;
+    const EquilibriumElement<dim> element(corners, material, {}, 0.);
+    const Eigen::VectorXd         eigenvalues =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(element.K).eigenvalues();
     const double largest = eigenvalues(eigenvalues.size() - 1);
-    check(name + ": three rigid motions, no more",
-          std::abs(eigenvalues(2)) < 1e-12 * largest &&
-            eigenvalues(3) > 1e-6 * largest);
+    check(name + ": " + (dim == 2 ? "three" : "six") +
+            " rigid motions, no more",
+          static_cast<std::size_t>(eigenvalues.size()) ==
+              dim * dim * corners.size() &&
+            std::abs(eigenvalues(n_motions - 1)) < 1e-12 * largest &&
+            eigenvalues(n_motions) > (dim == 2 ? 1e-6 : 1e-7) * largest);
 
     // A linear displacement has its own stress and energy.
-    Tensor<2, 2> G;
-    G[0][0]                               = 1.;
-    G[0][1]                               = 0.4;
-    G[1][0]                               = -0.2;
-    G[1][1]                               = 0.5;
-    const Eigen::VectorXd               l = linear_displacement(element, G);
-    const dealii::SymmetricTensor<2, 2> sigma =
-      material.elasticity_tensor<2>() * symmetrize(G);
+    Tensor<2, dim> G;
+    for (unsigned int d = 0; d < dim; ++d)
+      for (unsigned int e = 0; e < dim; ++e)
+        G[d][e] = 1. / (1. + d + 2. * e) - (d > e ? 0.7 : 0.);
+    const Eigen::VectorXd l = affine_displacement(element, {}, G);
+    const dealii::SymmetricTensor<2, dim> sigma =
+      material.elasticity_tensor<dim>() * symmetrize(G);
     const Eigen::VectorXd stress = element.stress(l);
     double                error  = 0.;
-    for (unsigned int k = 0; k < stress.size(); k += 3)
-      error = std::max({error,
-                        std::abs(stress(k) - sigma[0][0]),
-                        std::abs(stress(k + 1) - sigma[1][1]),
-                        std::abs(stress(k + 2) - sigma[0][1])});
+    for (unsigned int k = 0; k < stress.size(); ++k)
+      error = std::max(error,
+                       std::abs(stress(k) -
+                                sigma.access_raw_entry(k % n_components)));
     check(name + ": stress of a linear displacement",
           error / sigma.norm(),
           1e-12);
     check(name + ": its energy",
           std::abs(l.dot(element.K * l) /
-                     (element.area * (sigma * symmetrize(G))) -
+                     (element.measure * (sigma * symmetrize(G))) -
                    1.),
           1e-12);
 
     // With a body force: the tractions balance it, moments as well, and the
     // energy that the element has is that of its stress.
-    const double             p = 0.2;
-    const EquilibriumElement loaded(corners, material, force, p);
-    const Eigen::VectorXd    tractions = loaded.K * l - loaded.F;
-    Tensor<1, 2>             resultant;
-    double                   moment = 0.;
-    for (unsigned int i = 0; i < corners.size(); ++i)
+    const double                  p = 0.2;
+    const EquilibriumElement<dim> loaded(corners, material, force, p);
+    const Eigen::VectorXd         tractions = loaded.K * l - loaded.F;
+    double                        imbalance = 0.;
+    for (unsigned int d = 0; d < dim; ++d)
       {
-        const Point<2> &a = corners[i], &b = corners[(i + 1) % corners.size()];
-        const Tensor<1, 2> mean({tractions(4 * i), tractions(4 * i + 1)});
-        const Tensor<1, 2> slope({tractions(4 * i + 2), tractions(4 * i + 3)});
-        const Tensor<1, 2> middle = 0.5 * (a + b) - loaded.centre;
-        const Tensor<1, 2> half   = 0.5 * (b - a);
-        resultant += mean;
-        moment += middle[0] * mean[1] - middle[1] * mean[0] +
-                  half[0] * slope[1] - half[1] * slope[0];
+        Tensor<1, dim> translation;
+        translation[d] = 1.;
+        imbalance +=
+          std::abs(affine_displacement(loaded, translation, {}).dot(tractions) +
+                   loaded.measure * force[d]);
+        for (unsigned int e = 0; e < d; ++e)
+          {
+            Tensor<2, dim> rotation;
+            rotation[d][e] = 1.;
+            rotation[e][d] = -1.;
+            imbalance += std::abs(
+              affine_displacement(loaded, {}, rotation).dot(tractions));
+          }
       }
     check(name + ": tractions balance the body force",
-          (resultant + loaded.area * force).norm() +
-            std::abs(moment) / std::sqrt(loaded.area),
+          imbalance,
           1e-11 * sigma.norm());
-    const Eigen::VectorXd other = loaded.stress(l);
-    double                dual  = 0.;
+    const Eigen::VectorXd other   = loaded.stress(l);
+    constexpr int         n_parts = LinearStress<dim>::RowsAtCompileTime;
+    double                dual    = 0.;
     for (unsigned int i = 0; i < corners.size(); ++i)
       {
-        Eigen::Matrix<double, 9, 1> total = other.segment<9>(9 * i);
-        for (unsigned int k = 0; k < 9; k += 3)
-          {
+        LinearStress<dim> total = other.segment<n_parts>(n_parts * i);
+        for (unsigned int k = 0; k < n_parts; ++k)
+          if (k % n_components < dim)
             total(k) += p;
-            total(k + 1) += p;
-          }
-        // Both kinds of cells have equal parts.
-        dual -=
-          0.5 *
-          complementary_energy(total, loaded.area / corners.size(), material);
+        // All kinds of cells have equal parts.
+        dual -= 0.5 * complementary_energy<dim>(total,
+                                                loaded.measure / corners.size(),
+                                                material);
       }
     dual += l.dot(tractions);
     const double primal =
       0.5 * l.dot(loaded.K * l) - loaded.F.dot(l) + loaded.constant;
     check(name + ": energy of the stress", std::abs(dual / primal - 1.), 1e-11);
+  }
+
+
+
+  void
+  test_tetrahedra()
+  {
+    Material stiff;
+    stiff.poisson_ratio = 0.49;
+    test_element<3>({{0., 0., 0.}, {1., 0., 0.}, {0., 1., 0.}, {0., 0., 1.}},
+                    {},
+                    "corner");
+    test_element<3>(
+      {{0., 0., 0.}, {2., 0.3, 0.1}, {0.5, 1., -0.2}, {1., 1., 1.}},
+      stiff,
+      "tetrahedron, nearly incompressible");
+    // That of a crossed cube, far from the origin and small.
+    test_element<3>({{1., 1., 1.},
+                     {1., 1.001, 1.001},
+                     {1., 1.002, 1.},
+                     {0.999, 1.001, 1.001}},
+                    {},
+                    "small");
   }
 
 
@@ -174,6 +225,71 @@ namespace
 
 
 
+  /// Bodies of tetrahedra that are all different. A column that stands on
+  /// rollers has a stress that is linear in its height if its weight acts, and
+  /// a uniform one if it is pulled: both are among the stresses, so that the
+  /// minimum is exact. Then a clamped one, beside P1.
+  void
+  test_solids()
+  {
+    const Point<3>           lengths(0.3, 0.5, 0.4);
+    dealii::Triangulation<3> mesh;
+    const BoundaryNames      names =
+      Box<3>({{{0.3, 0.5, 0.4}}, {{2, 2, 1}}}).make_mesh(mesh).boundaries;
+    dealii::GridTools::distort_random(0.2, mesh, true, 5);
+    Material material;
+    material.young_modulus = 5.;
+    material.poisson_ratio = 0.;
+    Supports<3> rollers;
+    for (const std::string side : {"left", "bottom", "front"})
+      rollers.displacements.push_back({side, names.at(side), true});
+    const double f = 0.03, t = 0.2;
+    for (const bool is_pulled : {false, true})
+      {
+        Loads<3> loads;
+        if (is_pulled)
+          loads.tractions[*names.at("right").begin()] =
+            function<3>("0.2; 0; 0");
+        else
+          loads.body_force = function<3>("0; -0.03; 0");
+        const EquilibriumProblem<3> stresses(
+          mesh, {}, rollers, material, loads);
+        const double volume = lengths[0] * lengths[1] * lengths[2];
+        const double exact =
+          is_pulled ? -volume * t * t / (2. * 5.) :
+                      -volume * f * f * lengths[1] * lengths[1] / (6. * 5.);
+        check(is_pulled ? "a solid that is pulled" : "a solid with weight",
+              std::abs(minimum(*stresses.condense(true)) / exact - 1.),
+              1e-9);
+        check("its loads are exact", stresses.loads_are_exact());
+      }
+
+    BoundaryConditions conditions;
+    conditions.clamped     = names.at("left");
+    conditions.contact     = names.at("bottom");
+    material.poisson_ratio = 0.3;
+    Loads<3> loads;
+    loads.tractions[*names.at("top").begin()] = function<3>("x; 0.2-z; 0.1");
+    const EquilibriumProblem<3> stresses(mesh, conditions, {}, material, loads);
+    ElasticProblem<3>           P1(mesh, conditions);
+    P1.assemble(material, loads);
+    const Condensation condensed(P1.matrix(),
+                                 P1.load(),
+                                 {},
+                                 [&](const unsigned int i) {
+                                   return P1.unknowns().is_constrained(i);
+                                 });
+    check("a clamped solid: below the P1 displacement",
+          minimum(*stresses.condense(true)) < minimum(condensed));
+    check("and linear tractions are exact", stresses.loads_are_exact());
+    loads.tractions[*names.at("top").begin()] = function<3>("x*z; 0; 0");
+    check("others are not",
+          !EquilibriumProblem<3>(mesh, conditions, {}, material, loads)
+             .loads_are_exact());
+  }
+
+
+
   /// J of the linear problem from below and from above.
   void
   test_bounds()
@@ -183,8 +299,8 @@ namespace
     double       error = 0., previous = 0.;
     for (const unsigned int n : {2, 4, 8})
       {
-        const Bar                bar(10 * n, n);
-        const EquilibriumProblem stresses(
+        const Bar                   bar(10 * n, n);
+        const EquilibriumProblem<2> stresses(
           bar.mesh, bar.conditions, {}, bar.material, bar.loads);
         ElasticProblem<2> P1(bar.mesh, bar.conditions);
         P1.assemble(bar.material, bar.loads);
@@ -206,8 +322,8 @@ namespace
       }
     check("second order but for the corners", error / previous, 0.4);
 
-    const Bar                bar(40, 4, 0.15);
-    const EquilibriumProblem stresses(
+    const Bar                   bar(40, 4, 0.15);
+    const EquilibriumProblem<2> stresses(
       bar.mesh, bar.conditions, {}, bar.material, bar.loads);
     check("distorted cells are triangles", stresses.elements().size() > 160);
     const double lower = minimum(*stresses.condense(true));
@@ -219,13 +335,13 @@ namespace
     for (auto &[id, traction] : rough.loads.tractions)
       traction = function("0; if(x<0.203, 0.69, -0.345)");
     check("a jump inside of a side is seen",
-          !EquilibriumProblem(
+          !EquilibriumProblem<2>(
              rough.mesh, rough.conditions, {}, rough.material, rough.loads)
              .loads_are_exact());
     rough.loads.tractions.clear();
     rough.loads.body_force = function("0; x");
     check("and a body force that varies",
-          !EquilibriumProblem(
+          !EquilibriumProblem<2>(
              rough.mesh, rough.conditions, {}, rough.material, rough.loads)
              .loads_are_exact());
   }
@@ -413,7 +529,7 @@ namespace
         change->initialize("x,y", expression, std::map<std::string, double>());
         bar.loads.temperature_change = change;
         std::cout << "a change of temperature " << expression << " is exact: "
-                  << (EquilibriumProblem(
+                  << (EquilibriumProblem<2>(
                         bar.mesh, bar.conditions, {}, bar.material, bar.loads)
                           .loads_are_exact() ?
                         "yes" :
@@ -432,7 +548,7 @@ namespace
     gap.gaps[*bar.conditions.contact.begin()] = {
       "", std::make_shared<dealii::Functions::ConstantFunction<2>>(1., 1)};
     print_error([&]() {
-      EquilibriumProblem(
+      EquilibriumProblem<2>(
         bar.mesh, bar.conditions, gap, bar.material, bar.loads);
     });
     moved.displacements.push_back({"right",
@@ -441,7 +557,7 @@ namespace
                                    {{false, true}},
                                    function("0; 1")});
     print_error([&]() {
-      EquilibriumProblem(
+      EquilibriumProblem<2>(
         bar.mesh, bar.conditions, moved, bar.material, bar.loads);
     });
   }
@@ -457,11 +573,13 @@ main(int argc, char *[])
   Material strain;
   strain.hypothesis    = Material::Hypothesis::plane_strain;
   strain.poisson_ratio = 0.49;
-  test_element({{0., 0.}, {1., 0.}, {1., 1.}, {0., 1.}}, {}, "square");
-  test_element({{0., 0.}, {2., 0.3}, {2.5, 1.3}, {0.5, 1.}},
-               strain,
-               "parallelogram, nearly incompressible");
-  test_element({{0., 0.}, {1., 0.2}, {0.3, 0.9}}, {}, "triangle");
+  test_element<2>({{0., 0.}, {1., 0.}, {1., 1.}, {0., 1.}}, {}, "square");
+  test_element<2>({{0., 0.}, {2., 0.3}, {2.5, 1.3}, {0.5, 1.}},
+                  strain,
+                  "parallelogram, nearly incompressible");
+  test_element<2>({{0., 0.}, {1., 0.2}, {0.3, 0.9}}, {}, "triangle");
+  test_tetrahedra();
+  test_solids();
   test_bounds();
   test_trace_constants();
   test_constants_of_triangles();

@@ -10,77 +10,84 @@
 
 namespace Debond
 {
-  /// A displacement of degree 1 or 2 on a triangle: its Cartesian coefficients,
+  /// A displacement of degree 1 or 2 on a simplex: its Cartesian coefficients,
   /// see bernstein().
+  template <int dim>
   struct CellDisplacement
   {
-    static constexpr unsigned int maximum = CellNodes<2>::maximum;
+    static constexpr unsigned int maximum = CellNodes<dim>::maximum;
 
-    unsigned int                              degree;
-    std::array<unsigned int, 3>               vertices;
-    std::array<dealii::Tensor<1, 2>, maximum> coefficients;
+    /// The coefficients of degree 2 on a side.
+    using OnSide = std::array<dealii::Tensor<1, dim>, n_coefficients(dim, 2)>;
+
+    unsigned int                                degree;
+    std::array<unsigned int, dim + 1>           vertices;
+    std::array<dealii::Tensor<1, dim>, maximum> coefficients;
 
     /// All functions of the basis have the same mean.
-    dealii::Tensor<1, 2>
+    dealii::Tensor<1, dim>
     mean() const
     {
-      const unsigned int   n = n_coefficients(3, degree);
-      dealii::Tensor<1, 2> sum;
+      const unsigned int     n = n_coefficients(dim + 1, degree);
+      dealii::Tensor<1, dim> sum;
       for (unsigned int k = 0; k < n; ++k)
         sum += coefficients[k];
       return sum / static_cast<double>(n);
     }
 
-    dealii::SymmetricTensor<2, 2>
-    strain(const BernsteinSimplex<2>   &simplex,
-           const std::array<double, 3> &barycentric) const
+    dealii::SymmetricTensor<2, dim>
+    strain(const BernsteinSimplex<dim>       &simplex,
+           const std::array<double, dim + 1> &barycentric) const
     {
-      dealii::Tensor<2, 2> gradient;
+      dealii::Tensor<2, dim> gradient;
       for (unsigned int k = 0; k < simplex.n_nodes; ++k)
         gradient +=
           outer_product(coefficients[k], simplex.gradient(k, barycentric));
       return symmetrize(gradient);
     }
 
-    /// Values at the first, the middle and the last point of the side between
-    /// two vertices.
-    std::array<dealii::Tensor<1, 2>, 3>
-    on_side(const std::array<unsigned int, 2> &ends) const
+    /// On the side with these vertices, in their order.
+    OnSide
+    on_side(const std::array<unsigned int, dim> &corners) const
     {
-      std::array<unsigned int, 2> local = {};
-      for (unsigned int v = 0; v < 3; ++v)
-        for (unsigned int k = 0; k < 2; ++k)
-          if (vertices[v] == ends[k])
+      std::array<unsigned int, dim> local = {};
+      for (unsigned int v = 0; v <= dim; ++v)
+        for (unsigned int k = 0; k < dim; ++k)
+          if (vertices[v] == corners[k])
             local[k] = v;
-      const dealii::Tensor<1, 2> &first  = coefficients[local[0]];
-      const dealii::Tensor<1, 2> &last   = coefficients[local[1]];
-      dealii::Tensor<1, 2>        middle = 0.5 * (first + last);
-      if (degree == 2)
-        middle = 0.5 * middle +
-                 0.5 * coefficients[3 + edge_between(local[0], local[1])];
-      return {{first, middle, last}};
+      OnSide result;
+      for (unsigned int k = 0; k < dim; ++k)
+        result[k] = coefficients[local[k]];
+      for (unsigned int e = 0; e < n_simplex_edges(dim); ++e)
+        {
+          const auto &[a, b] = simplex_edges[e];
+          result[dim + e] =
+            degree == 2 ?
+              coefficients[dim + 1 + edge_between(local[a], local[b])] :
+              0.5 * (result[a] + result[b]);
+        }
+      return result;
     }
   };
 
 
 
   /// That of a problem, in the order of the active cells.
-  inline std::vector<CellDisplacement>
-  cell_displacements(const ElasticProblem<2> &problem, const DofVector &u)
+  template <int dim>
+  std::vector<CellDisplacement<dim>>
+  cell_displacements(const ElasticProblem<dim> &problem, const DofVector &u)
   {
     const DofVector cartesian = problem.unknowns().cartesian_displacement(u);
-    std::vector<CellDisplacement> result;
+    std::vector<CellDisplacement<dim>> result;
     for (const auto &cell :
          problem.unknowns().dof_handler().active_cell_iterators())
       {
-        const CellNodes<2> nodes(cell);
-        CellDisplacement   own = {problem.unknowns().degree(),
-                                  {{cell->vertex_index(0),
-                                    cell->vertex_index(1),
-                                    cell->vertex_index(2)}},
-                                  {}};
+        const CellNodes<dim>  nodes(cell);
+        CellDisplacement<dim> own = {problem.unknowns().degree(), {}, {}};
+        for (unsigned int v = 0; v <= dim; ++v)
+          own.vertices[v] = cell->vertex_index(v);
         for (unsigned int k = 0; k < nodes.size; ++k)
-          for (unsigned int d = 0; d < 2; ++d)
+          for (unsigned int d = 0; d < dim; ++d)
             own.coefficients[k][d] = cartesian(nodes.dofs[k][d]);
         result.push_back(own);
       }

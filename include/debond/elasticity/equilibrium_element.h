@@ -3,23 +3,37 @@
 #define debond_elasticity_equilibrium_element_h
 
 #include <deal.II/base/point.h>
+#include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
 
 #include <debond/elasticity/material.h>
 
 #include <Eigen/Core>
 
+#include <array>
 #include <vector>
 
 namespace Debond
 {
+  /// Linear stresses on a simplex: for each corner the components xx, yy, xy,
+  /// in 3D xx, yy, zz, xy, xz, yz.
+  template <int dim>
+  using LinearStress =
+    Eigen::Matrix<double,
+                  (dim + 1) *
+                    dealii::SymmetricTensor<2, dim>::n_independent_components,
+                  1>;
+
+
+
   /**
    * The composite equilibrium element of Fraeijs de Veubeke and of Johnson and
-   * Mercier (Numer. Math. 30, 1978): symmetric stresses that are linear on the
-   * triangles between the sides of a polygon and its centre, with tractions
-   * that are continuous inside. The polygon is a triangle cut at its centroid
-   * or a parallelogram cut along its diagonals. With the divergence prescribed,
-   * 9 or 13 stresses are left, as many as there are linear tractions on the
+   * Mercier (Numer. Math. 30, 1978), in 3D that of Krizek (Numer. Math. 40,
+   * 1982): symmetric stresses that are linear on the simplices between the
+   * sides of a cell and its centre, with tractions that are continuous inside.
+   * The cell is a triangle or a tetrahedron cut at its centroid, or a
+   * parallelogram cut along its diagonals. With the divergence prescribed, 9,
+   * 30 or 13 stresses are left, as many as there are linear tractions on the
    * sides in equilibrium.
    *
    * The tractions of all stresses sigma with div sigma + f = 0 are reached by
@@ -29,36 +43,43 @@ namespace Debond
    *     max_sigma -1/2 int (sigma + p 1) : C^{-1} (sigma + p 1) + l't(sigma)
    *         = 1/2 l'K l - F'l + constant.
    *
-   * Side i from corner i to corner i+1 has four numbers in l: the mean of the
-   * displacement's x and y components, and their slopes, the coefficients of xi
-   * in [-1, 1] along the side; t are the work-conjugate moments of the traction
-   * with 1 and xi.
+   * Each side has dim^2 numbers in l, component by component of dim vectors. In
+   * 2D these are the mean of the displacement and its slope, the coefficient of
+   * xi in [-1, 1] from the first to the second end; t are the work-conjugate
+   * moments of the traction with 1 and xi. In 3D they are the means of the
+   * displacement with the weights 3 lambda_k, lambda the barycentric
+   * coordinates of the side; t are a third of its area times the tractions at
+   * its corners.
    */
+  template <int dim>
   struct EquilibriumElement
   {
-    /// @p corners: counterclockwise, three, or four of a parallelogram.
-    /// @p body_force: constant, force per area. @p thermal_stress: p, see
-    /// Material::thermal_stress().
-    EquilibriumElement(const std::vector<dealii::Point<2>> &corners,
-                       const Material                      &material,
-                       const dealii::Tensor<1, 2>          &body_force,
-                       const double                         thermal_stress);
+    static constexpr int unknowns_of_a_side = dim * dim;
+
+    /// @p corners: of a triangle or a parallelogram counterclockwise; of a
+    /// tetrahedron such that its volume is not negative. @p body_force:
+    /// constant, force per volume (per area of the plane in 2D). @p
+    /// thermal_stress: p, see Material::thermal_stress().
+    EquilibriumElement(const std::vector<dealii::Point<dim>> &corners,
+                       const Material                        &material,
+                       const dealii::Tensor<1, dim>          &body_force,
+                       const double                           thermal_stress);
 
     /// The same at another place: @p other_corners are its corners but for a
     /// motion without rotation.
     EquilibriumElement
-    moved_to(const std::vector<dealii::Point<2>> &other_corners) const;
+    moved_to(const std::vector<dealii::Point<dim>> &other_corners) const;
 
     /// The stress that is reached for @p displacements l, with C made @p weight
-    /// times as stiff: for each side the triangle above it, for each of its
-    /// corners (those of the side, then the centre) xx, yy and xy.
+    /// times as stiff: a LinearStress for each side, of the simplex above it
+    /// with the corners of the side and the centre.
     Eigen::VectorXd
     stress(const Eigen::VectorXd &displacements,
            const double           weight = 1.) const;
 
-    std::vector<dealii::Point<2>> corners;
-    dealii::Point<2>              centre;
-    double                        area;
+    std::vector<dealii::Point<dim>> corners;
+    dealii::Point<dim>              centre;
+    double                          measure; ///< area or volume
 
     /// With C made c times as stiff these are c K, F and constant / c.
     Eigen::MatrixXd K;
@@ -72,12 +93,26 @@ namespace Debond
 
 
 
-  /// int sigma : C^{-1} sigma over a triangle of the given area, C that of the
-  /// material, with sigma as EquilibriumElement::stress() has it.
+  /// The corners of a side of a cell with @p n_corners: of a polygon the side
+  /// from a corner to the next one, of a tetrahedron the face opposite to a
+  /// corner, counterclockwise seen from outside.
+  template <int dim>
+  std::array<unsigned int, dim>
+  corners_of_side(const unsigned int n_corners, const unsigned int side);
+
+  /// The outward normal of a side with these corners in the order of
+  /// corners_of_side(), as long as its length or area.
+  template <int dim>
+  dealii::Tensor<1, dim>
+  scaled_normal(const std::array<dealii::Point<dim>, dim> &side);
+
+  /// int sigma : C^{-1} sigma over a simplex of the given area or volume, C
+  /// that of the material.
+  template <int dim>
   double
-  complementary_energy(const Eigen::Matrix<double, 9, 1> &stress,
-                       const double                       area,
-                       const Material                    &material);
+  complementary_energy(const LinearStress<dim> &stress,
+                       const double             measure,
+                       const Material          &material);
 } // namespace Debond
 
 #endif

@@ -122,12 +122,13 @@ namespace Debond
 
   private:
     double
-    elastic_functional(const Scene<2>                      &solved,
-                       const std::vector<CellDisplacement> &displacement) const;
+    elastic_functional(
+      const Scene<2>                         &solved,
+      const std::vector<CellDisplacement<2>> &displacement) const;
 
     const std::shared_ptr<const Scene<2>> scene;
     const CertifiedMinimum                minimum;
-    const EquilibriumProblem              equilibrium;
+    const EquilibriumProblem<2>           equilibrium;
 
     /// Of the contact sides, if branches are not fixed.
     std::vector<double> trace_constants;

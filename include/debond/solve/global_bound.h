@@ -36,9 +36,9 @@ namespace Debond
   /// trace_constant() of the rectangles and triangles above the contact sides;
   /// in a crossed parallelogram it is that of the triangle above the side.
   std::vector<double>
-  side_constants(const EquilibriumProblem &equilibrium,
-                 const ByRegion<Material> &materials,
-                 const bool                tangential_fixed);
+  side_constants(const EquilibriumProblem<2> &equilibrium,
+                 const ByRegion<Material>    &materials,
+                 const bool                   tangential_fixed);
 
   /**
    * A lower bound of the least J of the continuous problem, and where its
@@ -52,7 +52,7 @@ namespace Debond
    * Throws EquilibriumError if there is no bound.
    */
   GlobalBound
-  bound_global(const EquilibriumProblem       &equilibrium,
+  bound_global(const EquilibriumProblem<2>    &equilibrium,
                const std::vector<double>      &trace_constants,
                const BranchMinimum            &law,
                const Eigen::VectorXd          &means,

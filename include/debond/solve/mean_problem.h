@@ -88,10 +88,10 @@ namespace Debond
     /// @p trace_constants: Lambda of each side; @p energies: of the strains in
     /// the cells above the sides, of a good displacement, for the choice of
     /// shifts. References to all are kept.
-    MeanProblems(const EquilibriumProblem  &equilibrium,
-                 const std::vector<double> &trace_constants,
-                 const BranchMinimum       &law,
-                 const std::vector<double> &energies);
+    MeanProblems(const EquilibriumProblem<2> &equilibrium,
+                 const std::vector<double>   &trace_constants,
+                 const BranchMinimum         &law,
+                 const std::vector<double>   &energies);
 
     /// Large enough for the law not to be rounded at the mean, if that can be
     /// with the given multiple of the bonds' stiffness.
@@ -145,12 +145,12 @@ namespace Debond
       return 0.9 * trace_constants[i] / sharers[sides[i].element];
     }
 
-    const EquilibriumProblem                           &equilibrium;
-    const std::vector<double>                          &trace_constants;
-    const std::vector<double>                          &energies;
-    const BranchMinimum                                &law;
-    const std::vector<EquilibriumProblem::ContactSide> &sides;
-    const unsigned int                                  n;
+    const EquilibriumProblem<2>                           &equilibrium;
+    const std::vector<double>                             &trace_constants;
+    const std::vector<double>                             &energies;
+    const BranchMinimum                                   &law;
+    const std::vector<EquilibriumProblem<2>::ContactSide> &sides;
+    const unsigned int                                     n;
     std::vector<unsigned int> sharers; ///< of elements
   };
 } // namespace Debond
