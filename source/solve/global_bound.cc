@@ -237,11 +237,18 @@ namespace Debond
         const MeanProblem problem =
           sides.mean_problem(ranges, means, shifts(), none);
         exclude_pieces(problem, upper, means, may_go_on, ranges);
-        shrink_ranges(problem, upper, may_go_on, ranges);
+        shrink_ranges(problem, upper, false, may_go_on, ranges);
         first_trials.push_back(shifts());
       }
     for (const double multiple : first_shifts)
       first_trials.push_back(sides.shifts_for_means(means, multiple));
+    /// Whether saving what may be saved of what the sides lose would make the
+    /// interval narrower.
+    const auto losses_matter = [&]() {
+      const double loss =
+        std::accumulate(result.losses.begin(), result.losses.end(), 0.);
+      return part_of_losses * loss >= least_gain * (upper - result.lower);
+    };
     for (const std::vector<double> &D : first_trials)
       {
         if (const double lower = add_bound(D); !best || lower > best_lower)
@@ -250,40 +257,39 @@ namespace Debond
             best_values = latest_values;
             best_lower  = lower;
           }
-        if (result.status == ProofStatus::proved)
+        if (result.status == ProofStatus::proved &&
+            (!is_known || !losses_matter()))
           break;
       }
-    /// Makes the ranges narrower by the best problem.
-    const auto look = [&]() {
-      shrink_ranges(*best, upper, may_go_on, ranges);
-      // Trials of single sides are for problems in which most are decided.
-      if (2 * best->kept.size() <= ranges.size())
+    /// Makes the ranges narrower by the best problem. If it has all means since
+    /// nothing was known, quickly and without trials of single sides: the next
+    /// one has fewer.
+    const auto look = [&](const bool is_quick) {
+      shrink_ranges(*best, upper, is_quick, may_go_on, ranges);
+      if (!is_quick)
         exclude_pieces(
           *best, upper, best_values.head(means.size()), may_go_on, ranges);
     };
     unsigned int n_idle = 0;
     for (unsigned int stage = 0; stage < n_stages && may_go_on(); ++stage)
       {
-        look();
+        look(stage == 0 && !is_known);
         const double before = upper - result.lower;
         add_bound(
           sides.shifts_for_ranges(ranges,
                                   best_values.head(means.size()),
                                   best_values.tail(means.size()),
                                   least_shifts[stage % least_shifts.size()]));
-        best                  = std::move(latest);
-        best_values           = latest_values;
-        const double interval = upper - result.lower;
-        const double loss =
-          std::accumulate(result.losses.begin(), result.losses.end(), 0.);
-        n_idle = interval > (1. - least_gain) * before ? n_idle + 1 : 0;
+        best        = std::move(latest);
+        best_values = latest_values;
+        n_idle =
+          upper - result.lower > (1. - least_gain) * before ? n_idle + 1 : 0;
         // The first one has only the ranges of a problem that knew nothing.
-        if (n_idle == n_idle_stages ||
-            (stage > 0 && part_of_losses * loss < least_gain * interval))
+        if (n_idle == n_idle_stages || (stage > 0 && !losses_matter()))
           break;
       }
     if (may_go_on())
-      look();
+      look(false);
 
     if (with_deviations && may_go_on())
       {
@@ -294,6 +300,7 @@ namespace Debond
                                          sides.rests_for(upper - result.lower,
                                                          D)),
                       upper,
+                      false,
                       may_go_on,
                       ranges);
       }

@@ -11,19 +11,9 @@ namespace Debond
 {
   namespace
   {
-    /// Nodes that tell where minimisers are: each takes the cube of the number
-    /// of means that are not eliminated, and with many of these what the first
-    /// nodes tell is found again with fewer.
-    unsigned int
-    n_nodes_of_ranges(const MeanProblem &problem)
-    {
-      constexpr double least = 4., most = 32., few_means = 64.;
-      const double     part =
-        few_means /
-        static_cast<double>(std::max<std::size_t>(problem.kept.size(), 1));
-      return static_cast<unsigned int>(
-        std::max(least, std::min(most, most * part * part)));
-    }
+    /// Nodes that tell where minimisers are.
+    constexpr unsigned int n_nodes_of_ranges       = 32;
+    constexpr unsigned int n_quick_nodes_of_ranges = 4;
 
     /// Nodes to exclude one piece of the law on one side, and how often in a
     /// row they may be too few before no more are tried.
@@ -231,6 +221,7 @@ namespace Debond
   void
   shrink_ranges(const MeanProblem           &problem,
                 const double                 upper,
+                const bool                   is_quick,
                 const std::function<bool()> &may_go_on,
                 std::vector<CertifiedSide>  &ranges)
   {
@@ -241,17 +232,19 @@ namespace Debond
       {
         cut(*root, problem, ranges);
         // With as few relaxations as later nodes.
-        root->number = 1;
+        if (is_quick)
+          root->number = 1;
         open.push_back(std::move(*root));
       }
     else
       return;
-    const Interval empty               = {1., -1.};
-    CertifiedSide  no_range            = {};
-    no_range.mean                      = empty;
-    no_range.at_ends                   = {{empty, empty}};
-    no_range.deviation                 = 0.;
-    const unsigned int         n_nodes = n_nodes_of_ranges(problem);
+    const Interval empty    = {1., -1.};
+    CertifiedSide  no_range = {};
+    no_range.mean           = empty;
+    no_range.at_ends        = {{empty, empty}};
+    no_range.deviation      = 0.;
+    const unsigned int n_nodes =
+      is_quick ? n_quick_nodes_of_ranges : n_nodes_of_ranges;
     std::vector<CertifiedSide> hulls(ranges.size(), no_range);
     for (unsigned int nodes = 0; !open.empty(); ++nodes)
       {

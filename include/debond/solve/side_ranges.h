@@ -26,10 +26,11 @@ namespace Debond
 
 
   /// Shrinks such ranges to where these displacements are by theorem 2, with at
-  /// most 32 boxes.
+  /// most 32 boxes; if @p is_quick with 4 that are bounded less well.
   void
   shrink_ranges(const MeanProblem           &problem,
                 const double                 upper,
+                const bool                   is_quick,
                 const std::function<bool()> &may_go_on,
                 std::vector<CertifiedSide>  &ranges);
 } // namespace Debond
