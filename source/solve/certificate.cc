@@ -26,6 +26,9 @@ namespace Debond
     /// were held.
     constexpr double traction_rounding = 1e-9;
 
+    /// Of displacements in contact, relative to the largest one.
+    constexpr double contact_rounding = 1e-9;
+
 
 
     EquilibriumProblem<2>
@@ -224,18 +227,25 @@ namespace Debond
         1.5 * Eigen::MatrixXd::Identity(n, n),
         -1.5 * Eigen::MatrixXd::Identity(n, n);
       std::vector<BranchMinimum::Piece> pieces;
+      Eigen::VectorXd                   u_nu(2 * n); ///< of the displacement
       Eigen::MatrixXd                   M = S;
       Eigen::VectorXd                   r = g;
       for (Eigen::Index i = 0; i < n; ++i)
         {
           const Trace trace(sides[i], displacement);
           pieces.push_back(law[law.index(trace.mean())]);
+          u_nu(i)             = trace.value(1. / 3.);
+          u_nu(n + i)         = trace.value(-1. / 3.);
           const double weight = sides[i].measure * pieces.back().curvature;
           M(i, i) += weight;
           M(n + i, n + i) += weight / 3.;
           r(i) -= sides[i].measure * pieces.back().slope;
         }
-      ActiveSet           active(2 * n, 0);
+      // Where the displacement is in contact, and what is wrong there is found.
+      ActiveSet active(2 * n, 0);
+      for (Eigen::Index i = 0; i < 2 * n; ++i)
+        active[i] =
+          u_nu(i) >= -contact_rounding * u_nu.lpNorm<Eigen::Infinity>();
       const BoundQPResult minimum = solve_bound_qp(T.transpose() * M * T,
                                                    T.transpose() * r,
                                                    Eigen::VectorXd::Zero(2 * n),
