@@ -270,4 +270,15 @@ main(int argc, char *argv[])
           2,
           true);
   test<3>("quarter_hyper_shell", "0, 0, 0 : 0.1 : 0.2 : 3 : true", 4, false);
+
+  std::cout << "More ranks than units" << std::endl;
+  BodyParameters parameters;
+  parameters.source        = BodyParameters::Source::generator;
+  parameters.generator     = "hyper_L";
+  parameters.arguments     = "-1 : 1 : true";
+  parameters.n_refinements = 5;
+  print_error([&]() {
+    std::dynamic_pointer_cast<const MeshBody<2>>(make_body(2, parameters))
+      ->halved(5, 0, 769);
+  });
 }
