@@ -90,14 +90,14 @@ namespace
               condensed->load()};
     }
 
-    const Parameters          parameters;
-    const Scene<2>            scene;
-    const EquilibriumProblem  stresses;
-    const std::vector<double> trace_constants;
-    const unsigned int        n;
-    const std::vector<double> energies;
-    const MeanProblems        problems;
-    std::vector<double>       shifts, rests;
+    const Parameters            parameters;
+    const Scene<2>              scene;
+    const EquilibriumProblem<2> stresses;
+    const std::vector<double>   trace_constants;
+    const unsigned int          n;
+    const std::vector<double>   energies;
+    const MeanProblems          problems;
+    std::vector<double>         shifts, rests;
   };
 
 
@@ -128,7 +128,7 @@ namespace
           for (unsigned int i = 0; i < n; ++i)
             {
               const double D = problem.shifts[i], k = x(n + i);
-              sum += body.stresses.contact_sides()[i].length *
+              sum += body.stresses.contact_sides()[i].measure *
                      (RoundedBranches(body.law(), D).minimum().value(x(i)) -
                       D * k * k / 6.);
             }
@@ -178,7 +178,7 @@ namespace
     Quadratic direct = body.softened(problem);
     for (const auto &side : body.stresses.contact_sides())
       direct.constant +=
-        side.length * static_cast<double>(body.law()[1].constant);
+        side.measure * static_cast<double>(body.law()[1].constant);
     const Eigen::LLT<Eigen::MatrixXd> factor(direct.A);
     const Eigen::VectorXd             x     = factor.solve(direct.b);
     const double                      least = direct.value(x);
