@@ -3,6 +3,7 @@
 
 #include <debond/benchmark/benchmark_study.h>
 #include <debond/benchmark/benchmarks.h>
+#include <debond/benchmark/certificate_against_linear.h>
 #include <debond/benchmark/contact_against_linear.h>
 #include <debond/benchmark/machine.h>
 #include <debond/benchmark/start_up.h>
@@ -70,13 +71,27 @@ namespace Debond
 
 
 
-    /// Measures a scene; if that fails, the row has the reason.
+    bool
+    has_certificate(const Parameters &parameters)
+    {
+      return parameters.dimension == 2 &&
+             parameters.certificate.kind != CertificateKind::none;
+    }
+
+
+
+    /// Measures a scene, with a certificate that one; if that fails, the row
+    /// has the reason.
     BenchmarkRow
     contact_row(const BenchmarkScene &scene, const BenchmarkStudy &study)
     {
       try
         {
           const Parameters parameters = scene.parameters();
+          if (has_certificate(parameters))
+            return measure_certificate_against_linear(scene.name,
+                                                      parameters,
+                                                      study);
           return parameters.dimension == 2 ?
                    measure_contact_against_linear<2>(scene.name,
                                                      parameters,
@@ -146,17 +161,46 @@ namespace Debond
 
 
 
+    void
+    write_certificates(const std::vector<BenchmarkRow> &rows,
+                       const Writer                    &writer)
+    {
+      writer.write(
+        "certificates",
+        {plain_column("scene", "scene"),
+         plain_column("kind", "kind"),
+         plain_column("unknowns", "unknowns"),
+         plain_column("of the stresses", "stress_unknowns"),
+         number_column("width", "width", 2),
+         plain_column("boxes", "boxes"),
+         number_column("certificate, s", "cpu_seconds", 3),
+         number_column("CHOLMOD, s", "cholesky_cpu_seconds", 3),
+         number_column("with assembly, s", "assembled_cpu_seconds", 3),
+         spread_column("over CHOLMOD", "cpu_time_over_cholesky", 3),
+         spread_column("over both", "cpu_time_over_assembled", 3)},
+        rows);
+    }
+
+
+
     ExitCode
     run_contact_solves(const std::vector<BenchmarkStudy> &studies,
                        const Writer                      &writer)
     {
       std::cout << "Contact solve beside one linear solve" << std::endl;
-      std::vector<BenchmarkRow> rows, of_growing;
+      std::vector<BenchmarkRow> rows, of_growing, certificates;
       for (const BenchmarkStudy &study : studies)
         for (const BenchmarkScene &scene : study.scenes)
           {
             std::cout << "  " << scene.name << std::endl;
-            rows.push_back(contact_row(scene, study));
+            const BenchmarkRow row = contact_row(scene, study);
+            if (row.contains("kind"))
+              {
+                certificates.push_back(row);
+                write_certificates(certificates, writer);
+                continue;
+              }
+            rows.push_back(row);
             if (study.is_refined && rows.back().contains("status"))
               of_growing.push_back(rows.back());
             // What ends the program later leaves these.
@@ -171,6 +215,7 @@ namespace Debond
                     number_column("memory ~ n^", "memory_exponent", 3)},
                    fit_growth(of_growing, smallest_for_growth));
       std::cout << "Tables (CSV, Markdown): " << writer.path("") << std::endl;
+      rows.insert(rows.end(), certificates.begin(), certificates.end());
       return report_failures(rows);
     }
   } // namespace

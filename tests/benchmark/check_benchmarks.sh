@@ -6,10 +6,10 @@
 prm=$2
 export OMP_THREAD_LIMIT=1
 
-"$debond" results "$prm"/benchmarks/quick-{direct,multigrid,multigrid-3d,body-pad}.prm \
+"$debond" results "$prm"/benchmarks/quick-{direct,multigrid,multigrid-3d,body-pad,certificate}.prm \
   >log || fail "$(cat log)"
 cd results
-files=(contact_solve growth start_up)
+files=(contact_solve growth start_up certificates)
 for file in "${files[@]}"; do
   [ -s "$file.csv" ] && [ -s "$file.md" ] || fail "no $file"
   grep -q "^Debond .*CHOLMOD.*BLAS" "$file.md" || fail "no heading in $file.md"
@@ -56,6 +56,10 @@ for cells in 20x2 40x4 80x8; do
   # Memory does not depend on the machine's speed.
   at_most "$(column contact_solve memory_over_cholesky "$scene")" 2 "memory"
 done
+# Intervals of one mesh, the wider one where bonds may break anywhere.
+at_most "$(column certificates width "benchmark fixed state")" 0.0265 "the width"
+at_most "$(column certificates width "benchmark global")" 0.028 "the width"
+at_most "$(column certificates stress_unknowns "benchmark global")" 1344 "unknowns"
 # The multigrid path finds the same minimum, with hardly more cycles than A u = f.
 is "$(column contact_solve J "multigrid 80x8")" "${minima[1]}" 1e-9 "J"
 for scene in "multigrid 80x8" "multigrid 20x2x2" "pad 40x10"; do
