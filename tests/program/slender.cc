@@ -327,6 +327,9 @@ namespace
       {
         assignments.push_back("Solver/Method=majorise minimise");
         assignments.push_back("Solver/Linear solver=multigrid");
+        // By default it is 1e-10, which an iterative solver goes no further
+        // than.
+        assignments.push_back("Solver/Majorise minimise/Stop tolerance=1e-12");
       }
     else
       assignments.push_back("Solver/Method=" + strip.method);
