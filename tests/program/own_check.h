@@ -406,7 +406,9 @@ namespace OwnCheck
     /// the rigid motions that neither supports nor the bonds that hold at s
     /// resist, relative to the terms that are summed up in them: the body goes
     /// off unless this is zero. Bonds that hold beside a node about which the
-    /// body turns off are on a part of a face, and resist by its cube.
+    /// body turns off are on a part of a face, and resist by its cube. Bonds
+    /// that are softer than the weak springs hold nothing: descend() does not
+    /// see them.
     Real
     unbalanced(const VectorX &s) const
     {
@@ -415,8 +417,8 @@ namespace OwnCheck
       const MatrixX B_0 = bonds(VectorX::Zero(n_contact()));
       const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(
         MatrixX(free_normals.transpose() * bonds(s) * free_normals));
-      const int n_loose =
-        (eigen.eigenvalues().array() <= Real(1e-10) * B_0.norm()).count();
+      const Real none    = std::max(Real(1e-10) * B_0.norm(), weak_stiffness());
+      const int  n_loose = (eigen.eigenvalues().array() <= none).count();
       if (n_loose == 0)
         return 0;
       const MatrixX turn  = eigen.eigenvectors().leftCols(n_loose);
@@ -1086,18 +1088,24 @@ namespace OwnCheck
         }
     }
 
-    /// Springs at the contact nodes that are lost beside whatever holds a body.
+    /// Of springs at the contact nodes that are lost beside whatever holds a
+    /// body.
+    Real
+    weak_stiffness() const
+    {
+      return 1e-12 * scene.mu *
+             (dim == 3 ?
+                *std::max_element(scene.lengths.begin(), scene.lengths.end()) :
+                1.);
+    }
+
     MatrixX
     held_weakly() const
     {
       const unsigned int n = n_contact();
-      if (!scene.held_by_bonds)
-        return MatrixX::Zero(n, n);
-      return 1e-12 * scene.mu *
-             (dim == 3 ?
-                *std::max_element(scene.lengths.begin(), scene.lengths.end()) :
-                1.) *
-             MatrixX::Identity(n, n);
+      return scene.held_by_bonds ?
+               MatrixX(weak_stiffness() * MatrixX::Identity(n, n)) :
+               MatrixX(MatrixX::Zero(n, n));
     }
 
     /// min 1/2 s'Qs - g's subject to s <= 0: all that is wrong is exchanged
