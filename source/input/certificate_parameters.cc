@@ -13,7 +13,7 @@ namespace Debond
       {{"none", CertificateKind::none},
        {"fixed state", CertificateKind::fixed_state},
        {"global", CertificateKind::global}},
-      "An interval, with a proof, for the minimum of the continuous problem on the body of the mesh (2D): global is for the least J, fixed state for the least J with the bonds of each side of the contact boundary on the branch of the result",
+      "An interval, with a proof, for the minimum of the continuous problem on the body of the mesh: global is for the least J (2D), fixed state for the least J with the bonds of each side of the contact boundary on the branch of the result",
       AtRestart::any);
   }
 } // namespace Debond

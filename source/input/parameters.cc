@@ -239,7 +239,7 @@ namespace Debond
                          {"Certificate/Kind"});
           return;
         }
-      if (p.dimension != 2)
+      if (p.dimension != 2 && p.certificate.kind == CertificateKind::global)
         table.reject("Certificate/Kind", "is for plane bodies", {"Dimension"});
       if (!p.load_path.factors.empty() || !p.load_path.dead_loads.empty())
         table.reject("Certificate/Kind",

@@ -6,6 +6,7 @@
 #include <debond/solve/displacement.h>
 
 #include <algorithm>
+#include <array>
 
 namespace Debond
 {
@@ -40,7 +41,7 @@ namespace Debond
 
 
     /// Of a certificate with stresses of the same mesh: the mean equilibrated
-    /// stress and the gap per area.
+    /// stress and the gap per area or volume.
     template <int dim>
     std::vector<CellField>
     fields_of_cells(const Scene<dim>                 &scene,
@@ -48,18 +49,29 @@ namespace Debond
     {
       if (!certificate || certificate->gaps.empty())
         return {};
-      std::vector<CellField> fields = {{"equilibrated_stress_xx", {}},
-                                       {"equilibrated_stress_yy", {}},
-                                       {"equilibrated_stress_xy", {}},
-                                       {"gap_density", {}}};
+      std::vector<CellField>                   fields;
+      std::vector<std::array<unsigned int, 2>> components;
+      for (unsigned int k = 0;
+           k < dealii::SymmetricTensor<2, dim>::n_independent_components;
+           ++k)
+        {
+          const auto indices =
+            dealii::SymmetricTensor<2, dim>::unrolled_to_component_indices(k);
+          components.push_back({{static_cast<unsigned int>(indices[0]),
+                                 static_cast<unsigned int>(indices[1])}});
+          fields.push_back({std::string("equilibrated_stress_") +
+                              "xyz"[indices[0]] + "xyz" [indices[1]],
+                            {}});
+        }
+      fields.push_back({"gap_density", {}});
       for (const auto &cell :
            scene.problem().unknowns().dof_handler().active_cell_iterators())
         {
           const auto &stress = certificate->stresses[cell->active_cell_index()];
-          fields[0].second.push_back(stress[0][0]);
-          fields[1].second.push_back(stress[1][1]);
-          fields[2].second.push_back(stress[0][1]);
-          fields[3].second.push_back(
+          for (unsigned int k = 0; k < components.size(); ++k)
+            fields[k].second.push_back(
+              stress[components[k][0]][components[k][1]]);
+          fields.back().second.push_back(
             certificate->gaps[cell->active_cell_index()] / cell->measure());
         }
       return fields;

@@ -8,58 +8,55 @@
 namespace Debond
 {
   template <int dim>
-  std::unique_ptr<const Certifier>
-  make_certifier(
-    [[maybe_unused]] const CertificateKind                    kind,
-    [[maybe_unused]] const std::shared_ptr<const Scene<dim>> &scene)
+  std::unique_ptr<const Certifier<dim>>
+  make_certifier(const CertificateKind                    kind,
+                 const std::shared_ptr<const Scene<dim>> &scene,
+                 const double                             memory_limit)
   {
-    if constexpr (dim == 2)
-      if (kind != CertificateKind::none)
-        try
-          {
-            return std::make_unique<const Certifier>(kind, scene);
-          }
-        catch (const EquilibriumError &error)
-          {
-            const std::string entry = "Certificate/Kind";
-            throw BadInput({scene->parameters().locations.at(entry) + ": " +
-                            entry + ": " + error.what()});
-          }
-    return nullptr;
+    if (kind == CertificateKind::none)
+      return nullptr;
+    try
+      {
+        return std::make_unique<const Certifier<dim>>(kind,
+                                                      scene,
+                                                      memory_limit);
+      }
+    catch (const EquilibriumError &error)
+      {
+        const std::string entry = "Certificate/Kind";
+        throw BadInput({scene->parameters().locations.at(entry) + ": " + entry +
+                        ": " + error.what()});
+      }
   }
 
 
 
   template <int dim>
   void
-  certify_result(
-    const Certifier                                          &certifier,
-    [[maybe_unused]] const CertificateKind                    kind,
-    const bool                                                is_refined,
-    const BranchAndBoundParameters                           &proof,
-    [[maybe_unused]] const std::shared_ptr<const Scene<dim>> &scene,
-    RunResult<dim>                                           &result)
+  certify_result(const Certifier<dim>                    &certifier,
+                 const CertificateKind                    kind,
+                 const bool                               is_refined,
+                 const BranchAndBoundParameters          &proof,
+                 const double                             memory_limit,
+                 const std::shared_ptr<const Scene<dim>> &scene,
+                 RunResult<dim>                          &result)
   {
     dealii::Timer        timer;
     const InterruptGuard guard;
-    const auto           certify = [&](const Certifier &current) {
-      if constexpr (dim == 2)
-        result.certificate =
-          current.certify(*scene, result.solve.u, proof, [&guard]() {
-            return !guard.requested();
-          });
+    const auto           certify = [&](const Certifier<dim> &current) {
+      result.certificate =
+        current.certify(*scene, result.solve.u, proof, [&guard]() {
+          return !guard.requested();
+        });
       if (guard.requested())
         result.solve.minimum.interrupted = true;
     };
     try
       {
-        if constexpr (dim == 2)
-          {
-            if (is_refined && !certifier.is_for_finer_meshes())
-              certify(Certifier(kind, scene));
-            else
-              certify(certifier);
-          }
+        if (is_refined && !certifier.is_for_finer_meshes())
+          certify(Certifier<dim>(kind, scene, memory_limit));
+        else
+          certify(certifier);
       }
     catch (const EquilibriumError &error)
       {

@@ -60,8 +60,8 @@ namespace Debond
     error_of(parameters.verification.exact_displacement,
              *scene,
              DofVector(scene->problem().unknowns().n_dofs()));
-    const std::unique_ptr<const Certifier> certifier =
-      make_certifier(certificate, scene);
+    const std::unique_ptr<const Certifier<dim>> certifier =
+      make_certifier(certificate, scene, solver.memory_limit);
     RunCheckpoints checkpoints(parameters.checkpoints,
                                output.directory,
                                choice);
@@ -193,6 +193,7 @@ namespace Debond
                      certificate,
                      accuracy.is_adaptive(),
                      solver.proof,
+                     solver.memory_limit,
                      scene,
                      result);
     std::string output_error = finish_checkpoints(checkpoints, result, written);

@@ -169,14 +169,9 @@ namespace Debond
     {
       const SceneSize size =
         scene_size(body, dim, problem.contact_boundaries, problem.degree);
-      SceneSize largest = size;
+      double memory = memory_with_factorisation(size, dim);
       if (accuracy.certified_width > 0.)
-        {
-          // Four unknowns of stresses on each of 3/2 sides a triangle, two kept
-          // on each side in contact.
-          largest.unknowns = std::max(size.unknowns, 6. * size.cells);
-          largest.contact_nodes *= 2.;
-        }
+        memory = std::max(memory, memory_with_certificate(size, dim));
       std::ostringstream text;
       text << "the next mesh would have " << std::fixed << std::setprecision(0)
            << size.unknowns << " unknowns, ";
@@ -185,10 +180,10 @@ namespace Debond
       if (accuracy.maximum_unknowns > 0 &&
           size.unknowns > accuracy.maximum_unknowns)
         text << "Accuracy/Maximum unknowns is " << accuracy.maximum_unknowns;
-      else if (memory_with_factorisation(largest, dim) > limit)
+      else if (memory > limit)
         text << "which need about " << std::setprecision(2)
-             << memory_with_factorisation(largest, dim) / (1 << 30)
-             << " GiB of memory, the limit is " << limit / (1 << 30) << " GiB";
+             << memory / (1 << 30) << " GiB of memory, the limit is "
+             << limit / (1 << 30) << " GiB";
       else
         return "";
       return text.str();
@@ -285,55 +280,51 @@ namespace Debond
     /// one is narrower. Throws EquilibriumError if there is none.
     template <int dim>
     Certificate
-    certify_level(
-      [[maybe_unused]] const CertificateKind                    kind,
-      [[maybe_unused]] const double                             target,
-      [[maybe_unused]] const BranchAndBoundParameters          &proof,
-      [[maybe_unused]] const std::shared_ptr<const Scene<dim>> &scene,
-      [[maybe_unused]] const DofVector                         &u,
-      [[maybe_unused]] const bool                               is_last,
-      [[maybe_unused]] std::optional<Certificate>              &global,
-      [[maybe_unused]] const std::function<bool()>             &may_go_on)
+    certify_level(const CertificateKind                    kind,
+                  const double                             target,
+                  const BranchAndBoundParameters          &proof,
+                  const double                             memory_limit,
+                  const std::shared_ptr<const Scene<dim>> &scene,
+                  const DofVector                         &u,
+                  const bool                               is_last,
+                  std::optional<Certificate>              &global,
+                  const std::function<bool()>             &may_go_on)
     {
-      if constexpr (dim == 2)
-        {
-          const auto certify = [&](const CertificateKind           kind_of_this,
-                                   const BranchAndBoundParameters &limits) {
-            Certificate certificate = Certifier(kind_of_this, scene)
-                                        .certify(*scene,
-                                                 u,
-                                                 limits,
-                                                 may_go_on,
-                                                 global ? &*global : nullptr,
-                                                 !is_last);
-            if (certificate.minimum == CertifiedMinimum::global)
-              global = certificate;
-            return certificate;
-          };
-          if (kind == CertificateKind::global && !is_last)
-            try
+      const auto certify = [&](const CertificateKind           kind_of_this,
+                               const BranchAndBoundParameters &limits) {
+        Certificate certificate =
+          Certifier<dim>(kind_of_this, scene, memory_limit)
+            .certify(*scene,
+                     u,
+                     limits,
+                     may_go_on,
+                     global ? &*global : nullptr,
+                     !is_last);
+        if (certificate.minimum == CertifiedMinimum::global)
+          global = certificate;
+        return certificate;
+      };
+      if (kind == CertificateKind::global && !is_last)
+        try
+          {
+            const Certificate first =
+              certify(CertificateKind::fixed_state, proof);
+            if (first.minimum == CertifiedMinimum::global)
+              return first;
+            if (first.width() > target)
               {
-                const Certificate first =
-                  certify(CertificateKind::fixed_state, proof);
-                if (first.minimum == CertifiedMinimum::global)
-                  return first;
-                if (first.width() > target)
-                  {
-                    BranchAndBoundParameters limits = proof;
-                    limits.maximum_nodes =
-                      std::min(limits.maximum_nodes, n_nodes_on_the_way);
-                    certify(kind, limits);
-                    return first;
-                  }
+                BranchAndBoundParameters limits = proof;
+                limits.maximum_nodes =
+                  std::min(limits.maximum_nodes, n_nodes_on_the_way);
+                certify(kind, limits);
+                return first;
               }
-            catch (const EquilibriumError &)
-              {
-                // Such as a body that only bonds hold.
-              }
-          return certify(kind, proof);
-        }
-      else
-        throw EquilibriumError("there is none in 3D");
+          }
+        catch (const EquilibriumError &)
+          {
+            // Such as a body that only bonds hold.
+          }
+      return certify(kind, proof);
     }
 
 
@@ -473,6 +464,7 @@ namespace Debond
                 certify_level<dim>(certificate,
                                    target,
                                    solver.proof,
+                                   solver.memory_limit,
                                    scene,
                                    result.solve.u,
                                    is_last,

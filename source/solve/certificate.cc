@@ -3,18 +3,24 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/elasticity/temperature_load.h>
+#include <debond/mesh/positive_part.h>
 #include <debond/optimization/global/rounded_branches.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/solve/certificate.h>
+#include <debond/solve/scene_size.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <type_traits>
 
 namespace Debond
 {
   namespace
   {
-    using ContactSide = EquilibriumProblem<2>::ContactSide;
+    template <int dim>
+    using SideOf = typename EquilibriumProblem<dim>::ContactSide;
 
 
 
@@ -31,28 +37,59 @@ namespace Debond
 
 
 
-    EquilibriumProblem<2>
-    equilibrium_problem(const Scene<2> &scene)
+    template <int dim>
+    EquilibriumProblem<dim>
+    equilibrium_problem(const Scene<dim> &scene)
     {
       const auto &dofs = scene.problem().unknowns().dof_handler();
-      return EquilibriumProblem<2>(dofs.get_triangulation(),
-                                   scene.conditions(),
-                                   scene.supports(),
-                                   scene.materials(),
-                                   scene.loads(),
-                                   thermal_stresses(dofs,
-                                                    scene.materials(),
-                                                    scene.loads()));
+      return EquilibriumProblem<dim>(dofs.get_triangulation(),
+                                     scene.conditions(),
+                                     scene.supports(),
+                                     scene.materials(),
+                                     scene.loads(),
+                                     thermal_stresses(dofs,
+                                                      scene.materials(),
+                                                      scene.loads()));
+    }
+
+
+
+    /// The scene, if the stresses of its body will fit into memory; throws
+    /// EquilibriumError if not. In the plane they take about as much as a
+    /// displacement, in 3D many times that.
+    template <int dim>
+    const Scene<dim> &
+    fitting(const Scene<dim> &scene, const double memory_limit)
+    {
+      const double needed = memory_with_certificate(
+        scene_size(scene.body(),
+                   dim,
+                   scene.parameters().contact_boundaries,
+                   scene.parameters().degree),
+        dim);
+      const double limit =
+        memory_limit > 0. ? memory_limit : available_memory();
+      if (dim == 3 && needed > limit)
+        {
+          std::ostringstream text;
+          text << std::setprecision(2)
+               << "the equilibrated stresses need about " << needed / (1 << 30)
+               << " GiB of memory, the limit is " << limit / (1 << 30)
+               << " GiB";
+          throw EquilibriumError(text.str());
+        }
+      return scene;
     }
 
 
 
     /// Throws EquilibriumError if a contact node has a normal that is not that
     /// of its sides.
+    template <int dim>
     void
-    check_normals(const ContactBoundary<2> &boundary)
+    check_normals(const ContactBoundary<dim> &boundary)
     {
-      for (const ContactBoundary<2>::Face &face : boundary.faces)
+      for (const auto &face : boundary.faces)
         for (const unsigned int node : face.nodes)
           if (node < boundary.nodes.size() &&
               (boundary.nodes[node].normal - face.normal).norm() > 1e-8)
@@ -125,131 +162,198 @@ namespace Debond
 
 
 
-    /// int h(q) of the linear q with the values @p first and @p last at the
-    /// ends,
+    /// int h(q) of the linear q with the values @p at_corners,
     ///     h(q) = inf_{s <= 0} piece(s) + q s
     ///          = constant - (q + slope)_+^2 / (2 curvature).
     /// Without a curvature q has to be below -slope but for @p rounding; throws
     /// EquilibriumError if it is not, as h is minus infinity then.
+    template <int dim>
     double
-    conjugate_integral(const BranchMinimum::Piece &piece,
-                       const double                length,
-                       const double                first,
-                       const double                last,
-                       const double                rounding)
+    conjugate_integral(const BranchMinimum::Piece    &piece,
+                       const double                   measure,
+                       const std::array<double, dim> &at_corners,
+                       const double                   rounding)
     {
-      const double a = first + piece.slope, b = last + piece.slope;
-      const double largest = std::max(a, b), least = std::min(a, b);
-      const double constant = length * static_cast<double>(piece.constant);
-      if (piece.curvature == 0. && largest > rounding)
+      std::array<double, dim> pull = at_corners;
+      for (double &value : pull)
+        value += piece.slope;
+      const double constant = measure * static_cast<double>(piece.constant);
+      if (piece.curvature > 0.)
+        return constant -
+               measure * mean_positive_square(pull) / (2. * piece.curvature);
+      if (*std::max_element(pull.begin(), pull.end()) > rounding)
         throw EquilibriumError("the tractions pull where no bond holds");
-      if (largest <= 0. || piece.curvature == 0.)
-        return constant;
-      const double square =
-        least >= 0. ? (a * a + a * b + b * b) / 3. :
-                      largest * largest * largest / (3. * (largest - least));
-      return constant - length * square / (2. * piece.curvature);
+      return constant;
     }
 
 
 
-    /// The normal displacement of a side, of degree 1 or 2 in xi.
+    /// A point of a side with its part of it.
+    template <int dim>
+    struct SideQuadrature
+    {
+      std::array<double, dim> barycentric;
+      double                  weight;
+    };
+
+
+
+    /// Exact up to degree 5.
+    std::vector<SideQuadrature<2>>
+    side_quadrature(std::integral_constant<int, 2>)
+    {
+      const dealii::QGauss<1>        rule(3);
+      std::vector<SideQuadrature<2>> result;
+      for (unsigned int q = 0; q < rule.size(); ++q)
+        result.push_back(
+          {{{1. - rule.point(q)[0], rule.point(q)[0]}}, rule.weight(q)});
+      return result;
+    }
+
+
+
+    std::vector<SideQuadrature<3>>
+    side_quadrature(std::integral_constant<int, 3>)
+    {
+      // (1 - x) dy dx over the unit square.
+      const dealii::QGauss<1>        along(4), across(3);
+      std::vector<SideQuadrature<3>> result;
+      for (unsigned int i = 0; i < along.size(); ++i)
+        for (unsigned int j = 0; j < across.size(); ++j)
+          {
+            const double x = along.point(i)[0];
+            const double y = (1. - x) * across.point(j)[0];
+            result.push_back(
+              {{{1. - x - y, x, y}},
+               2. * (1. - x) * along.weight(i) * across.weight(j)});
+          }
+      return result;
+    }
+
+
+
+    /// The normal displacement of a side, of degree 1 or 2.
+    template <int dim>
     class Trace
     {
     public:
-      Trace(const ContactSide                      &side,
-            const std::vector<CellDisplacement<2>> &displacement)
-        : length(side.measure)
+      Trace(const SideOf<dim>                        &side,
+            const std::vector<CellDisplacement<dim>> &displacement)
+        : measure(side.measure)
       {
-        const auto   u     = displacement[side.cell].on_side(side.vertices);
-        const double first = u[0] * side.normal;
-        const double last  = u[1] * side.normal;
-        const dealii::Tensor<1, 2> at_middle =
-          0.5 * (0.5 * (u[0] + u[1])) + 0.5 * u[2];
-        middle    = at_middle * side.normal;
-        slope     = 0.5 * (last - first);
-        curvature = 0.5 * (last + first) - middle;
-      }
-
-      double
-      value(const double xi) const
-      {
-        return middle + xi * (slope + xi * curvature);
+        const auto u = displacement[side.cell].on_side(side.vertices);
+        for (unsigned int k = 0; k < u.size(); ++k)
+          coefficients[k] = u[k] * side.normal;
       }
 
       double
       mean() const
       {
-        return middle + curvature / 3.;
+        double sum = 0.;
+        for (const double coefficient : coefficients)
+          sum += coefficient;
+        return sum / static_cast<double>(coefficients.size());
       }
 
-      /// Of a function of xi and the displacement there, exact up to degree 5.
+      /// Of a function of the barycentric coordinates and the displacement
+      /// there, exact up to degree 5.
       template <typename Function>
       double
       integral(const Function &function) const
       {
-        const dealii::QGauss<1> rule(3);
-        double                  sum = 0.;
-        for (unsigned int q = 0; q < rule.size(); ++q)
+        static const std::vector<SideQuadrature<dim>> rule =
+          side_quadrature(std::integral_constant<int, dim>());
+        double sum = 0.;
+        for (const SideQuadrature<dim> &point : rule)
           {
-            const double xi = 2. * rule.point(q)[0] - 1.;
-            sum += rule.weight(q) * length * function(xi, value(xi));
+            const auto basis = bernstein(point.barycentric, 2);
+            double     value = 0.;
+            for (unsigned int k = 0; k < coefficients.size(); ++k)
+              value += basis[k] * coefficients[k];
+            sum += point.weight * measure * function(point.barycentric, value);
           }
         return sum;
       }
 
-      double slope;
-
     private:
-      double length, middle, curvature;
+      double                                     measure;
+      std::array<double, n_coefficients(dim, 2)> coefficients;
     };
 
 
 
-    /// The least J with given branches.
-    void
-    bound_fixed_state(const EquilibriumProblem<2>            &equilibrium,
-                      const BranchMinimum                    &law,
-                      const std::vector<CellDisplacement<2>> &displacement,
-                      Certificate                            &certificate)
+    /// The unknowns of a side in contact for the means of its normal
+    /// displacement with the weights dim lambda_k, lambda the barycentric
+    /// coordinates.
+    template <int dim>
+    Eigen::Matrix<double, dim, dim>
+    from_weighted_means()
     {
-      const std::vector<ContactSide> &sides = equilibrium.contact_sides();
+      Eigen::Matrix<double, dim, dim> result;
+      if constexpr (dim == 2)
+        result << 0.5, 0.5, -1.5, 1.5;
+      else
+        result.setIdentity();
+      return result;
+    }
+
+
+
+    /// The least J with given branches.
+    template <int dim>
+    void
+    bound_fixed_state(const EquilibriumProblem<dim>            &equilibrium,
+                      const BranchMinimum                      &law,
+                      const std::vector<CellDisplacement<dim>> &displacement,
+                      Certificate                              &certificate)
+    {
+      const std::vector<SideOf<dim>> &sides = equilibrium.contact_sides();
       const Eigen::Index    n         = static_cast<Eigen::Index>(sides.size());
       const auto            condensed = equilibrium.condense(true);
       const Eigen::MatrixXd S         = condensed->schur_complement();
       const Eigen::VectorXd g         = condensed->load();
 
-      // Means and slopes from mean +- slope / 3, which are <= 0 if the
-      // displacement is, as linear tractions <= 0 see it.
-      Eigen::MatrixXd T(2 * n, 2 * n);
-      T << 0.5 * Eigen::MatrixXd::Identity(n, n),
-        0.5 * Eigen::MatrixXd::Identity(n, n),
-        1.5 * Eigen::MatrixXd::Identity(n, n),
-        -1.5 * Eigen::MatrixXd::Identity(n, n);
+      // Weighted means, which are <= 0 if the displacement is, as linear
+      // tractions <= 0 see it. Their work-conjugates are the tractions at the
+      // corners times a part of the side.
+      const Eigen::Matrix<double, dim, dim> own = from_weighted_means<dim>();
+      Eigen::MatrixXd T = Eigen::MatrixXd::Zero(dim * n, dim * n);
+      for (Eigen::Index i = 0; i < n; ++i)
+        for (Eigen::Index k = 0; k < dim; ++k)
+          for (Eigen::Index l = 0; l < dim; ++l)
+            T(k * n + i, l * n + i) = own(k, l);
       std::vector<BranchMinimum::Piece> pieces;
-      Eigen::VectorXd                   u_nu(2 * n); ///< of the displacement
-      Eigen::MatrixXd                   M = S;
-      Eigen::VectorXd                   r = g;
+      Eigen::VectorXd                   u_nu(dim * n); ///< weighted means
+      Eigen::MatrixXd                   M = T.transpose() * S * T;
+      const Eigen::VectorXd             f = T.transpose() * g;
+      Eigen::VectorXd                   r = f;
       for (Eigen::Index i = 0; i < n; ++i)
         {
-          const Trace trace(sides[i], displacement);
+          const Trace<dim> trace(sides[i], displacement);
           pieces.push_back(law[law.index(trace.mean())]);
-          u_nu(i)             = trace.value(1. / 3.);
-          u_nu(n + i)         = trace.value(-1. / 3.);
-          const double weight = sides[i].measure * pieces.back().curvature;
-          M(i, i) += weight;
-          M(n + i, n + i) += weight / 3.;
-          r(i) -= sides[i].measure * pieces.back().slope;
+          // The integral of the square of the linear function with these means.
+          const double weight =
+            sides[i].measure * pieces.back().curvature / dim;
+          for (Eigen::Index k = 0; k < dim; ++k)
+            {
+              u_nu(k * n + i) =
+                trace.integral([k](const std::array<double, dim> &barycentric,
+                                   const double                   value) {
+                  return dim * barycentric[k] * value;
+                }) /
+                sides[i].measure;
+              for (Eigen::Index l = 0; l < dim; ++l)
+                M(k * n + i, l * n + i) += weight * (k == l ? dim : -1.);
+              r(k * n + i) -= sides[i].measure * pieces.back().slope / dim;
+            }
         }
       // Where the displacement is in contact, and what is wrong there is found.
-      ActiveSet active(2 * n, 0);
-      for (Eigen::Index i = 0; i < 2 * n; ++i)
-        active[i] =
-          u_nu(i) >= -contact_rounding * u_nu.lpNorm<Eigen::Infinity>();
-      const BoundQPResult minimum = solve_bound_qp(T.transpose() * M * T,
-                                                   T.transpose() * r,
-                                                   Eigen::VectorXd::Zero(2 * n),
-                                                   active);
+      ActiveSet active(dim * n, 0);
+      for (Eigen::Index i = 0; i < dim * n; ++i)
+        active[i] = u_nu(i) >=
+                    -contact_rounding * u_nu.template lpNorm<Eigen::Infinity>();
+      const BoundQPResult minimum =
+        solve_bound_qp(M, r, Eigen::VectorXd::Zero(dim * n), active);
       if (minimum.status != SolverStatus::success &&
           minimum.status != SolverStatus::stagnated)
         throw EquilibriumError("the tractions of the contact boundary were not "
@@ -257,47 +361,61 @@ namespace Debond
                                to_string(minimum.status) + ")");
       const Eigen::VectorXd x = T * minimum.x;
 
-      // Of the stresses that x leads to; their tractions are moments / length.
-      const Eigen::VectorXd moments          = S * x - g;
-      double                largest_traction = 0.;
+      // Of the stresses that x leads to.
+      const Eigen::VectorXd moments    = T.transpose() * (S * x) - f;
+      const auto            at_corners = [&](const Eigen::VectorXd &conjugates,
+                                  const Eigen::Index     i) {
+        std::array<double, dim> result;
+        for (Eigen::Index k = 0; k < dim; ++k)
+          result[k] = dim * conjugates(k * n + i) / sides[i].measure;
+        return result;
+      };
+      double largest_traction = 0.;
       for (Eigen::Index i = 0; i < n; ++i)
-        for (const Eigen::VectorXd *f : {&moments, &g})
-          largest_traction =
-            std::max(largest_traction,
-                     (std::abs((*f)(i)) + 3. * std::abs((*f)(n + i))) /
-                       sides[i].measure);
+        for (const Eigen::VectorXd *of : {&moments, &f})
+          for (const double traction : at_corners(*of, i))
+            largest_traction = std::max(largest_traction, std::abs(traction));
       certificate.lower   = condensed->energy_at_zero() - 0.5 * x.dot(S * x);
       certificate.reserve = equilibrium.rounding_of(*condensed, x);
       certificate.upper   = equilibrium.elastic_functional(displacement);
       const DofVector unknowns = condensed->expand(x);
       certificate.gaps = equilibrium.constitutive_gaps(displacement, unknowns);
-      certificate.stresses = equilibrium.mean_stresses(unknowns);
+      for (const auto &stress : equilibrium.mean_stresses(unknowns))
+        {
+          certificate.stresses.emplace_back();
+          for (unsigned int d = 0; d < dim; ++d)
+            for (unsigned int e = 0; e <= d; ++e)
+              certificate.stresses.back()[d][e] = stress[d][e];
+        }
       for (Eigen::Index i = 0; i < n; ++i)
         {
-          const double length = sides[i].measure;
-          const double mean   = moments(i) / length;
-          const double slope  = 3. * moments(n + i) / length;
-          const double bonds =
-            conjugate_integral(pieces[i],
-                               length,
-                               mean - slope,
-                               mean + slope,
-                               traction_rounding * largest_traction);
-          const Trace  trace(sides[i], displacement);
-          const double of_bonds = trace.integral(
-            [&](double, const double s) { return pieces[i].value(s); });
+          const std::array<double, dim> tractions = at_corners(moments, i);
+          const double                  bonds =
+            conjugate_integral<dim>(pieces[i],
+                                    sides[i].measure,
+                                    tractions,
+                                    traction_rounding * largest_traction);
+          const Trace<dim> trace(sides[i], displacement);
+          const double     of_bonds = trace.integral(
+            [&](const auto &, const double s) { return pieces[i].value(s); });
           // Nothing may pull there: what rounding pulls costs this much at the
           // displacement, and is reserved four times.
           if (pieces[i].curvature == 0.)
             certificate.reserve +=
-              4. * std::max(mean + std::abs(slope) + pieces[i].slope, 0.) *
-              length * std::abs(trace.mean());
+              4. *
+              std::max(*std::max_element(tractions.begin(), tractions.end()) +
+                         pieces[i].slope,
+                       0.) *
+              sides[i].measure * std::abs(trace.mean());
           certificate.lower += bonds;
           certificate.upper += of_bonds;
           certificate.gaps[sides[i].cell] +=
             of_bonds - bonds +
-            trace.integral([&](const double xi, const double s) {
-              return (mean + slope * xi) * s;
+            trace.integral([&](const auto &barycentric, const double s) {
+              double traction = 0.;
+              for (unsigned int k = 0; k < dim; ++k)
+                traction += barycentric[k] * tractions[k];
+              return traction * s;
             });
         }
     }
@@ -336,14 +454,16 @@ namespace Debond
 
 
 
-  Certifier::Certifier(const CertificateKind                  kind,
-                       const std::shared_ptr<const Scene<2>> &scene)
+  template <int dim>
+  Certifier<dim>::Certifier(const CertificateKind                    kind,
+                            const std::shared_ptr<const Scene<dim>> &scene,
+                            const double memory_limit)
     : scene(scene)
     , minimum(kind == CertificateKind::global ||
                   scene->law().branches().size() == 1 ?
                 CertifiedMinimum::global :
                 CertifiedMinimum::fixed_state)
-    , equilibrium(equilibrium_problem(*scene))
+    , equilibrium(equilibrium_problem(fitting(*scene, memory_limit)))
   {
     check_normals(scene->problem().unknowns().contact().boundary());
     if (scene->adhesion().has_field())
@@ -352,37 +472,40 @@ namespace Debond
       throw EquilibriumError(
         "contact boundaries with different tangential displacements are not "
         "done");
-    if (minimum == CertifiedMinimum::global &&
-        scene->law().branches().size() > 1)
-      trace_constants =
-        side_constants(equilibrium,
-                       scene->materials(),
-                       scene->conditions().tangential_displacement_fixed);
+    if constexpr (dim == 2)
+      if (minimum == CertifiedMinimum::global &&
+          scene->law().branches().size() > 1)
+        trace_constants =
+          side_constants(equilibrium,
+                         scene->materials(),
+                         scene->conditions().tangential_displacement_fixed);
   }
 
 
 
+  template <int dim>
   bool
-  Certifier::is_for_finer_meshes() const
+  Certifier<dim>::is_for_finer_meshes() const
   {
     return !trace_constants.empty() && equilibrium.loads_are_exact();
   }
 
 
 
+  template <int dim>
   Certificate
-  Certifier::certify(const Scene<2>                 &solved,
-                     const DofVector                &u,
-                     const BranchAndBoundParameters &proof,
-                     const std::function<bool()>    &may_go_on,
-                     const Certificate              *earlier,
-                     const bool                      is_for_finer) const
+  Certifier<dim>::certify(const Scene<dim>               &solved,
+                          const DofVector                &u,
+                          const BranchAndBoundParameters &proof,
+                          const std::function<bool()>    &may_go_on,
+                          const Certificate              *earlier,
+                          const bool                      is_for_finer) const
   {
     const bool is_own = &solved == scene.get();
     Assert(is_own || is_for_finer_meshes(), dealii::ExcInternalError());
-    dealii::Timer                          timer;
-    const BranchMinimum                   &law = scene->law().branches();
-    const std::vector<CellDisplacement<2>> displacement =
+    dealii::Timer                            timer;
+    const BranchMinimum                     &law = scene->law().branches();
+    const std::vector<CellDisplacement<dim>> displacement =
       cell_displacements(solved.problem(), u);
     Certificate certificate;
     certificate.minimum         = minimum;
@@ -417,62 +540,64 @@ namespace Debond
             throw;
           certificate.gaps.clear();
         }
-    if (!trace_constants.empty())
-      {
-        ContactQuadratureParameters exact;
-        exact.rule = ContactQuadratureParameters::Rule::exact;
-        const ContactQuadrature<2> quadrature(exact, scene->law().kinks());
-        const ContactSpace<2> &contact = solved.problem().unknowns().contact();
-        certificate.upper =
-          elastic_functional(solved, displacement) +
-          AdhesionIntegral<2>(contact.boundary(), scene->law(), quadrature)
-            .energy(contact.trace(u));
-        const double own = rounding();
-        certificate.upper += own;
-        std::vector<double> side_energies(certificate.n_sides, 0.);
-        if (is_own)
-          {
-            // Shifts soften the whole element.
-            const std::vector<double> energies =
-              equilibrium.element_energies(displacement);
-            for (unsigned int i = 0; i < certificate.n_sides; ++i)
-              side_energies[i] =
-                energies[equilibrium.contact_sides()[i].element];
-          }
-        std::vector<CertifiedSide> known;
-        const bool is_known = earlier != nullptr && is_for_least(*earlier) &&
-                              is_for_least(certificate);
-        if (is_known)
-          certificate.upper = std::min(certificate.upper, earlier->upper);
-        for (const ContactSide &side : equilibrium.contact_sides())
-          known.push_back(known_between(side.corners,
-                                        is_known ?
-                                          earlier->sides :
-                                          std::vector<CertifiedSide>()));
-        GlobalBound bound        = bound_global(equilibrium,
-                                         trace_constants,
-                                         law,
-                                         side_means(equilibrium,
-                                                    contact.boundary(),
-                                                    contact.trace(u)),
-                                         side_energies,
-                                         certificate.upper,
-                                         known,
-                                         is_for_finer,
-                                         proof,
-                                         may_go_on);
-        certificate.lower        = bound.lower - own;
-        certificate.reserve      = bound.rounding + 2. * own;
-        certificate.proof_status = bound.status;
-        certificate.proof_nodes  = bound.nodes;
-        if (!certificate.gaps.empty())
-          for (unsigned int i = 0; i < bound.losses.size(); ++i)
-            certificate.gaps[equilibrium.contact_sides()[i].cell] +=
-              bound.losses[i];
-        certificate.sides = std::move(bound.sides);
-        certificate.lengths =
-          certified_lengths(certificate.sides, scene->law());
-      }
+    if constexpr (dim == 2)
+      if (!trace_constants.empty())
+        {
+          ContactQuadratureParameters exact;
+          exact.rule = ContactQuadratureParameters::Rule::exact;
+          const ContactQuadrature<2> quadrature(exact, scene->law().kinks());
+          const ContactSpace<2>     &contact =
+            solved.problem().unknowns().contact();
+          certificate.upper =
+            elastic_functional(solved, displacement) +
+            AdhesionIntegral<2>(contact.boundary(), scene->law(), quadrature)
+              .energy(contact.trace(u));
+          const double own = rounding();
+          certificate.upper += own;
+          std::vector<double> side_energies(certificate.n_sides, 0.);
+          if (is_own)
+            {
+              // Shifts soften the whole element.
+              const std::vector<double> energies =
+                equilibrium.element_energies(displacement);
+              for (unsigned int i = 0; i < certificate.n_sides; ++i)
+                side_energies[i] =
+                  energies[equilibrium.contact_sides()[i].element];
+            }
+          std::vector<CertifiedSide> known;
+          const bool is_known = earlier != nullptr && is_for_least(*earlier) &&
+                                is_for_least(certificate);
+          if (is_known)
+            certificate.upper = std::min(certificate.upper, earlier->upper);
+          for (const SideOf<2> &side : equilibrium.contact_sides())
+            known.push_back(known_between(side.corners,
+                                          is_known ?
+                                            earlier->sides :
+                                            std::vector<CertifiedSide>()));
+          GlobalBound bound        = bound_global(equilibrium,
+                                           trace_constants,
+                                           law,
+                                           side_means(equilibrium,
+                                                      contact.boundary(),
+                                                      contact.trace(u)),
+                                           side_energies,
+                                           certificate.upper,
+                                           known,
+                                           is_for_finer,
+                                           proof,
+                                           may_go_on);
+          certificate.lower        = bound.lower - own;
+          certificate.reserve      = bound.rounding + 2. * own;
+          certificate.proof_status = bound.status;
+          certificate.proof_nodes  = bound.nodes;
+          if (!certificate.gaps.empty())
+            for (unsigned int i = 0; i < bound.losses.size(); ++i)
+              certificate.gaps[equilibrium.contact_sides()[i].cell] +=
+                bound.losses[i];
+          certificate.sides = std::move(bound.sides);
+          certificate.lengths =
+            certified_lengths(certificate.sides, scene->law());
+        }
     if (!std::isfinite(certificate.lower))
       throw EquilibriumError("no bound was found (" +
                              to_string(certificate.proof_status) + ")");
@@ -484,13 +609,19 @@ namespace Debond
 
 
 
+  template <int dim>
   double
-  Certifier::elastic_functional(
-    const Scene<2>                         &solved,
-    const std::vector<CellDisplacement<2>> &displacement) const
+  Certifier<dim>::elastic_functional(
+    const Scene<dim>                         &solved,
+    const std::vector<CellDisplacement<dim>> &displacement) const
   {
     if (&solved == scene.get())
       return equilibrium.elastic_functional(displacement);
     return equilibrium_problem(solved).elastic_functional(displacement);
   }
+
+
+
+  template class Certifier<2>;
+  template class Certifier<3>;
 } // namespace Debond

@@ -106,6 +106,29 @@ namespace Debond
 
 
   double
+  memory_with_certificate(const SceneSize &size, const unsigned int dimension)
+  {
+    SceneSize stresses = size;
+    stresses.degree    = 1;
+    if (dimension == 2)
+      {
+        // Four unknowns on each of 3/2 sides a triangle, two kept on each side
+        // in contact.
+        stresses.unknowns = std::max(size.unknowns, 6. * size.cells);
+        stresses.contact_nodes *= 2.;
+        return memory_with_factorisation(stresses, dimension);
+      }
+    // Nine on each of two faces a tetrahedron; three kept on each face in
+    // contact, of which there are two a vertex, or four times as many as edges
+    // and vertices are eight. Each tetrahedron has its matrices.
+    stresses.unknowns = 18. * size.cells;
+    stresses.contact_nodes *= size.degree == 2 ? 1.5 : 6.;
+    return memory_with_factorisation(stresses, dimension) + 40e3 * size.cells;
+  }
+
+
+
+  double
   memory_with_multigrid(const SceneSize   &size,
                         const unsigned int dimension,
                         const bool         has_levels)

@@ -15,49 +15,16 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <random>
 #include <sstream>
 
 #include "../check.h"
+#include "generator.h"
 #include "parameters_of.h"
 
 using namespace Debond;
 
 namespace
 {
-  class Generator
-  {
-  public:
-    explicit Generator(const unsigned int seed)
-      : engine(seed)
-    {}
-
-    double
-    uniform(const double a, const double b)
-    {
-      return a + (b - a) * (static_cast<double>(engine() >> 11) * 0x1p-53);
-    }
-
-    /// 10 to the power of what is uniform.
-    double
-    magnitude(const double a, const double b)
-    {
-      return std::pow(10., uniform(a, b));
-    }
-
-    template <typename T>
-    T
-    choice(const std::vector<T> &values)
-    {
-      return values[engine() % values.size()];
-    }
-
-  private:
-    std::mt19937_64 engine;
-  };
-
-
-
   struct RandomScene
   {
     Values          values, coarse, fine;

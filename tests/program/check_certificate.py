@@ -219,6 +219,24 @@ def main(debond, n, first):
     if not 0. < flap["certificate"]["relative_width"] < 0.1:
         failures.append(f"flap: {flap['certificate']}")
 
+    # Of a solid: the branches of the state, or J if the law has but one.
+    solid = ["Dimension=3", "Mesh/Lengths=0.4, 0.1, 0.1", "Mesh/Cells=8, 2, 2",
+             "Loads/Traction top=0; if(x<0.2,0.69,-0.345); 0",
+             "Certificate/Kind=fixed state"]
+    for law, minimum in (("winkler", "fixed state"), ("none", "global")):
+        interval = run(debond, solid + [f"Contact law/Law={law}"])[1][
+            "certificate"]
+        body = pathlib.Path("output/body.vtu").read_bytes()
+        if not (interval["minimum"] == minimum and
+                0. < interval["relative_width"] < 0.15 and
+                b'"gap_density"' in body and
+                b'"equilibrated_stress_yz"' in body):
+            failures.append(f"solid, {law}: {interval}")
+    result, summary = run(debond, solid + [
+        "Certificate/Target=0.08", "Accuracy/Maximum unknowns=20000"])
+    if summary is None or not summary["certificate"]["relative_width"] <= 0.08:
+        failures.append(f"solid, refined: {result.stderr!r}, {summary}")
+
     def refused(words, added):
         result, _ = run(debond, ["Certificate/Kind=global"] + added)
         if result.returncode != 2 or words not in result.stderr:
@@ -226,6 +244,8 @@ def main(debond, n, first):
                             f"code {result.returncode}, {result.stderr!r}")
 
     refused("is for plane bodies", ["Dimension=3", "Loads/Traction top=0;1;0"])
+    refused("the equilibrated stresses need about",
+            solid + ["Mesh/Cells=16, 4, 4", "Solver/Memory limit=0.4"])
     refused("is for a single load", ["Load path/Factors=0.5, 1"])
     refused("an initial gap is not done", ["Contact law/Initial gap=1e-3"])
     refused("bonds that vary are not done",

@@ -15,18 +15,20 @@ namespace Debond
   /// What certifies results of the scene, null if that is not asked for.
   /// Throws BadInput if it cannot be done.
   template <int dim>
-  std::unique_ptr<const Certifier>
+  std::unique_ptr<const Certifier<dim>>
   make_certifier(const CertificateKind                    kind,
-                 const std::shared_ptr<const Scene<dim>> &scene);
+                 const std::shared_ptr<const Scene<dim>> &scene,
+                 const double                             memory_limit);
 
   /// @p certifier: of the scene as it was before its mesh was refined, if it
-  /// was. @p kind is that of a certificate on the last mesh.
+  /// was. @p kind and @p memory_limit are for a certificate on the last mesh.
   template <int dim>
   void
-  certify_result(const Certifier                         &certifier,
+  certify_result(const Certifier<dim>                    &certifier,
                  const CertificateKind                    kind,
                  const bool                               is_refined,
                  const BranchAndBoundParameters          &proof,
+                 const double                             memory_limit,
                  const std::shared_ptr<const Scene<dim>> &scene,
                  RunResult<dim>                          &result);
 } // namespace Debond

@@ -66,8 +66,9 @@ namespace Debond
     std::vector<double> gaps;
 
     /// Where there are gaps: the means of the equilibrated stress of the bonds'
-    /// branches as they are, in each active cell.
-    std::vector<dealii::SymmetricTensor<2, 2>> stresses;
+    /// branches as they are, in each active cell; of plane bodies in their
+    /// plane.
+    std::vector<dealii::SymmetricTensor<2, 3>> stresses;
 
     /// Of the contact boundary, of all displacements with J at most `upper`;
     /// empty unless the bound is for bonds that may break anywhere.
@@ -92,15 +93,20 @@ namespace Debond
 
 
 
-  /// Certificates of displacements of a scene, for its whole load.
+  /// Certificates of displacements of a scene, for its whole load. In 3D of
+  /// bonds' branches as they are alone.
+  template <int dim>
   class Certifier
   {
   public:
-    /// Throws EquilibriumError if there is no certificate for the scene: with
-    /// gaps, prescribed displacements, bonds that vary, contact boundaries
-    /// whose corners are rounded by a mean normal.
-    Certifier(const CertificateKind                  kind,
-              const std::shared_ptr<const Scene<2>> &scene);
+    /// @p memory_limit: in bytes, 0 for what is there; it is for 3D. Throws
+    /// EquilibriumError if there is no certificate for the scene: with gaps,
+    /// prescribed displacements, bonds that vary, contact boundaries whose
+    /// corners are rounded by a mean normal, and in 3D with stresses that do
+    /// not fit into memory.
+    Certifier(const CertificateKind                    kind,
+              const std::shared_ptr<const Scene<dim>> &scene,
+              const double                             memory_limit = 0.);
 
     /// Whether certify() takes displacements of finer meshes as well.
     bool
@@ -113,7 +119,7 @@ namespace Debond
     /// is_for_finer, the sides have what finer meshes can use of them. Throws
     /// EquilibriumError if no bound was found.
     Certificate
-    certify(const Scene<2>                 &solved,
+    certify(const Scene<dim>               &solved,
             const DofVector                &u,
             const BranchAndBoundParameters &proof,
             const std::function<bool()>    &may_go_on,
@@ -123,12 +129,12 @@ namespace Debond
   private:
     double
     elastic_functional(
-      const Scene<2>                         &solved,
-      const std::vector<CellDisplacement<2>> &displacement) const;
+      const Scene<dim>                         &solved,
+      const std::vector<CellDisplacement<dim>> &displacement) const;
 
-    const std::shared_ptr<const Scene<2>> scene;
-    const CertifiedMinimum                minimum;
-    const EquilibriumProblem<2>           equilibrium;
+    const std::shared_ptr<const Scene<dim>> scene;
+    const CertifiedMinimum                  minimum;
+    const EquilibriumProblem<dim>           equilibrium;
 
     /// Of the contact sides, if branches are not fixed.
     std::vector<double> trace_constants;

@@ -34,6 +34,10 @@ namespace Debond
   memory_with_factorisation(const SceneSize   &size,
                             const unsigned int dimension);
 
+  /// The same of the equilibrated stresses of a certificate.
+  double
+  memory_with_certificate(const SceneSize &size, const unsigned int dimension);
+
   double
   memory_with_multigrid(const SceneSize   &size,
                         const unsigned int dimension,
