@@ -276,7 +276,7 @@ namespace Debond
     dealii::Timer timer;
     const double  energy = prescribed_energy(scene.problem(), scene.adhesion());
     watch.add_energy(energy);
-    watch.announce("multigrid", scene.problem().unknowns().n_free_dofs());
+    watch.announce("multigrid", scene.n_unknowns());
     const auto levels =
       scene.piece() == nullptr ?
         ElasticLevels<dim>::make(scene.body(), scene.problem()) :
