@@ -457,6 +457,15 @@ namespace Debond
 
 
   template <int dim>
+  bool
+  AdhesionIntegral<dim>::has_moving_points() const
+  {
+    return quadrature.is_split_at_kinks();
+  }
+
+
+
+  template <int dim>
   std::vector<Interval>
   AdhesionIntegral<dim>::force_intervals(const VectorView &s,
                                          const double      delta) const

@@ -196,6 +196,15 @@ namespace Debond
 
 
   template <int dim>
+  bool
+  ContactQuadrature<dim>::is_split_at_kinks() const
+  {
+    return split_at_kinks;
+  }
+
+
+
+  template <int dim>
   const std::vector<typename ContactQuadrature<dim>::QuadraturePoint> &
   ContactQuadrature<dim>::points(const std::array<double, dim> &trace) const
   {

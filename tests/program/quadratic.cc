@@ -317,6 +317,49 @@ namespace
                   << level.estimated_error << ' ' << level.iterations
                   << std::endl;
   }
+
+
+
+  /// Fronts of stiff bonds, of which the kinks move: the minima of majorants
+  /// alone come to 1e-8 of the forces in 200 steps.
+  void
+  check_stiff_bonds()
+  {
+    for (const std::string traction :
+         {"if(abs(x-0.2)<0.05,5,0)", "4*sin(30*x)", "1.2+1.2*sin(20*x)"})
+      {
+        const Parameters parameters =
+          parameters_of({"Mesh/Lengths=0.4, 0.2",
+                         "Mesh/Cells=12, 6",
+                         "Mesh/Degree=2",
+                         "Boundary conditions/Clamped boundaries=top",
+                         "Contact law/Quadrature=exact",
+                         "Contact law/Bond stiffness=6900",
+                         "Contact law/Bond threshold=1e-3",
+                         "Loads/Traction bottom=0; " + traction,
+                         "Accuracy/Target=1e-4"});
+        const MethodChoice choice =
+          choose_method(parameters, parameters.solver, parameters.accuracy);
+        unsigned int         most_steps = 0;
+        auto                 scene      = make_first_scene<2>(parameters,
+                                         parameters.accuracy,
+                                         matrix_storage(choice));
+        const AdaptiveResult result     = solve_adaptively(
+          choice,
+          parameters.solver,
+          parameters.accuracy,
+          parameters.certificate.kind,
+          parameters.verification.tolerance,
+          [&](const AdaptiveLevel &level) {
+            most_steps = std::max(most_steps, level.iterations);
+          },
+          scene);
+        std::cout << "stiff bonds, " << traction << std::endl;
+        check("  success", result.solve.status == SolverStatus::success);
+        check("  nothing is short", result.shortfall.empty());
+        check("  steps", most_steps, 60.);
+      }
+  }
 } // namespace
 
 
@@ -330,4 +373,5 @@ main(int argc, char **)
   check_bodies();
   check_loop("refined meshes",
              with(quadratic, {"Mesh/Cells=20, 2", "Accuracy/Target=1e-4"}));
+  check_stiff_bonds();
 }

@@ -122,6 +122,10 @@ namespace Debond
     Eigen::SparseMatrix<double>
     curvature(const VectorView &s) const override;
 
+    /// Where the rule is split at the kinks of the law.
+    bool
+    has_moving_points() const override;
+
     /// For each node the forces that the law allows: the quadrature of the
     /// Goldstein intervals of j_1 over s +- delta. With delta = 0 this is
     /// the Clarke interval of Phi.

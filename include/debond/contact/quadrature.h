@@ -70,6 +70,10 @@ namespace Debond
     bool
     is_nodal() const;
 
+    /// Whether the points depend on the trace.
+    bool
+    is_split_at_kinks() const;
+
     /// The points on a face on which the trace has the given nodal values.
     /// The reference is valid until the next call (one thread at a time).
     const std::vector<QuadraturePoint> &

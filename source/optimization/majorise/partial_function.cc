@@ -55,4 +55,12 @@ namespace Debond
   {
     return selection.transpose() * phi.curvature(whole(part)) * selection;
   }
+
+
+
+  bool
+  PartialFunction::has_moving_points() const
+  {
+    return phi.has_moving_points();
+  }
 } // namespace Debond

@@ -33,4 +33,12 @@ namespace Debond
   {
     return P.transpose() * phi.curvature(P * s) * P;
   }
+
+
+
+  bool
+  RestrictedFunction::has_moving_points() const
+  {
+    return phi.has_moving_points();
+  }
 } // namespace Debond

@@ -4,6 +4,7 @@
 
 #include <debond/optimization/majorise/active_set_guess.h>
 #include <debond/optimization/majorise/bound_qp.h>
+#include <debond/optimization/majorise/fixed_point_acceleration.h>
 #include <debond/optimization/majorise/majorant_problem.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
@@ -13,6 +14,9 @@ namespace Debond
    * 1/2 s'S s - g's + Phi(s) subject to s <= 0 with a dense symmetric S that is
    * positive definite but for given motions. Majorants are minimised exactly,
    * whatever the tolerance, by active sets with a Cholesky factorisation each.
+   *
+   * Where points of Phi move with s, the minimum of a majorant is only a step
+   * towards the limit, and what the last of them say of it is tried.
    *
    * A majorant that leaves motions without stiffness is minimised by proximal
    * steps along these (Rockafellar, SIAM J. Control Optim. 14, 1976), which
@@ -71,6 +75,14 @@ namespace Debond
     /// By proximal steps along the columns of Z.
     Minimisation
     minimise_along(const Eigen::MatrixXd &Z);
+
+    /// The point after @p image, the minimum of the majorant at s: what
+    /// FixedPointAcceleration says, if J is not higher there.
+    Eigen::VectorXd
+    accelerated(const Eigen::VectorXd &image);
+
+    FixedPointAcceleration acceleration;
+    ActiveSet              accelerated_set; ///< of the images it knows
 
     /// The majorant 1/2 s'M s - r's + const, M = S + E, once there is one.
     bool                        majorised = false;

@@ -27,6 +27,9 @@ namespace Debond
     Eigen::SparseMatrix<double>
     curvature(const VectorView &part) const override;
 
+    bool
+    has_moving_points() const override;
+
   private:
     Eigen::VectorXd
     whole(const VectorView &part) const;
