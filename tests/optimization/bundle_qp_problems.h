@@ -111,12 +111,14 @@ namespace BundleQPProblems
       return s;
     }
 
-    /// Cuts of length about @p eta_scale, d of length about @p d_scale.
+    /// Cuts of length about @p eta_scale, but for a random factor of up to 10
+    /// to the power of @p spread, d of length about @p d_scale.
     Problem
     problem(const Shape &s,
             const double u,
             const double eta_scale,
-            const double d_scale)
+            const double d_scale,
+            const double spread = 0.)
     {
       Problem p;
       p.u   = u;
@@ -124,6 +126,9 @@ namespace BundleQPProblems
       p.eta = MatrixXd::NullaryExpr(s.n, s.cuts, [&]() {
         return eta_scale * uniform(-1., 1.);
       });
+      if (spread > 0.)
+        for (unsigned int j = 0; j < s.cuts; ++j)
+          p.eta.col(j) *= power_of_ten(-spread, spread);
 
       p.lambda.setZero(s.cuts);
       p.lambda.head(s.active_cuts) = vector(s.active_cuts, 0.1, 1.);

@@ -135,8 +135,17 @@ namespace Debond
     for (unsigned int k = 0; k < n; ++k)
       right_side(k) = bounded.col(cuts[k]).dot(b_active) - beta(cuts[k]);
     // What all entries share goes into v; left in, it would be lost against
-    // sum lambda = 1 where it is large beside H.
-    right_side.array() -= right_side.mean();
+    // sum lambda = 1 where it is large beside H. What a long cut has more than
+    // a short one is no part of that: each entry counts by what one unit of
+    // lambda changes in it.
+    Eigen::VectorXd weights(n);
+    for (unsigned int k = 0; k < n; ++k)
+      weights(k) = 1. / (h(cuts[k], cuts[k]) + kappa);
+    weights /= weights.sum();
+    const auto without_shared = [&weights](const Eigen::VectorXd &r) {
+      return Eigen::VectorXd(r.array() - weights.dot(r));
+    };
+    right_side = without_shared(right_side);
 
     // With K = H + kappa 1 1', H lambda + v 1 = r becomes
     // K lambda = r + (kappa sum lambda - v) 1.
@@ -157,9 +166,8 @@ namespace Debond
         const Eigen::VectorXd refined = target.lambda + correction;
 
         const Eigen::VectorXd product = h_times(refined);
-        Eigen::VectorXd       rest    = right_side - product;
-        rest.array() -= rest.mean();
-        const double terms = product.lpNorm<Eigen::Infinity>() +
+        const Eigen::VectorXd rest    = without_shared(right_side - product);
+        const double          terms   = product.lpNorm<Eigen::Infinity>() +
                              right_side.lpNorm<Eigen::Infinity>() +
                              std::numeric_limits<double>::min();
         // Both parts count: with cuts of very different lengths the sum of
