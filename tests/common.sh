@@ -14,6 +14,18 @@ fail() {
   exit 1
 }
 
+# benchmark CELLS: the paper's with other cells, as bar.prm.
+benchmark() {
+  cat >bar.prm <<END
+subsection Mesh
+  set Cells = $1
+end
+subsection Loads
+  set Traction top = 0; if(x < 0.2, 0.69, -0.345)
+end
+END
+}
+
 # column TABLE.csv TITLE: the cells of a column, a line each.
 column() {
   awk -F, -v title="$2" '

@@ -4,7 +4,6 @@
 // turning about the edge that it presses beyond.
 
 #include <debond/check/coming_off.h>
-#include <debond/input/parameters.h>
 #include <debond/solve/scene.h>
 
 #include <cmath>
@@ -12,7 +11,7 @@
 #include <vector>
 
 #include "../check.h"
-#include "../program/assignments.h"
+#include "../program/parameters_of.h"
 
 using namespace Debond;
 
@@ -33,11 +32,7 @@ namespace
   std::optional<ComingOff<dim>>
   of(const Values &assignments, const double load_factor = 1.)
   {
-    SceneTable table;
-    for (const std::string &assignment : assignments)
-      table.assign(assignment);
-    const Parameters parameters = table.parameters("scene.prm");
-    const Scene<dim> scene(parameters, MatrixStorage::serial);
+    const Scene<dim> scene(parameters_of(assignments), MatrixStorage::serial);
     return coming_off(scene.problem(), scene.law(), load_factor);
   }
 

@@ -5,13 +5,10 @@
 // jump inside of a face, loads without an integral, the residual, the frames of
 // the contact nodes and the errors in the input.
 
-#include <deal.II/base/function.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
-#include <deal.II/lac/sparse_direct.h>
 
 #include <debond/elasticity/contact_frame.h>
-#include <debond/elasticity/elastic_problem.h>
 #include <debond/mesh/box.h>
 #include <debond/mesh/crossed_mesh.h>
 
@@ -24,42 +21,12 @@
 #include <stdexcept>
 
 #include "../check.h"
+#include "field.h"
 
 using namespace dealii;
 using namespace Debond;
 
 constexpr types::boundary_id left = 0, right = 1, bottom = 2, top = 3;
-
-/// A load from a lambda.
-template <int dim>
-class Load : public Function<dim>
-{
-public:
-  using Expression = std::function<Tensor<1, dim>(const Point<dim> &)>;
-
-  explicit Load(const Expression &e)
-    : Function<dim>(dim)
-    , expression(e)
-  {}
-
-  double
-  value(const Point<dim> &point, const unsigned int component) const override
-  {
-    return expression(point)[component];
-  }
-
-private:
-  const Expression expression;
-};
-
-template <int dim>
-std::shared_ptr<const Function<dim>>
-load(const typename Load<dim>::Expression &expression)
-{
-  return std::make_shared<Load<dim>>(expression);
-}
-
-
 
 template <int dim>
 Loads<dim>
@@ -79,7 +46,7 @@ paper_loads(const double angle = 0.)
   const double s = std::sin(angle * numbers::PI / 180.);
 
   Loads<dim> loads     = no_loads<dim>();
-  loads.tractions[top] = load<dim>([c, s](const Point<dim> &p) {
+  loads.tractions[top] = field<dim>([c, s](const Point<dim> &p) {
     const double   force = c * p[0] + s * p[1] < 0.2 ? 0.69 : -0.345;
     Tensor<1, dim> result;
     result[0] = -s * force;
@@ -93,17 +60,6 @@ BoundaryConditions
 paper_conditions(const bool tangential_displacement_fixed = true)
 {
   return {{left, right}, {bottom}, tangential_displacement_fixed};
-}
-
-template <int dim>
-Vector<double>
-solve(const ElasticProblem<dim> &problem)
-{
-  Vector<double>      u = problem.load();
-  SparseDirectUMFPACK solver;
-  solver.initialize(problem.matrix());
-  solver.solve(u);
-  return u;
 }
 
 template <int dim>
@@ -190,9 +146,9 @@ test_rotation(const bool fixed)
 /// The work of the loads on a displacement field, which must be linear.
 template <int dim>
 double
-work(const DoFHandler<dim>                &dof_handler,
-     const Loads<dim>                     &loads,
-     const typename Load<dim>::Expression &displacement)
+work(const DoFHandler<dim>                 &dof_handler,
+     const Loads<dim>                      &loads,
+     const typename Field<dim>::Expression &displacement)
 {
   Vector<double> u(dof_handler.n_dofs());
   for (const auto &cell : dof_handler.active_cell_iterators())
@@ -229,7 +185,7 @@ test_loads()
           1e-12);
 
     // The same in other units, with a jump at an odd place.
-    loads.tractions[top] = load<2>([](const Point<2> &p) {
+    loads.tractions[top] = field<2>([](const Point<2> &p) {
       return Tensor<1, 2>({0., p[0] < 0.12345 ? 6.9e8 : 0.});
     });
     problem.assemble(Material(), loads);
@@ -240,7 +196,7 @@ test_loads()
     // Quadratic body force times linear displacement is beyond the rule,
     // linear times linear is not: the integral of x^2 over the bar.
     Loads<2> weight   = no_loads<2>();
-    weight.body_force = load<2>([](const Point<2> &p) {
+    weight.body_force = field<2>([](const Point<2> &p) {
       return Tensor<1, 2>({p[0], -3.});
     });
     check("2D body force",
@@ -260,7 +216,7 @@ test_loads()
     ElasticProblem<3> problem(mesh, {{left, right}, {}, true});
     unsigned int      evaluations = 0;
     Loads<3>          loads       = no_loads<3>();
-    loads.tractions[top]          = load<3>([&](const Point<3> &p) {
+    loads.tractions[top]          = field<3>([&](const Point<3> &p) {
       ++evaluations;
       return Tensor<1, 3>({0., p[0] + 0.7 * p[2] < 0.2 ? 0.69 : -0.345, 0.});
     });
@@ -275,7 +231,7 @@ test_loads()
               << std::endl;
 
     Loads<3> weight   = no_loads<3>();
-    weight.body_force = load<3>([](const Point<3> &p) {
+    weight.body_force = field<3>([](const Point<3> &p) {
       return Tensor<1, 3>({p[2], -3., 0.});
     });
     check("3D body force",
@@ -302,7 +258,7 @@ test_rough_loads()
   ElasticProblem<2> problem(mesh, {{left, right}, {}, true});
   const auto        resultant = [&](const std::function<double(double)> &f) {
     Loads<2> loads       = no_loads<2>();
-    loads.tractions[top] = load<2>([&](const Point<2> &p) {
+    loads.tractions[top] = field<2>([&](const Point<2> &p) {
       return Tensor<1, 2>({0., f(p[0])});
     });
     problem.assemble(Material(), loads);
@@ -339,7 +295,7 @@ test_rough_loads()
   // All points of the side are on the same side of a jump.
   {
     Loads<2> loads       = no_loads<2>();
-    loads.tractions[top] = load<2>([](const Point<2> &p) {
+    loads.tractions[top] = field<2>([](const Point<2> &p) {
       return Tensor<1, 2>({0., p[1] < 0.04 ? 1. : 2.});
     });
     problem.assemble(Material(), loads);
@@ -350,7 +306,7 @@ test_rough_loads()
 
   const auto body = [&](const std::function<double(double)> &f) {
     Loads<2> loads   = no_loads<2>();
-    loads.body_force = load<2>([&](const Point<2> &p) {
+    loads.body_force = field<2>([&](const Point<2> &p) {
       return Tensor<1, 2>({f(p[0]), 0.});
     });
     problem.assemble(Material(), loads);
@@ -393,7 +349,7 @@ test_rough_loads()
   ElasticProblem<3> bar(solid, {{left, right}, {}, true});
   const auto        on_top = [&](const std::function<double(Point<3>)> &f) {
     Loads<3> loads       = no_loads<3>();
-    loads.tractions[top] = load<3>([&](const Point<3> &p) {
+    loads.tractions[top] = field<3>([&](const Point<3> &p) {
       return Tensor<1, 3>({0., f(p), 0.});
     });
     bar.assemble(Material(), loads);
@@ -417,7 +373,7 @@ test_rough_loads()
 
   const auto in_bar = [&](const std::function<double(Point<3>)> &f) {
     Loads<3> loads   = no_loads<3>();
-    loads.body_force = load<3>([&](const Point<3> &p) {
+    loads.body_force = field<3>([&](const Point<3> &p) {
       return Tensor<1, 3>({f(p), 0., 0.});
     });
     bar.assemble(Material(), loads);
@@ -556,10 +512,10 @@ test_frames()
         mesh);
       ElasticProblem<2> problem(mesh, {{right}, {left, bottom}, fixed});
       Loads<2>          loads = no_loads<2>();
-      loads.tractions[top]    = load<2>([](const Point<2> &p) {
+      loads.tractions[top]    = field<2>([](const Point<2> &p) {
         return Tensor<1, 2>({p[0], 1. + p[0]});
       });
-      loads.tractions[left]   = load<2>([](const Point<2> &) {
+      loads.tractions[left]   = field<2>([](const Point<2> &) {
         return Tensor<1, 2>({0.3, 0.2});
       });
       problem.assemble(Material(), loads);
@@ -753,10 +709,10 @@ test_errors()
   });
 
   ElasticProblem<2> problem(mesh, paper_conditions());
-  const auto        assemble = [&](const types::boundary_id   side,
-                            const Load<2>::Expression &traction) {
+  const auto        assemble = [&](const types::boundary_id    side,
+                            const Field<2>::Expression &traction) {
     Loads<2> loads        = no_loads<2>();
-    loads.tractions[side] = load<2>(traction);
+    loads.tractions[side] = field<2>(traction);
     problem.assemble(Material(), loads);
   };
   print_error([&] {

@@ -4,13 +4,10 @@
 // form, heated ones, loads against what they do on quadratic functions, the
 // operator against energies and against extended precision, frames at edges.
 
-#include <deal.II/base/function.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
-#include <deal.II/lac/sparse_direct.h>
 
 #include <debond/check/displacement_error.h>
-#include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/extended_operator.h>
 #include <debond/mesh/crossed_mesh.h>
 
@@ -21,42 +18,12 @@
 #include <random>
 
 #include "../check.h"
+#include "field.h"
 
 using namespace dealii;
 using namespace Debond;
 
 constexpr types::boundary_id left = 0, right = 1, bottom = 2;
-
-
-
-template <int dim>
-class Field : public Function<dim>
-{
-public:
-  using Expression = std::function<Tensor<1, dim>(const Point<dim> &)>;
-
-  Field(const Expression &expression, const unsigned int n_components)
-    : Function<dim>(n_components)
-    , expression(expression)
-  {}
-
-  double
-  value(const Point<dim> &point, const unsigned int component) const override
-  {
-    return expression(point)[component];
-  }
-
-private:
-  const Expression expression;
-};
-
-template <int dim>
-std::shared_ptr<const Function<dim>>
-field(const typename Field<dim>::Expression &expression,
-      const unsigned int                     n_components = dim)
-{
-  return std::make_shared<Field<dim>>(expression, n_components);
-}
 
 
 
@@ -129,20 +96,6 @@ struct Quadratic
     return result;
   }
 };
-
-
-
-template <int dim>
-Vector<double>
-solve(const ElasticProblem<dim> &problem)
-{
-  SparseDirectUMFPACK A;
-  A.initialize(problem.matrix());
-  Vector<double> w(problem.load().size());
-  A.vmult(w, problem.load());
-  problem.unknowns().constraints().set_zero(w);
-  return w;
-}
 
 
 

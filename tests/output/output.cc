@@ -221,28 +221,6 @@ namespace
 
 
 
-  /// A pull upwards on the top side, and a push to the right.
-  template <int dim>
-  class Traction : public dealii::Function<dim>
-  {
-  public:
-    explicit Traction(const double p)
-      : dealii::Function<dim>(dim)
-      , pressure(p)
-    {}
-
-    double
-    value(const dealii::Point<dim> &, const unsigned int c) const override
-    {
-      return c == 1 ? pressure : (c == 0 ? pressure / 4. : 0.);
-    }
-
-  private:
-    const double pressure;
-  };
-
-
-
   /**
    * A body clamped at both ends with one contact node (four in 3D), whose
    * normal displacements can be prescribed.
@@ -253,7 +231,8 @@ namespace
     dealii::Triangulation<dim>           mesh;
     std::unique_ptr<ElasticProblem<dim>> problem;
 
-    /// @p pressure: of the load on the top, in units of E / 1000.
+    /// @p pressure: of a pull upwards on the top, in units of E / 1000, with a
+    /// push to the right.
     Body(const double young_modulus, const double pressure)
     {
       make_box<dim>({{{2., 1., 1.}}, {{2, 1, 1}}, 0.}, mesh);
@@ -263,9 +242,12 @@ namespace
         BoundaryConditions{{names.at("left"), names.at("right")},
                            {names.at("bottom")},
                            true});
+      std::vector<double> traction(dim, 0.);
+      traction[1] = pressure * young_modulus / 1000.;
+      traction[0] = traction[1] / 4.;
       Loads<dim> loads;
       loads.tractions[names.at("top")] =
-        std::make_shared<Traction<dim>>(pressure * young_modulus / 1000.);
+        std::make_shared<dealii::Functions::ConstantFunction<dim>>(traction);
       problem->assemble(Material{young_modulus,
                                  0.3,
                                  Material::Hypothesis::plane_strain},

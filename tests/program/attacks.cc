@@ -25,6 +25,7 @@
 
 #include "../check.h"
 #include "assignments.h"
+#include "generator.h"
 #include "own_check.h"
 
 using namespace Debond;
@@ -38,50 +39,6 @@ namespace
 #else
   constexpr unsigned int seconds_for_a_scene = 120;
 #endif
-
-
-
-  class Generator
-  {
-  public:
-    explicit Generator(const unsigned int seed)
-      : engine(seed)
-    {}
-
-    unsigned int
-    below(const unsigned int n)
-    {
-      return static_cast<unsigned int>(engine() % n);
-    }
-
-    bool
-    chance(const double probability)
-    {
-      return uniform(0., 1.) < probability;
-    }
-
-    double
-    uniform(const double a, const double b)
-    {
-      return a + (b - a) * (static_cast<double>(engine() >> 11) * 0x1p-53);
-    }
-
-    /// 10 to the power of what is uniform.
-    double
-    magnitude(const double a, const double b)
-    {
-      return std::pow(10., uniform(a, b));
-    }
-
-    const std::string &
-    one_of(const std::vector<std::string> &texts)
-    {
-      return texts[below(texts.size())];
-    }
-
-  private:
-    std::mt19937_64 engine;
-  };
 
 
 
@@ -423,7 +380,8 @@ namespace
     own.quadrature =
       random.chance(0.5) ?
         "nodal" :
-        random.one_of({"midpoint", "gauss 1", "gauss 2", "gauss 3", "exact"});
+        random.choice<std::string>(
+          {"midpoint", "gauss 1", "gauss 2", "gauss 3", "exact"});
     attack.set("Contact law/Quadrature", own.quadrature);
 
     const double size =
@@ -454,20 +412,22 @@ namespace
       add_own_bonds(random, attack);
 
     const std::string method =
-      own.held_by_bonds  ? random.one_of({"automatic", "majorise minimise"}) :
+      own.held_by_bonds ?
+        random.choice<std::string>({"automatic", "majorise minimise"}) :
       random.chance(0.4) ? "automatic" :
-                           random.one_of({"majorise minimise",
-                                          "majorise minimise",
-                                          "energy bundle",
-                                          "euclidean bundle",
-                                          "multigrid"});
+                           random.choice<std::string>({"majorise minimise",
+                                                       "majorise minimise",
+                                                       "energy bundle",
+                                                       "euclidean bundle",
+                                                       "multigrid"});
     const bool multigrid = method == "multigrid";
     attack.set("Solver/Method", multigrid ? "majorise minimise" : method);
     attack.set("Solver/Linear solver", multigrid ? "multigrid" : "automatic");
     const bool direct =
       !multigrid && method != "euclidean bundle" && !own.held_by_bonds;
     attack.set("Solver/Search",
-               direct ? random.one_of({"automatic", "full", "quick", "none"}) :
+               direct ? random.choice<std::string>(
+                          {"automatic", "full", "quick", "none"}) :
                         "automatic");
     attack.set("Solver/Prove",
                direct && own.quadrature == "nodal" && random.chance(0.3) ?
@@ -617,10 +577,10 @@ namespace
         for (const Real t : {-shift, Real(0), shift})
           {
             const VectorX near  = (s.array() + t).min(Real(0));
-            const Real    bonds = body.bonds(near).row(i).dot(near) +
-                               body.forces_of_prescribed(near)(i);
-            lower = std::min(lower, bonds);
-            upper = std::max(upper, bonds);
+            const auto    B     = body.bonds(near);
+            const Real    bonds = B.stiffness.row(i).dot(near) + B.held(i);
+            lower               = std::min(lower, bonds);
+            upper               = std::max(upper, bonds);
           }
         if (s(i) < -shift)
           violation = std::max(violation, force(i) - upper - rounding(i));

@@ -7,19 +7,7 @@
 // first one knows, and the parts of a gap, none of them below zero, are
 // together as large as the gap. Arguments: the number of scenes, the first one.
 
-#include <debond/mesh/bisected_body.h>
-#include <debond/solve/certificate.h>
-#include <debond/solve/method_choice.h>
-#include <debond/solve/solve.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <sstream>
-
-#include "../check.h"
-#include "generator.h"
-#include "parameters_of.h"
+#include "random_bounds.h"
 
 using namespace Debond;
 
@@ -148,94 +136,18 @@ namespace
 
 
 
-  struct Counts
-  {
-    unsigned int        unsolved = 0, above = 0, negative = 0;
-    unsigned int        inexact = 0, beyond_reserve = 0; ///< sums of gaps
-    std::vector<double> distances;
-
-    std::map<std::string, unsigned int> refused; ///< by reason
-  };
-
-
-
-  SolveResult
-  solution(const Parameters &parameters, const Scene<2> &scene)
-  {
-    return solve(choose_method(parameters, parameters.solver),
-                 parameters.solver,
-                 scene);
-  }
-
-
-
-  /// On the mesh as it is, or with cells cut at random.
-  std::shared_ptr<const Scene<2>>
-  coarse_scene(const Parameters &parameters, const unsigned int number)
-  {
-    if (number % 3 != 0)
-      return std::make_shared<const Scene<2>>(parameters);
-    const BisectedBody<2> whole(
-      std::dynamic_pointer_cast<const Body<2>>(parameters.body));
-    Generator                 random(number + 1000000);
-    std::vector<unsigned int> times;
-    for (unsigned int k = 0; k < whole.n_cells(); ++k)
-      times.push_back(random.choice<unsigned int>({0, 0, 1, 2, 3}));
-    return std::make_shared<const Scene<2>>(parameters,
-                                            whole.refined(times),
-                                            MatrixStorage::serial);
-  }
-
-
-
-  /// A mesh whose contact sides are those of coarse_scene() or parts of them.
-  std::shared_ptr<const Scene<2>>
-  finer_scene(const Parameters &parameters, const unsigned int number)
-  {
-    const BisectedBody<2> whole(
-      std::dynamic_pointer_cast<const Body<2>>(parameters.body));
-    Generator                 random(number + 1000000);
-    std::vector<unsigned int> times;
-    for (unsigned int k = 0; k < whole.n_cells(); ++k)
-      times.push_back(1 + random.choice<unsigned int>({0, 0, 1, 2, 3}));
-    return std::make_shared<const Scene<2>>(parameters,
-                                            whole.refined(times),
-                                            MatrixStorage::serial);
-  }
-
-
-
-  /// Of the branches as they are.
   void
-  add_parts(const Certificate &certificate, Counts &counts)
-  {
-    const double scale = std::abs(certificate.upper);
-    double       sum   = 0.;
-    for (const double gap : certificate.gaps)
-      {
-        sum += gap;
-        counts.negative += gap < -1e-12 * scale;
-      }
-    const double error = std::abs(certificate.upper - certificate.lower -
-                                  certificate.reserve - sum);
-    counts.inexact += error > 1e-10 * scale;
-    counts.beyond_reserve += error > certificate.reserve;
-  }
-
-
-
-  void
-  test(const unsigned int number, Counts &counts)
+  test(const unsigned int number, BoundCounts &counts)
   {
     const RandomScene random     = draw(number);
     const Parameters  parameters = parameters_of(
       random.values + random.coarse +
       Values{number % 2 == 0 ? "Mesh/Degree=1" : "Mesh/Degree=2"});
-    const auto  scene = coarse_scene(parameters, number);
+    const auto  scene = coarse_scene<2>(parameters, number, {0, 0, 1, 2, 3});
     Certificate certificate, finer_certificate;
     try
       {
-        const SolveResult result = solution(parameters, *scene);
+        const SolveResult result = solved(parameters, *scene);
         if (!can_be_verified(result.status))
           {
             ++counts.unsolved;
@@ -254,11 +166,11 @@ namespace
             true);
         };
         certificate = certify(random.kind, scene, result.u, nullptr);
-        add_parts(
-          certify(CertificateKind::fixed_state, scene, result.u, nullptr),
-          counts);
-        const auto        of       = finer_scene(parameters, number);
-        const SolveResult on_finer = solution(parameters, *of);
+        counts.add_parts(
+          certify(CertificateKind::fixed_state, scene, result.u, nullptr));
+        // The contact sides are those of the coarser one or parts of them.
+        const auto of = cut_scene<2>(parameters, number, {1, 1, 2, 3, 4});
+        const SolveResult on_finer = solved(parameters, *of);
         if (!can_be_verified(on_finer.status))
           {
             ++counts.unsolved;
@@ -274,7 +186,7 @@ namespace
     const Parameters fine_parameters =
       parameters_of(random.values + random.fine + Values{"Mesh/Degree=2"});
     const Scene<2>    fine_scene(fine_parameters);
-    const SolveResult fine = solution(fine_parameters, fine_scene);
+    const SolveResult fine = solved(fine_parameters, fine_scene);
     if (!can_be_verified(fine.status))
       {
         ++counts.unsolved;
@@ -285,18 +197,10 @@ namespace
     counts.distances.push_back((fine.functional - certificate.lower) / scale);
     counts.distances.push_back((fine.functional - finer_certificate.lower) /
                                scale);
-    const double lower = finer_certificate.lower;
     const double upper =
       std::min({fine.functional, certificate.upper, finer_certificate.upper});
-    if (!(lower <= upper && certificate.lower <= upper))
-      {
-        ++counts.above;
-        std::cout << "scene " << number << ": " << text(certificate.lower)
-                  << " or " << text(lower) << " is above " << text(upper)
-                  << '\n';
-        for (const std::string &value : random.values + random.coarse)
-          std::cout << "  " << value << '\n';
-      }
+    for (const double lower : {certificate.lower, finer_certificate.lower})
+      counts.add_bound(number, lower, upper, random.values + random.coarse);
   }
 } // namespace
 
@@ -308,28 +212,13 @@ main(int argc, char *argv[])
   const unsigned int n     = argc > 1 ? std::stoul(argv[1]) : 60;
   const unsigned int first = argc > 2 ? std::stoul(argv[2]) : 0;
 
-  Counts counts;
+  BoundCounts counts;
   for (unsigned int number = first; number < first + n; ++number)
     test(number, counts);
   // Of a body of 40:1, in which elimination loses 3e-7 of J.
   if (argc == 1)
     test(1628, counts);
-  check("bounds above what a search finds", counts.above, 0);
-  check("parts of a gap below zero", counts.negative, 0);
-  check("their sum is the gap but for the reserve for rounding",
-        counts.beyond_reserve,
-        0);
-  check("more than 1e-10 of J beside it", counts.inexact, n / 5);
-  check("most scenes have one", counts.distances.size() > n / 2);
+  counts.check_all(n, counts.distances.size());
   if (argc > 1)
-    {
-      std::sort(counts.distances.begin(), counts.distances.end());
-      std::cout << counts.distances.size() << " bounds, " << counts.unsolved
-                << " not solved; below by " << counts.distances.front()
-                << " at least, "
-                << counts.distances[counts.distances.size() / 2]
-                << " in the median\n";
-      for (const auto &[reason, times] : counts.refused)
-        std::cout << times << " refused: " << reason << '\n';
-    }
+    counts.print(counts.distances.size());
 }

@@ -18,7 +18,7 @@
 #include <sstream>
 
 #include "../check.h"
-#include "parameters_of.h"
+#include "solved.h"
 
 using namespace Debond;
 
@@ -29,10 +29,7 @@ namespace
   {
     const Parameters parameters = parameters_of(values);
     const Scene<2>   scene(parameters);
-    return solve(choose_method(parameters, parameters.solver),
-                 parameters.solver,
-                 scene)
-      .u;
+    return solved(parameters, scene).u;
   }
 
 

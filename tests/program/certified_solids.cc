@@ -8,19 +8,7 @@
 // change, and how the gap falls. Arguments: the number of scenes, the first
 // one.
 
-#include <debond/mesh/bisected_body.h>
-#include <debond/solve/certificate.h>
-#include <debond/solve/method_choice.h>
-#include <debond/solve/solve.h>
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <sstream>
-
-#include "../check.h"
-#include "generator.h"
-#include "parameters_of.h"
+#include "random_bounds.h"
 
 using namespace Debond;
 
@@ -133,27 +121,6 @@ namespace
 
 
 
-  struct Counts
-  {
-    unsigned int        unsolved = 0, above = 0, negative = 0;
-    unsigned int        inexact = 0, beyond_reserve = 0; ///< sums of gaps
-    std::vector<double> distances, widths;
-
-    std::map<std::string, unsigned int> refused; ///< by reason
-  };
-
-
-
-  SolveResult
-  solution(const Parameters &parameters, const Scene<3> &scene)
-  {
-    return solve(choose_method(parameters, parameters.solver),
-                 parameters.solver,
-                 scene);
-  }
-
-
-
   Certificate
   certify(const Parameters                      &parameters,
           const std::shared_ptr<const Scene<3>> &scene,
@@ -165,37 +132,18 @@ namespace
 
 
 
-  /// On the mesh as it is, or with cells cut at random.
-  std::shared_ptr<const Scene<3>>
-  coarse_scene(const Parameters &parameters, const unsigned int number)
-  {
-    if (number % 3 != 0)
-      return std::make_shared<const Scene<3>>(parameters);
-    const BisectedBody<3> whole(
-      std::dynamic_pointer_cast<const Body<3>>(parameters.body));
-    Generator                 random(number + 1000000);
-    std::vector<unsigned int> times;
-    for (unsigned int k = 0; k < whole.n_cells(); ++k)
-      times.push_back(random.choice<unsigned int>({0, 0, 0, 1, 2}));
-    return std::make_shared<const Scene<3>>(parameters,
-                                            whole.refined(times),
-                                            MatrixStorage::serial);
-  }
-
-
-
   void
-  test(const unsigned int number, Counts &counts)
+  test(const unsigned int number, BoundCounts &counts, unsigned int &n_bounds)
   {
     const RandomScene random     = draw(number);
     const Parameters  parameters = parameters_of(
       random.values + random.coarse +
       Values{number % 2 == 0 ? "Mesh/Degree=1" : "Mesh/Degree=2"});
-    const auto  scene = coarse_scene(parameters, number);
+    const auto  scene = coarse_scene<3>(parameters, number, {0, 0, 0, 1, 2});
     Certificate certificate;
     try
       {
-        const SolveResult result = solution(parameters, *scene);
+        const SolveResult result = solved(parameters, *scene);
         if (!can_be_verified(result.status))
           {
             ++counts.unsolved;
@@ -208,26 +156,15 @@ namespace
         ++counts.refused[error.what()];
         return;
       }
-    const double scale = std::abs(certificate.upper);
-    counts.widths.push_back(certificate.width());
-    double sum = 0.;
-    for (const double gap : certificate.gaps)
-      {
-        sum += gap;
-        counts.negative += gap < -1e-12 * scale;
-      }
-    const double error = std::abs(certificate.upper - certificate.lower -
-                                  certificate.reserve - sum);
-    counts.inexact += error > 1e-10 * scale;
-    counts.beyond_reserve += error > certificate.reserve;
-
+    ++n_bounds;
+    counts.add_parts(certificate);
     double upper = certificate.upper;
     if (random.is_convex)
       {
         const Parameters fine_parameters =
           parameters_of(random.values + random.fine + Values{"Mesh/Degree=2"});
         const Scene<3>    fine_scene(fine_parameters);
-        const SolveResult fine = solution(fine_parameters, fine_scene);
+        const SolveResult fine = solved(fine_parameters, fine_scene);
         if (!can_be_verified(fine.status))
           {
             ++counts.unsolved;
@@ -235,16 +172,12 @@ namespace
           }
         upper = std::min(upper, fine.functional);
         counts.distances.push_back((fine.functional - certificate.lower) /
-                                   scale);
+                                   std::abs(certificate.upper));
       }
-    if (!(certificate.lower <= upper))
-      {
-        ++counts.above;
-        std::cout << "scene " << number << ": " << text(certificate.lower)
-                  << " is above " << text(upper) << '\n';
-        for (const std::string &value : random.values + random.coarse)
-          std::cout << "  " << value << '\n';
-      }
+    counts.add_bound(number,
+                     certificate.lower,
+                     upper,
+                     random.values + random.coarse);
   }
 
 
@@ -254,7 +187,7 @@ namespace
   {
     const Parameters parameters = parameters_of(values + Values{"Dimension=3"});
     const auto       scene      = std::make_shared<const Scene<3>>(parameters);
-    const SolveResult result    = solution(parameters, *scene);
+    const SolveResult result    = solved(parameters, *scene);
     return certify(parameters, scene, result.u);
   }
 
@@ -357,31 +290,13 @@ main(int argc, char *argv[])
   const unsigned int first = argc > 2 ? std::stoul(argv[2]) : 0;
   print_figures            = argc > 1;
 
-  Counts counts;
+  BoundCounts  counts;
+  unsigned int n_bounds = 0;
   for (unsigned int number = first; number < first + n; ++number)
-    test(number, counts);
-  check("bounds above what is found", counts.above, 0);
-  check("parts of a gap below zero", counts.negative, 0);
-  check("their sum is the gap but for the reserve for rounding",
-        counts.beyond_reserve,
-        0);
-  check("more than 1e-10 of J beside it", counts.inexact, n / 5);
-  check("most scenes have one", counts.widths.size() > n / 2);
+    test(number, counts, n_bounds);
+  counts.check_all(n, n_bounds);
   if (argc > 1)
-    {
-      std::sort(counts.distances.begin(), counts.distances.end());
-      std::sort(counts.widths.begin(), counts.widths.end());
-      std::cout << counts.widths.size() << " bounds, " << counts.unsolved
-                << " not solved; " << counts.distances.size()
-                << " beside finer meshes, below by " << counts.distances.front()
-                << " at least, "
-                << counts.distances[counts.distances.size() / 2]
-                << " in the median; " << counts.negative << " negative parts, "
-                << counts.inexact << " inexact sums, " << counts.beyond_reserve
-                << " beyond the reserve\n";
-      for (const auto &[reason, times] : counts.refused)
-        std::cout << times << " refused: " << reason << '\n';
-    }
+    counts.print(n_bounds);
   test_column();
   test_units();
   test_convergence();

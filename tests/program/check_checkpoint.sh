@@ -5,13 +5,8 @@
 # checkpoint that is not its own or not whole.
 . "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
-cat >bar.prm <<'SCENE'
-subsection Mesh
-  set Cells = 10, 1
-end
-subsection Loads
-  set Traction top = 0; if(x < 0.2, 0.69, -0.345)
-end
+benchmark "10, 1"
+cat >>bar.prm <<'SCENE'
 subsection Solver
   set Method              = euclidean bundle
   set Checkpoint interval = 1e6
@@ -27,11 +22,7 @@ SCENE
 
 # run CODE ARGUMENTS...: with that exit code.
 run() {
-  local expected=$1 code=0
-  shift
-  "$debond" bar.prm "$@" >log 2>errors || code=$?
-  [ $code -eq "$expected" ] ||
-    fail "exit code $code in place of $expected: $(cat log errors)"
+  expect_code "$1" "$debond" bar.prm "${@:2}"
 }
 
 # Without what a clock, the memory and the words about a restart decide.

@@ -12,10 +12,10 @@ for signal in INT TERM; do
     --set "Solver/Euclidean bundle/Stop tolerance=1e-300" \
     --set "Solver/Euclidean bundle/Maximum iterations=1000000000"
   cat log errors
-  [ $code -eq 4 ] || { echo "exit code $code in place of 4"; exit 1; }
+  [ $code -eq 4 ] || fail "exit code $code in place of 4"
   grep -q '"status": "interrupted"' $signal/summary.json
   for file in body.vtu contact.vtu contact_profile.csv history.csv; do
-    [ -s $signal/$file ] || { echo "no $file"; exit 1; }
+    [ -s $signal/$file ] || fail "no $file"
   done
 done
 

@@ -4,13 +4,8 @@
 # them if it is interrupted or a file cannot be written.
 . "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
-cat >bar.prm <<'SCENE'
-subsection Mesh
-  set Cells = 10, 1
-end
-subsection Loads
-  set Traction top = 0; if(x < 0.2, 0.69, -0.345)
-end
+benchmark "10, 1"
+cat >>bar.prm <<'SCENE'
 subsection Load path
   set Factors = 0:1:3, 3:-1:0
 end
@@ -54,10 +49,8 @@ done
 
 # A file of a step that cannot be written ends no path, but is told.
 mkdir -p blocked/load_path/contact-00002.vtu
-code=0
-"$debond" bar.prm --set "Output/Directory=blocked" \
-  --set "Output/Load path plots=false" >log 2>errors || code=$?
-[ $code -eq 5 ] || fail "exit code $code in place of 5"
+expect_code 5 "$debond" bar.prm --set "Output/Directory=blocked" \
+  --set "Output/Load path plots=false"
 grep -q "blocked/load_path/contact-00002.vtu" errors || fail "$(cat errors)"
 [ "$(rows blocked)" -eq 7 ] || fail "The table is not complete."
 

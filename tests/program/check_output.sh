@@ -4,14 +4,7 @@
 # cannot write one.
 . "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
-cat >bar.prm <<'SCENE'
-subsection Mesh
-  set Cells = 10, 1
-end
-subsection Loads
-  set Traction top = 0; if(x < 0.2, 0.69, -0.345)
-end
-SCENE
+benchmark "10, 1"
 
 # The default directory, with parents that do not exist.
 "$debond" bar.prm >log
@@ -99,17 +92,13 @@ notes --set "Mesh/Cells=40, 4" --set "Loads/Traction top=0; 6.9" |
 
 # A file that cannot be written is named, and the exit code is 5.
 mkdir -p blocked/contact_profile.csv
-code=0
-"$debond" bar.prm --set "Output/Directory=blocked" >log 2>errors || code=$?
-[ $code -eq 5 ] || fail "exit code $code in place of 5"
+expect_code 5 "$debond" bar.prm --set "Output/Directory=blocked"
 grep -q "blocked/contact_profile.csv" errors ||
   fail "The file that cannot be written is not named: $(cat errors)"
 grep -q "status  *success" log || fail "The result is not in the log."
 
 # Also if it is the first one, then before the solve.
 mkdir -p closed/parameters.prm
-code=0
-"$debond" bar.prm --set "Output/Directory=closed" >log 2>errors || code=$?
-[ $code -eq 5 ] || fail "exit code $code in place of 5"
+expect_code 5 "$debond" bar.prm --set "Output/Directory=closed"
 grep -q "closed/parameters.prm" errors || fail "not named: $(cat errors)"
 [ ! -s log ] || fail "The scene was solved: $(cat log)"

@@ -8,6 +8,21 @@ source "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OPENBLAS_NUM_THREADS=1
 
+# shared NAME: what all scenes say.
+shared() {
+  cat >>"$1.prm" <<END
+subsection Solver
+  set Method = majorise minimise
+  set Linear solver = multigrid
+  set Search = none
+end
+subsection Output
+  set Displacement = true
+  set Machine details = false
+end
+END
+}
+
 # scene NAME DIMENSION CELLS LENGTHS TRACTION
 scene() {
   cat >"$1.prm" <<END
@@ -22,16 +37,8 @@ end
 subsection Loads
   set Traction right = $5
 end
-subsection Solver
-  set Method = majorise minimise
-  set Linear solver = multigrid
-  set Search = none
-end
-subsection Output
-  set Displacement = true
-  set Machine details = false
-end
 END
+  shared "$1"
 }
 scene plane 2 "320, 8" "0.4, 0.01" "0; 0.001"
 scene solid 3 "42, 4, 3" "0.4, 0.04, 0.03" "0; 0.02; 0"
@@ -46,16 +53,8 @@ cat >>ring.prm <<END
 subsection Mesh
   set Refinements = 3
 end
-subsection Solver
-  set Method = majorise minimise
-  set Linear solver = multigrid
-  set Search = none
-end
-subsection Output
-  set Displacement = true
-  set Machine details = false
-end
 END
+shared ring
 cat >pipe.prm <<END
 set Dimension = 3
 subsection Mesh
@@ -71,16 +70,8 @@ end
 subsection Loads
   set Traction 3 = 0; 0.02; 0
 end
-subsection Solver
-  set Method = majorise minimise
-  set Linear solver = multigrid
-  set Search = none
-end
-subsection Output
-  set Displacement = true
-  set Machine details = false
-end
 END
+shared pipe
 
 # What all ranks have: neither times nor the error estimate and the means.
 numbers() {
@@ -143,9 +134,9 @@ for name in plane solid fine ring pipe; do
   done
 done
 
-# refused ENTRY=VALUE MESSAGE
+# refused ENTRY=VALUE MESSAGE [SCENE]
 refused() {
-  expect_code 2 mpirun --oversubscribe -n 2 "$debond" plane.prm \
+  expect_code 2 mpirun --oversubscribe -n 2 "$debond" "${3:-plane}.prm" \
     --set Output/Directory=refused --set "$1"
   [ "$(grep -c "$2" errors)" -eq 1 ] || fail "$1: $(cat errors)"
   [ ! -e refused ] || fail "$1: there is a directory"
@@ -164,15 +155,8 @@ expect_code 2 mpirun --oversubscribe -n 5 "$debond" plane.prm \
 grep -q "at most as many ranks, not 5" errors || fail "$(cat errors)"
 
 # Bodies and displacements that ranks do not share, and a word of what they leave out.
-# refused_ring VALUE MESSAGE
-refused_ring() {
-  expect_code 2 mpirun --oversubscribe -n 2 "$debond" ring.prm \
-    --set Output/Directory=refused --set "$1"
-  [ "$(grep -c "$2" errors)" -eq 1 ] || fail "$1: $(cat errors)"
-  [ ! -e refused ] || fail "$1: there is a directory"
-}
-refused_ring "Mesh/Refinements=0" "Mesh/Refinements: .*coarser levels"
-refused_ring "Parts/half=x > 0" "Parts: several ranks"
+refused "Mesh/Refinements=0" "Mesh/Refinements: .*coarser levels" ring
+refused "Parts/half=x > 0" "Parts: several ranks" ring
 expect_code 2 mpirun --oversubscribe -n 2 "$debond" plane.prm \
   --set Mesh/Degree=2 --set "Contact law/Quadrature=gauss 4" \
   --set "Solver/Linear solver=automatic" --set Output/Directory=refused

@@ -4,13 +4,8 @@
 # does not fit its scene.
 . "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
-cat >bar.prm <<'SCENE'
-subsection Mesh
-  set Cells = 10, 1
-end
-subsection Loads
-  set Traction top = 0; if(x < 0.2, 0.69, -0.345)
-end
+benchmark "10, 1"
+cat >>bar.prm <<'SCENE'
 subsection Solver
   set Method = euclidean bundle
   subsection Euclidean bundle
@@ -32,10 +27,8 @@ done
 
 # rejected WHY SETTING...: exit code 2, with that reason.
 rejected() {
-  local why=$1 code=0
-  shift
-  "$debond" bar.prm --set "$start" "$@" >/dev/null 2>errors || code=$?
-  [ $code -eq 2 ] && grep -q "$why" errors || fail "$code: $(cat errors)"
+  expect_code 2 "$debond" bar.prm --set "$start" "${@:2}"
+  grep -q "$1" errors || fail "$(cat errors)"
 }
 rejected "is not the displacement of a scene with" --set "Mesh/Cells=11, 1"
 rejected "does not satisfy the scene's boundary conditions" \

@@ -6,9 +6,6 @@
 // the condensation, and both are checked against the contact law.
 
 #include <debond/check/verification.h>
-#include <debond/input/parameters.h>
-#include <debond/solve/scene.h>
-#include <debond/solve/solve.h>
 
 #include <cmath>
 #include <fstream>
@@ -17,6 +14,7 @@
 #include <sstream>
 
 #include "../check.h"
+#include "solved.h"
 
 using namespace Debond;
 
@@ -32,19 +30,13 @@ namespace
 
   /// The paper's benchmark with other entries.
   Run
-  run(const std::vector<std::string> &assignments)
+  run(const Values &assignments)
   {
-    SceneTable table;
-    table.assign("Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)");
-    table.assign("Output/Machine details=false");
-    for (const std::string &assignment : assignments)
-      table.assign(assignment);
-    const Parameters   parameters = table.parameters("benchmark.prm");
-    const MethodChoice choice =
-      choose_method(parameters, parameters.solver, parameters.accuracy);
-    const Scene<2> scene(parameters, matrix_storage(choice));
+    const Parameters parameters = parameters_of(
+      Values{"Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)"} + assignments);
+    const Scene<2> scene = scene_of<2>(parameters);
     Run            run;
-    run.result = solve(choice, parameters.solver, scene);
+    run.result = solved(parameters, scene);
     run.verification =
       verify(scene.problem(), scene.adhesion(), scene.law(), run.result.u);
     return run;
@@ -57,19 +49,18 @@ namespace
   {
     // E, a, M, loads in GPa and m, Pa and m, MPa and mm; energies per
     // thickness are GN, N, N.
-    const std::vector<std::string> gpa = {"Solver/Method=" + method};
-    std::vector<std::string>       pa  = gpa;
-    pa.insert(pa.end(),
-              {"Material/Young modulus=69e9",
-               "Contact law/Bond stiffness=69e9",
-               "Loads/Traction top=0; if(x < 0.2, 0.69e9, -0.345e9)"});
-    std::vector<std::string> mpa = gpa;
-    mpa.insert(mpa.end(),
-               {"Mesh/Lengths=400, 40",
-                "Material/Young modulus=69e3",
-                "Contact law/Bond stiffness=69",
-                "Contact law/Bond threshold=2",
-                "Loads/Traction top=0; if(x < 200, 690, -345)"});
+    const Values gpa = {"Solver/Method=" + method};
+    const Values pa =
+      with(gpa,
+           {"Material/Young modulus=69e9",
+            "Contact law/Bond stiffness=69e9",
+            "Loads/Traction top=0; if(x < 0.2, 0.69e9, -0.345e9)"});
+    const Values mpa = with(gpa,
+                            {"Mesh/Lengths=400, 40",
+                             "Material/Young modulus=69e3",
+                             "Contact law/Bond stiffness=69",
+                             "Contact law/Bond threshold=2",
+                             "Loads/Traction top=0; if(x < 200, 690, -345)"});
 
     const Run  reference = run(gpa);
     const auto history   = [](const Run &run) {

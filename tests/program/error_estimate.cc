@@ -17,7 +17,7 @@
 #include <fstream>
 
 #include "../check.h"
-#include "parameters_of.h"
+#include "solved.h"
 
 using namespace Debond;
 
@@ -35,9 +35,7 @@ namespace
       : parameters(p)
       , scene(parameters)
     {
-      result   = solve(choose_method(parameters, parameters.solver),
-                     parameters.solver,
-                     scene);
+      result   = solved(parameters, scene);
       estimate = estimate_error(scene.problem(),
                                 scene.adhesion(),
                                 scene.conditions(),
@@ -182,10 +180,8 @@ namespace
     for (const std::string name :
          {"smooth-2d", "incompressible-2d", "smooth-3d", "incompressible-3d"})
       {
-        SceneTable table;
-        read_scene(SOURCE_DIR "/../../prm/verification/" + name + ".prm",
-                   table);
-        const Parameters   p     = table.parameters(name);
+        const Parameters p = parameters_of_file(
+          SOURCE_DIR "/../../prm/verification/" + name + ".prm");
         const std::string &exact = p.verification.exact_displacement;
         check_ratio(name,
                     p.dimension == 2 ? Solved<2>(p).ratio(exact) :
@@ -237,30 +233,14 @@ namespace
   void
   check_refinement(const std::string &name, const Values &values)
   {
-    const Parameters   parameters = parameters_of(values);
-    const MethodChoice choice =
-      choose_method(parameters, parameters.solver, parameters.accuracy);
-    std::vector<AdaptiveLevel> levels;
-    const auto                 report = [&](const AdaptiveLevel &level) {
-      levels.push_back(level);
-    };
-    const auto follow = [&](auto scene) {
-      return solve_adaptively(choice,
-                              parameters.solver,
-                              parameters.accuracy,
-                              parameters.certificate.kind,
-                              parameters.verification.tolerance,
-                              report,
-                              scene);
-    };
-    const AdaptiveResult result =
-      parameters.dimension == 2 ?
-        follow(make_first_scene<2>(parameters,
-                                   parameters.accuracy,
-                                   matrix_storage(choice))) :
-        follow(make_first_scene<3>(parameters,
-                                   parameters.accuracy,
-                                   matrix_storage(choice)));
+    const Parameters parameters    = parameters_of(values);
+    const auto [levels, shortfall] = [&]() {
+      const auto outcome = [](const auto &refined) {
+        return std::make_pair(refined.levels, refined.result.shortfall);
+      };
+      return parameters.dimension == 2 ? outcome(refined<2>(parameters)) :
+                                         outcome(refined<3>(parameters));
+    }();
 
     bool falls = true, is_estimated = true, grows = true;
     for (unsigned int k = 1; k < levels.size(); ++k)
@@ -278,7 +258,7 @@ namespace
     check("  meshes grow, and not too much at once", grows);
     check("  the last one is made for the target",
           levels.back().estimated_error > 0.4 * parameters.accuracy.target);
-    check("  nothing is short", result.shortfall.empty());
+    check("  nothing is short", shortfall.empty());
   }
 
 
@@ -316,25 +296,13 @@ namespace
                const double       least,
                const double       most)
   {
-    const Parameters   parameters = parameters_of(values);
-    const MethodChoice choice =
-      choose_method(parameters, parameters.solver, parameters.accuracy);
-    double     before = 0., largest = 0.;
-    const auto report = [&](const AdaptiveLevel &level) {
-      if (before > 0.)
-        largest = std::max(largest, level.cells / before);
-      before = level.cells;
-    };
-    auto scene = make_first_scene<2>(parameters,
-                                     parameters.accuracy,
-                                     matrix_storage(choice));
-    solve_adaptively(choice,
-                     parameters.solver,
-                     parameters.accuracy,
-                     parameters.certificate.kind,
-                     parameters.verification.tolerance,
-                     report,
-                     scene);
+    double before = 0., largest = 0.;
+    for (const AdaptiveLevel &level : refined<2>(parameters_of(values)).levels)
+      {
+        if (before > 0.)
+          largest = std::max(largest, level.cells / before);
+        before = level.cells;
+      }
     check(name + ", largest growth", largest, most);
     check(name + ", as much as it may", largest > least);
   }

@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "../check.h"
-#include "parameters_of.h"
+#include "solved.h"
 
 using namespace Debond;
 
@@ -39,9 +39,7 @@ namespace
   {
     const Parameters  searching = parameters_of(values);
     const Scene<dim>  scene(searching);
-    const SolveResult best = solve(choose_method(searching, searching.solver),
-                                   searching.solver,
-                                   scene);
+    const SolveResult best = solved(searching, scene);
 
     // The patches of broken bonds grow by some nodes, or shrink.
     const auto             &contact = scene.problem().unknowns().contact();
@@ -61,13 +59,7 @@ namespace
     const Parameters following =
       parameters_of(with(values, {"Solver/Search=none"}));
     const auto follow = [&](const Vector &start) {
-      return solve(choose_method(following, following.solver),
-                   following.solver,
-                   scene,
-                   nullptr,
-                   false,
-                   nullptr,
-                   &start);
+      return solved(following, scene, &start);
     };
     const SolveResult off = follow(u);
 

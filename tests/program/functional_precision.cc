@@ -6,9 +6,6 @@
 // exact value, a change of f by df changes the minimum by -<df, u>.
 
 #include <debond/check/verification.h>
-#include <debond/input/parameters.h>
-#include <debond/solve/scene.h>
-#include <debond/solve/solve.h>
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
@@ -18,6 +15,7 @@
 #include <sstream>
 
 #include "../check.h"
+#include "solved.h"
 
 using namespace Debond;
 
@@ -240,25 +238,15 @@ namespace
 
 
   void
-  test(const std::string              &name,
-       const double                    q,
-       const std::vector<std::string> &assignments)
+  test(const std::string &name, const double q, const Values &assignments)
   {
-    SceneTable table;
-    table.assign("Loads/Traction top=0; if(x < 0.2, q, -q/2)");
-    std::ostringstream constant;
-    constant.precision(17);
-    constant << "Loads/Constants=q=" << q;
-    table.assign(constant.str());
-    table.assign("Output/Machine details=false");
-    table.assign("Solver/Method=majorise minimise");
-    for (const std::string &assignment : assignments)
-      table.assign(assignment);
-    const Parameters   parameters = table.parameters("benchmark.prm");
-    const MethodChoice choice =
-      choose_method(parameters, parameters.solver, parameters.accuracy);
-    const Scene<2>    scene(parameters, matrix_storage(choice));
-    const SolveResult result = solve(choice, parameters.solver, scene);
+    const Parameters parameters =
+      parameters_of(Values{"Loads/Traction top=0; if(x < 0.2, q, -q/2)",
+                           "Loads/Constants=q=" + text(q),
+                           "Solver/Method=majorise minimise"} +
+                    assignments);
+    const Scene<2>    scene  = scene_of<2>(parameters);
+    const SolveResult result = solved(parameters, scene);
 
     const ExtendedMinimum minimum =
       extended_minimum(parameters, scene, result.u);

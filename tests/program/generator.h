@@ -27,6 +27,18 @@ public:
     return std::pow(10., uniform(a, b));
   }
 
+  unsigned int
+  below(const unsigned int n)
+  {
+    return static_cast<unsigned int>(engine() % n);
+  }
+
+  bool
+  chance(const double probability)
+  {
+    return uniform(0., 1.) < probability;
+  }
+
   template <typename T>
   T
   choice(const std::vector<T> &values)

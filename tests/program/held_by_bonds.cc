@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "../check.h"
+#include "parameters_of.h"
 #include "solve_scene.h"
 
 using namespace Debond;
@@ -97,10 +98,7 @@ namespace
   bool
   comes_off(const Values &assignments)
   {
-    SceneTable table;
-    for (const std::string &assignment : assignments)
-      table.assign(assignment);
-    const Parameters parameters = table.parameters("scene.prm");
+    const Parameters parameters = parameters_of(assignments);
     const auto       is_off     = [&](const auto &scene) {
       return coming_off(scene.problem(), scene.law(), 1.).has_value();
     };

@@ -13,9 +13,6 @@
 
 #include <debond/check/verification.h>
 #include <debond/elasticity/elastic_levels.h>
-#include <debond/input/parameters.h>
-#include <debond/solve/scene.h>
-#include <debond/solve/solve.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,15 +22,12 @@
 #include <vector>
 
 #include "../check.h"
+#include "solved.h"
 
 using namespace Debond;
 
 namespace
 {
-  using Assignments = std::vector<std::string>;
-
-
-
   struct Outcome
   {
     SolveResult  result;
@@ -46,41 +40,14 @@ namespace
 
 
 
-  Assignments
-  operator+(Assignments first, const Assignments &second)
-  {
-    first.insert(first.end(), second.begin(), second.end());
-    return first;
-  }
-
-
-
-  Parameters
-  parameters_of(const std::string &scene, const Assignments &assignments)
-  {
-    SceneTable table;
-    if (scene.empty())
-      table.assign("Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)");
-    else
-      read_scene(scene, table);
-    table.assign("Output/Machine details=false");
-    for (const std::string &assignment : assignments)
-      table.assign(assignment);
-    return table.parameters(scene.empty() ? "benchmark.prm" : scene);
-  }
-
-
-
   template <int dim>
   Outcome
   outcome_of(const Parameters &parameters,
              const Parameters &direct_parameters,
              const bool        compare)
   {
-    Outcome            outcome = {};
-    const MethodChoice choice =
-      choose_method(parameters, parameters.solver, parameters.accuracy);
-    const Scene<dim> scene(parameters, matrix_storage(choice));
+    Outcome          outcome = {};
+    const Scene<dim> scene   = scene_of<dim>(parameters);
     const auto      &problem = scene.problem();
     dealii::Timer    timer;
     {
@@ -101,7 +68,7 @@ namespace
     outcome.linear_seconds = timer.cpu_time();
 
     timer.restart();
-    outcome.result  = solve(choice, parameters.solver, scene);
+    outcome.result  = solved(parameters, scene);
     outcome.seconds = timer.cpu_time();
     outcome.law_violation =
       verify(problem, scene.adhesion(), scene.law(), outcome.result.u).error();
@@ -111,13 +78,7 @@ namespace
     if (!compare)
       return outcome;
     const SolveResult direct =
-      solve(choose_method(direct_parameters, direct_parameters.solver),
-            direct_parameters.solver,
-            scene,
-            nullptr,
-            false,
-            nullptr,
-            &outcome.result.u);
+      solved(direct_parameters, scene, &outcome.result.u);
     outcome.J_error =
       std::abs(outcome.result.functional / direct.functional - 1.);
     const auto s = problem.unknowns().contact().trace(outcome.result.u);
@@ -134,20 +95,21 @@ namespace
 
   Outcome
   outcome_of(const std::string &scene,
-             const Assignments &assignments,
+             const Values      &assignments,
              const bool         compare = true)
   {
-    const Assignments method = {"Solver/Method=majorise minimise",
-                                "Solver/Search=none"};
-    const Parameters  parameters =
-      parameters_of(scene,
-                    method + Assignments{"Solver/Linear solver=multigrid"} +
-                      assignments);
-    const Parameters direct = parameters_of(
-      scene, method + Assignments{"Solver/Linear solver=direct"} + assignments);
-    const Outcome outcome = parameters.dimension == 2 ?
-                              outcome_of<2>(parameters, direct, compare) :
-                              outcome_of<3>(parameters, direct, compare);
+    Values method = {"Solver/Method=majorise minimise", "Solver/Search=none"};
+    if (scene.empty())
+      method.emplace_back("Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)");
+    const auto with_solver = [&](const std::string &solver) {
+      return parameters_of_file(
+        scene, method + Values{"Solver/Linear solver=" + solver} + assignments);
+    };
+    const Parameters parameters = with_solver("multigrid"),
+                     direct     = with_solver("direct");
+    const Outcome outcome       = parameters.dimension == 2 ?
+                                    outcome_of<2>(parameters, direct, compare) :
+                                    outcome_of<3>(parameters, direct, compare);
     if (print_figures)
       {
         std::cout << "    " << to_string(outcome.result.status) << ", J ";
@@ -175,7 +137,7 @@ namespace
   test(const std::string &name,
        const unsigned int linear_cycles,
        const unsigned int contact_cycles,
-       const Assignments &assignments)
+       const Values      &assignments)
   {
     if (print_figures)
       std::cout << name << std::endl;
@@ -204,20 +166,20 @@ main(int argc, char *argv[])
       const std::string scene = argv[1];
       const bool        alone = scene == "alone";
       outcome_of(alone ? argv[2] : scene,
-                 Assignments(argv + 2 + alone, argv + argc),
+                 Values(argv + 2 + alone, argv + argc),
                  !alone);
       return 0;
     }
 
-  const Assignments d3    = {"Dimension=3",
-                             "Mesh/Lengths=0.4, 0.04, 0.04",
-                             "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345); 0"};
-  const auto        cells = [](const std::string &numbers) {
-    return Assignments{"Mesh/Cells=" + numbers};
+  const Values d3    = {"Dimension=3",
+                        "Mesh/Lengths=0.4, 0.04, 0.04",
+                        "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345); 0"};
+  const auto   cells = [](const std::string &numbers) {
+    return Values{"Mesh/Cells=" + numbers};
   };
   const auto bonds = [](const std::string &a, const std::string &M) {
-    return Assignments{"Contact law/Bond stiffness=" + a,
-                       "Contact law/Bond threshold=" + M};
+    return Values{"Contact law/Bond stiffness=" + a,
+                  "Contact law/Bond threshold=" + M};
   };
   test("2D, 80x8", 16, 18, cells("80, 8"));
   test("2D, 320x32", 16, 18, cells("320, 32"));
@@ -245,65 +207,63 @@ main(int argc, char *argv[])
   test("2D, cells 10:1", 17, 19, cells("40, 40"));
   test("3D, cells 4:1", 17, 19, d3 + cells("20, 8, 8"));
 
-  const Assignments top = {"Boundary conditions/Clamped boundaries=top",
-                           "Loads/Traction top=0; 0",
-                           "Loads/Body force=0; if(x < 0.2, 30, -15)"};
+  const Values top = {"Boundary conditions/Clamped boundaries=top",
+                      "Loads/Traction top=0; 0",
+                      "Loads/Body force=0; if(x < 0.2, 30, -15)"};
   test("2D, pad clamped on top", 16, 18, top + cells("80, 8"));
   test("2D, clamped left, tangentially free",
        20,
        24,
-       Assignments{"Boundary conditions/Clamped boundaries=left",
-                   "Contact law/Tangential displacement=free"} +
+       Values{"Boundary conditions/Clamped boundaries=left",
+              "Contact law/Tangential displacement=free"} +
          cells("80, 8"));
   test("2D, turned, bottom and top in contact",
        16,
        18,
-       Assignments{"Mesh/Rotation=30",
-                   "Boundary conditions/Contact boundary=bottom, top",
-                   "Loads/Traction top=0; 0",
-                   "Loads/Body force=3; 10"} +
+       Values{"Mesh/Rotation=30",
+              "Boundary conditions/Contact boundary=bottom, top",
+              "Loads/Traction top=0; 0",
+              "Loads/Body force=3; 10"} +
          cells("80, 8"));
   test("3D, plate clamped at two sides",
        16,
        18,
-       d3 + Assignments{"Mesh/Lengths=0.4, 0.04, 0.4",
-                        "Mesh/Cells=24, 3, 24",
-                        "Boundary conditions/Clamped boundaries=left, back"});
+       d3 + Values{"Mesh/Lengths=0.4, 0.04, 0.4",
+                   "Mesh/Cells=24, 3, 24",
+                   "Boundary conditions/Clamped boundaries=left, back"});
   test("2D, gauss 2",
        16,
        18,
-       cells("80, 8") + Assignments{"Contact law/Quadrature=gauss 2"});
+       cells("80, 8") + Values{"Contact law/Quadrature=gauss 2"});
   test("2D, 0.001 off the foundation, pressed",
        16,
        22,
-       cells("80, 8") + Assignments{"Contact law/Initial gap=0.001"});
+       cells("80, 8") + Values{"Contact law/Initial gap=0.001"});
 
   for (const auto &[nu, linear, contact] :
        {std::make_tuple("0.45", 40, 50), std::make_tuple("0.49", 90, 110)})
     test("2D, plane strain, nu = " + std::string(nu),
          linear,
          contact,
-         cells("80, 8") +
-           Assignments{"Material/Hypothesis=plane strain",
-                       "Material/Poisson ratio=" + std::string(nu)});
+         cells("80, 8") + Values{"Material/Hypothesis=plane strain",
+                                 "Material/Poisson ratio=" + std::string(nu)});
 
   // In Pa and m, and MPa and mm.
-  const auto steps = [](const Assignments &assignments) {
+  const auto steps = [](const Values &assignments) {
     const Outcome outcome = outcome_of("", assignments, false);
     return std::make_pair(outcome.linear_cycles,
                           outcome.result.linear_iterations);
   };
   const auto gpa = steps(cells("80, 8"));
   check("as many cycles in Pa and m",
-        gpa == steps(cells("80, 8") +
-                     Assignments{
-                       "Material/Young modulus=69e9",
+        gpa ==
+          steps(cells("80, 8") +
+                Values{"Material/Young modulus=69e9",
                        "Contact law/Bond stiffness=69e9",
                        "Loads/Traction top=0; if(x < 0.2, 0.69e9, -0.345e9)"}));
   check("as many cycles in MPa and mm",
-        gpa ==
-          steps(cells("80, 8") +
-                Assignments{"Mesh/Lengths=400, 40",
+        gpa == steps(cells("80, 8") +
+                     Values{"Mesh/Lengths=400, 40",
                             "Material/Young modulus=69e3",
                             "Contact law/Bond stiffness=69",
                             "Contact law/Bond threshold=2",

@@ -6,10 +6,7 @@
 // to the factor and J is quadratic in it; dJ/d(factor) = -<f, u>; the least J
 // is concave in the squared factor), and values of J from an independent code.
 
-#include <debond/input/parameters.h>
-#include <debond/solve/adaptive_loop.h>
 #include <debond/solve/load_path.h>
-#include <debond/solve/solve.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +14,7 @@
 #include <sstream>
 
 #include "../check.h"
+#include "solved.h"
 
 using namespace Debond;
 
@@ -31,18 +29,6 @@ namespace
     Steps<dim>  steps, arc;
     SolveResult result;
   };
-
-
-
-  Parameters
-  parameters_of(const std::vector<std::string> &assignments)
-  {
-    SceneTable table;
-    table.assign("Output/Machine details=false");
-    for (const std::string &assignment : assignments)
-      table.assign(assignment);
-    return table.parameters("scene.prm");
-  }
 
 
 
@@ -67,25 +53,20 @@ namespace
 
   template <int dim>
   Path<dim>
-  follow(const std::vector<std::string> &assignments)
+  follow(const Values &assignments)
   {
-    const Parameters   parameters = parameters_of(assignments);
-    const MethodChoice choice =
-      choose_method(parameters, parameters.solver, parameters.accuracy);
-    return follow<dim>(parameters,
-                       Scene<dim>(parameters, matrix_storage(choice)));
+    const Parameters parameters = parameters_of(assignments);
+    return follow<dim>(parameters, scene_of<dim>(parameters));
   }
 
 
 
-  std::vector<std::string>
-  benchmark(const std::vector<std::string> &others)
+  Values
+  benchmark(const Values &others)
   {
-    std::vector<std::string> assignments = {
-      "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)",
-      "Contact law/Bond stiffness=690"};
-    assignments.insert(assignments.end(), others.begin(), others.end());
-    return assignments;
+    return Values{"Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)",
+                  "Contact law/Bond stiffness=690"} +
+           others;
   }
 
 
@@ -166,31 +147,25 @@ namespace
   /// |u_nu| = t / (E/H + a) until that is M. Broken: |u_nu| = t / (E/H) as long
   /// as that is more than M.
   template <int dim>
-  std::vector<std::string>
-  column(const std::vector<std::string> &others)
+  Values
+  column(const Values &others)
   {
-    std::vector<std::string> scene = {
-      "Material/Young modulus=10",
-      "Material/Poisson ratio=0",
-      "Boundary conditions/Contact boundary=bottom",
-      "Contact law/Bond stiffness=150",
-      "Contact law/Bond threshold=0.01",
-      "Contact law/Tangential displacement=free",
-      "Load path/Factors=0:0.07:2.8, 2.8:-0.07:0",
-      "Boundary conditions/Clamped boundaries=top"};
-    if (dim == 2)
-      scene.insert(scene.end(),
-                   {"Mesh/Lengths=0.3, 0.2",
-                    "Mesh/Cells=3, 2",
-                    "Loads/Traction bottom=0; 1"});
-    else
-      scene.insert(scene.end(),
-                   {"Dimension=3",
-                    "Mesh/Lengths=0.3, 0.2, 0.1",
-                    "Mesh/Cells=2, 2, 1",
-                    "Loads/Traction bottom=0; 1; 0"});
-    scene.insert(scene.end(), others.begin(), others.end());
-    return scene;
+    const Values shared = {"Material/Young modulus=10",
+                           "Material/Poisson ratio=0",
+                           "Boundary conditions/Contact boundary=bottom",
+                           "Boundary conditions/Clamped boundaries=top",
+                           "Contact law/Bond stiffness=150",
+                           "Contact law/Bond threshold=0.01",
+                           "Contact law/Tangential displacement=free",
+                           "Load path/Factors=0:0.07:2.8, 2.8:-0.07:0"};
+    const Values body   = dim == 2 ? Values{"Mesh/Lengths=0.3, 0.2",
+                                          "Mesh/Cells=3, 2",
+                                          "Loads/Traction bottom=0; 1"} :
+                                     Values{"Dimension=3",
+                                          "Mesh/Lengths=0.3, 0.2, 0.1",
+                                          "Mesh/Cells=2, 2, 1",
+                                          "Loads/Traction bottom=0; 1; 0"};
+    return shared + body + others;
   }
 
 
@@ -517,12 +492,11 @@ namespace
   void
   test_quadratic_benchmark()
   {
-    const auto on = [](const std::vector<std::string> &others) {
-      std::vector<std::string> scene = {
-        "Load path/Factors=0:0.1:2.5, 2.5:-0.1:0",
-        "Load path/Global branch=none"};
-      scene.insert(scene.end(), others.begin(), others.end());
-      return follow<2>(benchmark(scene));
+    const auto on = [](const Values &others) {
+      return follow<2>(
+        benchmark(Values{"Load path/Factors=0:0.1:2.5, 2.5:-0.1:0",
+                         "Load path/Global branch=none"} +
+                  others));
     };
     const Path<2> linear = on({"Mesh/Cells=160,16"});
     for (const std::string quadrature : {"gauss 4", "exact"})
@@ -587,12 +561,9 @@ namespace
   test_single_factor()
   {
     std::cout << "One factor\n";
-    const Path<2>    path   = follow<2>(benchmark({"Load path/Factors=1"}));
-    const Parameters single = parameters_of(benchmark({"Solver/Search=none"}));
-    const MethodChoice choice =
-      choose_method(single, single.solver, single.accuracy);
-    const Scene<2>    scene(single, matrix_storage(choice));
-    const SolveResult result     = solve(choice, single.solver, scene);
+    const Path<2>     path   = follow<2>(benchmark({"Load path/Factors=1"}));
+    const Parameters  single = parameters_of(benchmark({"Solver/Search=none"}));
+    const SolveResult result = solved(single, scene_of<2>(single));
     DofVector         difference = result.u;
     difference -= path.result.u;
     check("  the same number of iterations as a single run",
@@ -693,36 +664,20 @@ namespace
     const double snap    = is_moved ? M * (1. + a / k) : M * (k + a),
                  closing = is_moved ? M : M * k, end = 1.4 * snap;
 
-    std::vector<std::string> scene = {
-      "Material/Young modulus=10",
-      "Material/Poisson ratio=0",
-      "Boundary conditions/Contact boundary=bottom",
-      "Contact law/Bond stiffness=150",
-      "Contact law/Bond threshold=0.01",
-      "Contact law/Tangential displacement=free",
-      "Load path/Global branch=none",
-      "Load path/Arc=true"};
     const std::string factors =
       "0:" + std::to_string(end / 20.) + ":" + std::to_string(end);
+    Values scene =
+      column<dim>({"Load path/Global branch=none", "Load path/Arc=true"});
     if (is_moved)
-      scene.insert(scene.end(),
+      scene = with(scene,
                    {"Boundary conditions/Clamped boundaries=",
                     std::string("Boundary conditions/Displacement top=0; 1") +
                       (dim == 3 ? "; 0" : ""),
+                    "Loads/Traction bottom=",
+                    "Load path/Factors=",
                     "Load path/Displacement factors=" + factors});
     else
-      scene.insert(scene.end(),
-                   {"Boundary conditions/Clamped boundaries=top",
-                    std::string("Loads/Traction bottom=0; 1") +
-                      (dim == 3 ? "; 0" : ""),
-                    "Load path/Factors=" + factors});
-    if (dim == 2)
-      scene.insert(scene.end(), {"Mesh/Lengths=0.3, 0.2", "Mesh/Cells=3, 2"});
-    else
-      scene.insert(scene.end(),
-                   {"Dimension=3",
-                    "Mesh/Lengths=0.3, 0.2, 0.1",
-                    "Mesh/Cells=2, 2, 1"});
+      scene.push_back("Load path/Factors=" + factors);
     const Path<dim> path = follow<dim>(scene);
 
     std::cout << "Arc of the column in " << dim << "D, "
@@ -735,13 +690,10 @@ namespace
     check("  rest, snap, closing and end", arc.size() == first + 4);
     if (arc.size() != first + 4)
       return;
-    const std::vector<double>      where = {0., snap, closing, end};
-    const std::vector<double>      gaps  = {0., M, M, is_moved ? end : end / k};
-    const std::vector<std::string> words = {"stable",
-                                            "stable",
-                                            "unstable",
-                                            "stable"};
-    double factor_error = 0., gap_error = 0., energy_error = 0.,
+    const std::vector<double> where = {0., snap, closing, end};
+    const std::vector<double> gaps  = {0., M, M, is_moved ? end : end / k};
+    const Values words        = {"stable", "stable", "unstable", "stable"};
+    double       factor_error = 0., gap_error = 0., energy_error = 0.,
            work_error = 0., law_violation = 0.;
     bool named = true;
     for (unsigned int i = 0; i < 4; ++i)
@@ -790,36 +742,12 @@ namespace
 
   struct Refined
   {
-    std::string              name;
-    std::vector<std::string> scene;
-    double                   target;
-    std::vector<std::string> uniform; ///< much finer
-    unsigned int             most_unknowns;
+    std::string  name;
+    Values       scene;
+    double       target;
+    Values       uniform; ///< much finer
+    unsigned int most_unknowns;
   };
-
-
-
-  AdaptiveResult
-  refine(const Parameters                &parameters,
-         std::shared_ptr<const Scene<2>> &mesh,
-         std::vector<AdaptiveLevel>      &levels,
-         FollowedPath<2>                 *path)
-  {
-    const MethodChoice choice =
-      choose_method(parameters, parameters.solver, parameters.accuracy);
-    mesh = make_first_scene<2>(parameters,
-                               parameters.accuracy,
-                               matrix_storage(choice));
-    return solve_adaptively<2>(
-      choice,
-      parameters.solver,
-      parameters.accuracy,
-      parameters.certificate.kind,
-      parameters.verification.tolerance,
-      [&](const AdaptiveLevel &level) { levels.push_back(level); },
-      mesh,
-      path);
-  }
 
 
 
@@ -829,19 +757,17 @@ namespace
   test_refined(const Refined &test)
   {
     std::cout << "A path on a refined mesh, " << test.name << '\n';
-    std::vector<std::string> scene = {"Contact law/Bond stiffness=69",
-                                      "Mesh/Cells=20,2",
-                                      "Load path/Factors=0.5:0.5:2",
-                                      "Load path/Global branch=none"};
-    scene.insert(scene.end(), test.scene.begin(), test.scene.end());
-    const double             target  = test.target;
-    std::vector<std::string> refined = benchmark(scene);
-    refined.push_back("Accuracy/Target=" + std::to_string(target));
-    refined.emplace_back("Solver/Method=automatic");
-    const Parameters                parameters = parameters_of(refined);
-    std::shared_ptr<const Scene<2>> mesh;
-    std::vector<AdaptiveLevel>      levels;
-    const AdaptiveResult result = refine(parameters, mesh, levels, nullptr);
+    const Values scene = Values{"Contact law/Bond stiffness=69",
+                                "Mesh/Cells=20,2",
+                                "Load path/Factors=0.5:0.5:2",
+                                "Load path/Global branch=none"} +
+                         test.scene;
+    const double     target = test.target;
+    const Parameters parameters =
+      parameters_of(with(benchmark(scene),
+                         {"Accuracy/Target=" + std::to_string(target),
+                          "Solver/Method=automatic"}));
+    const auto [mesh, levels, result] = refined<2>(parameters);
     check("  no shortfall", result.shortfall.empty());
     check("  the estimate is below the target",
           levels.back().estimated_error,
@@ -850,10 +776,8 @@ namespace
           levels.size() > 1 &&
             levels[levels.size() - 2].estimated_error > target);
 
-    const Path<2>            on_refined = follow<2>(parameters, *mesh);
-    std::vector<std::string> uniform    = benchmark(scene);
-    uniform.insert(uniform.end(), test.uniform.begin(), test.uniform.end());
-    const Path<2> on_uniform = follow<2>(uniform);
+    const Path<2> on_refined = follow<2>(parameters, *mesh);
+    const Path<2> on_uniform = follow<2>(benchmark(scene) + test.uniform);
     check("  all factors", on_refined.steps.size() == on_uniform.steps.size());
     // The estimate is of J with the bonds as they are: that other bonds broke
     // for good on the way is no part of it.
@@ -883,21 +807,17 @@ namespace
       {
         std::cout << "The estimate after unloading, bonds do not heal, degree "
                   << degree << '\n';
-        const std::vector<std::string> scene = {
-          "Loads/Traction top=0; 0.69",
-          "Load path/Global branch=none",
-          "Contact law/Bond threshold=1e-6",
-          "Mesh/Degree=" + std::to_string(degree),
-          std::string("Contact law/Quadrature=") +
-            (degree == 1 ? "nodal" : "gauss 3"),
-          "Solver/Method=automatic"};
-        const auto estimate = [&](const std::vector<std::string> &others) {
-          std::vector<std::string> assignments = benchmark(scene);
-          assignments.insert(assignments.end(), others.begin(), others.end());
-          const Parameters             parameters = parameters_of(assignments);
-          const Scene<2>               here(parameters,
-                              matrix_storage(
-                                choose_method(parameters, parameters.solver)));
+        const Values scene    = {"Loads/Traction top=0; 0.69",
+                                 "Load path/Global branch=none",
+                                 "Contact law/Bond threshold=1e-6",
+                                 "Mesh/Degree=" + std::to_string(degree),
+                                 std::string("Contact law/Quadrature=") +
+                                   (degree == 1 ? "nodal" : "gauss 3"),
+                                 "Solver/Method=automatic"};
+        const auto   estimate = [&](const Values &others) {
+          const Parameters parameters =
+            parameters_of(benchmark(scene) + others);
+          const Scene<2>               here = scene_of<2>(parameters);
           std::vector<LoadPathStep<2>> steps, arc;
           double                       result = 0.;
           follow_load_path<2>(
@@ -907,7 +827,7 @@ namespace
             here,
             [&](const auto &step,
                 const auto &u,
-                const auto & /*verification*/,
+                const auto   &/*verification*/,
                 const auto &bonds) {
               result = estimate_error(here.problem(),
                                       bonds,
@@ -956,10 +876,8 @@ namespace
                  "Load path/Factors=0.5, 1, 10",
                  "Accuracy/Target=1e-4",
                  "Solver/Method=automatic"}));
-    std::shared_ptr<const Scene<2>> mesh;
-    std::vector<AdaptiveLevel>      levels;
-    FollowedPath<2>                 path;
-    const AdaptiveResult result = refine(parameters, mesh, levels, &path);
+    FollowedPath<2> path;
+    const auto [mesh, levels, result] = refined<2>(parameters, &path);
     check("  it comes off", result.solve.status == SolverStatus::comes_off);
     check("  after two factors", path.steps.size() == 2);
     check("  several meshes", levels.size() > 2);
@@ -974,21 +892,20 @@ namespace
   test_arcs()
   {
     std::cout << "Arcs of the benchmark\n";
-    const std::vector<std::string> loaded = {"Load path/Factors=0:0.5:2.5",
-                                             "Load path/Global branch=none",
-                                             "Load path/Arc=true"};
+    const Values loaded = {"Load path/Factors=0:0.5:2.5",
+                           "Load path/Global branch=none",
+                           "Load path/Arc=true"};
     // Without bonds at the corner that is moved: they break between
     // breakpoints.
-    const std::vector<std::string> moved = {
-      "Loads/Traction top=",
-      "Parts/Glued=bottom: x < 0.39",
-      "Boundary conditions/Contact boundary=Glued",
-      "Boundary conditions/Displacement right=free; 0.02",
-      "Boundary conditions/Clamped boundaries=left",
-      "Load path/Displacement factors=0:0.25:1",
-      "Load path/Global branch=none",
-      "Load path/Arc=true"};
-    std::vector<std::string> for_good = moved;
+    const Values moved    = {"Loads/Traction top=",
+                             "Parts/Glued=bottom: x < 0.39",
+                             "Boundary conditions/Contact boundary=Glued",
+                             "Boundary conditions/Displacement right=free; 0.02",
+                             "Boundary conditions/Clamped boundaries=left",
+                             "Load path/Displacement factors=0:0.25:1",
+                             "Load path/Global branch=none",
+                             "Load path/Arc=true"};
+    Values       for_good = moved;
     for_good.emplace_back("Load path/Bonds heal=false");
     for (const auto &[name, scene] :
          {std::make_pair("loaded", loaded),

@@ -285,11 +285,18 @@ namespace OwnCheck
       return energy;
     }
 
-    /// The matrix of the bonds that hold at s: j_1' is its product with s.
-    MatrixX
+    /// The bonds that hold at some s: j_1' there is stiffness * s + held.
+    struct Bonds
+    {
+      MatrixX stiffness;
+      VectorX held; ///< of prescribed vertices
+    };
+
+    Bonds
     bonds(const VectorX &s) const
     {
-      MatrixX B = MatrixX::Zero(n_contact(), n_contact());
+      Bonds B = {MatrixX::Zero(n_contact(), n_contact()),
+                 VectorX::Zero(n_contact())};
       integrate(s,
                 [&](const Face                  &face,
                     const Real                   weight,
@@ -297,36 +304,20 @@ namespace OwnCheck
                     const std::array<Real, dim> &phi,
                     const Real                   a,
                     const Real                   M) {
-                  if (trace > -M)
-                    for (unsigned int v = 0; v < dim; ++v)
-                      for (unsigned int w = 0; w < dim; ++w)
-                        if (face.contact[v] >= 0 && face.contact[w] >= 0)
-                          B(face.contact[v], face.contact[w]) +=
-                            weight * a * phi[v] * phi[w];
+                  if (!(trace > -M))
+                    return;
+                  for (unsigned int v = 0; v < dim; ++v)
+                    for (unsigned int w = 0; w < dim; ++w)
+                      if (face.contact[v] >= 0)
+                        {
+                          const Real k = weight * a * phi[v] * phi[w];
+                          if (face.contact[w] >= 0)
+                            B.stiffness(face.contact[v], face.contact[w]) += k;
+                          else
+                            B.held(face.contact[v]) += k * face.held[w];
+                        }
                 });
       return B;
-    }
-
-    /// What prescribed vertices add to j_1'.
-    VectorX
-    forces_of_prescribed(const VectorX &s) const
-    {
-      VectorX b = VectorX::Zero(n_contact());
-      integrate(s,
-                [&](const Face                  &face,
-                    const Real                   weight,
-                    const Real                   trace,
-                    const std::array<Real, dim> &phi,
-                    const Real                   a,
-                    const Real                   M) {
-                  if (trace > -M)
-                    for (unsigned int v = 0; v < dim; ++v)
-                      for (unsigned int w = 0; w < dim; ++w)
-                        if (face.contact[v] >= 0 && face.contact[w] < 0)
-                          b(face.contact[v]) +=
-                            weight * a * phi[v] * phi[w] * face.held[w];
-                });
-      return b;
     }
 
     /// The most that the bonds of a contact node can bear: those that there
@@ -376,21 +367,18 @@ namespace OwnCheck
     VectorX
     descend(VectorX s) const
     {
-      MatrixX B = bonds(s);
-      VectorX b = forces_of_prescribed(s);
-
+      Bonds         B          = bonds(s);
       const MatrixX W          = held_weakly();
       const VectorX from_start = W * s;
       for (unsigned int k = 0; k < 200; ++k)
         {
-          s = minimise_convex(S + B + W, g - b + from_start);
+          s = minimise_convex(S + B.stiffness + W, g - B.held + from_start);
           if (is_off(s))
             break;
-          const MatrixX next = bonds(s);
-          b                  = forces_of_prescribed(s);
-          if (next == B)
+          Bonds next = bonds(s);
+          std::swap(B, next);
+          if (next.stiffness == B.stiffness)
             break;
-          B = next;
         }
       return s;
     }
@@ -414,9 +402,9 @@ namespace OwnCheck
     {
       if (free_normals.cols() == 0)
         return 0;
-      const MatrixX B_0 = bonds(VectorX::Zero(n_contact()));
+      const MatrixX B_0 = bonds(VectorX::Zero(n_contact())).stiffness;
       const Eigen::SelfAdjointEigenSolver<MatrixX> eigen(
-        MatrixX(free_normals.transpose() * bonds(s) * free_normals));
+        MatrixX(free_normals.transpose() * bonds(s).stiffness * free_normals));
       const Real none    = std::max(Real(1e-10) * B_0.norm(), weak_stiffness());
       const int  n_loose = (eigen.eigenvalues().array() <= none).count();
       if (n_loose == 0)

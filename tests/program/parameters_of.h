@@ -16,16 +16,25 @@ with(const Values &values, const Values &more)
 
 
 
-/// Throws what the table of a scene throws.
+/// Of a scene, or of none if that is empty, and what is set beside it. Throws
+/// what the table of a scene throws.
+inline Debond::Parameters
+parameters_of_file(const std::string &scene, const Values &values = {})
+{
+  Debond::SceneTable table;
+  if (!scene.empty())
+    Debond::read_scene(scene, table);
+  for (const std::string &value : values)
+    table.assign(value);
+  return table.parameters(scene.empty() ? "scene.prm" : scene);
+}
+
+
+
 inline Debond::Parameters
 parameters_of(const Values &values)
 {
-  Debond::SceneTable table;
-  std::stringstream  none;
-  table.read(none, "test");
-  for (const std::string &value : values)
-    table.assign(value);
-  return table.parameters("test");
+  return parameters_of_file("", values);
 }
 
 #endif

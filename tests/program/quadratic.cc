@@ -12,7 +12,7 @@
 #include <cmath>
 
 #include "../check.h"
-#include "parameters_of.h"
+#include "solved.h"
 
 using namespace Debond;
 
@@ -25,9 +25,7 @@ namespace
       : parameters(parameters_of(values))
       , scene(parameters)
     {
-      result = solve(choose_method(parameters, parameters.solver),
-                     parameters.solver,
-                     scene);
+      result = solved(parameters, scene);
       error  = verify(scene.problem(), scene.adhesion(), scene.law(), result.u)
                 .error();
       estimate = estimate_error(scene.problem(),
@@ -278,21 +276,7 @@ namespace
   void
   check_loop(const std::string &name, const Values &values)
   {
-    const Parameters   parameters = parameters_of(values);
-    const MethodChoice choice =
-      choose_method(parameters, parameters.solver, parameters.accuracy);
-    std::vector<AdaptiveLevel> levels;
-    auto                       scene  = make_first_scene<2>(parameters,
-                                     parameters.accuracy,
-                                     matrix_storage(choice));
-    const AdaptiveResult       result = solve_adaptively(
-      choice,
-      parameters.solver,
-      parameters.accuracy,
-      parameters.certificate.kind,
-      parameters.verification.tolerance,
-      [&](const AdaptiveLevel &level) { levels.push_back(level); },
-      scene);
+    const auto [scene, levels, result] = refined<2>(parameters_of(values));
     bool falls = true, is_held = true;
     for (unsigned int k = 1; k < levels.size(); ++k)
       falls = falls && levels[k].functional < levels[k - 1].functional;
@@ -338,22 +322,10 @@ namespace
                          "Contact law/Bond threshold=1e-3",
                          "Loads/Traction bottom=0; " + traction,
                          "Accuracy/Target=1e-4"});
-        const MethodChoice choice =
-          choose_method(parameters, parameters.solver, parameters.accuracy);
-        unsigned int         most_steps = 0;
-        auto                 scene      = make_first_scene<2>(parameters,
-                                         parameters.accuracy,
-                                         matrix_storage(choice));
-        const AdaptiveResult result     = solve_adaptively(
-          choice,
-          parameters.solver,
-          parameters.accuracy,
-          parameters.certificate.kind,
-          parameters.verification.tolerance,
-          [&](const AdaptiveLevel &level) {
-            most_steps = std::max(most_steps, level.iterations);
-          },
-          scene);
+        const auto [scene, levels, result] = refined<2>(parameters);
+        unsigned int most_steps            = 0;
+        for (const AdaptiveLevel &level : levels)
+          most_steps = std::max(most_steps, level.iterations);
         std::cout << "stiff bonds, " << traction << std::endl;
         check("  success", result.solve.status == SolverStatus::success);
         check("  nothing is short", result.shortfall.empty());

@@ -11,9 +11,6 @@
 #include <deal.II/base/mpi.h>
 
 #include <debond/check/verification.h>
-#include <debond/input/parameters.h>
-#include <debond/solve/scene.h>
-#include <debond/solve/solve.h>
 
 #include <Eigen/LU>
 #include <Eigen/Sparse>
@@ -24,6 +21,7 @@
 #include <sstream>
 
 #include "../check.h"
+#include "solved.h"
 
 using namespace Debond;
 
@@ -228,19 +226,11 @@ namespace
 
   template <int dim>
   void
-  test(const std::string              &name,
-       const std::vector<std::string> &assignments,
-       Tally                          &tally)
+  test(const std::string &name, const Values &assignments, Tally &tally)
   {
-    SceneTable table;
-    table.assign("Output/Machine details=false");
-    for (const std::string &assignment : assignments)
-      table.assign(assignment);
-    const Parameters   parameters = table.parameters("strip.prm");
-    const MethodChoice choice =
-      choose_method(parameters, parameters.solver, parameters.accuracy);
-    const Scene<dim>  scene(parameters, matrix_storage(choice));
-    const SolveResult result = solve(choice, parameters.solver, scene);
+    const Parameters  parameters = parameters_of(assignments);
+    const Scene<dim>  scene      = scene_of<dim>(parameters);
+    const SolveResult result     = solved(parameters, scene);
 
     const DofVector reference = extended_minimiser(parameters, scene, result.u);
     const auto      verified  = [&](const DofVector &u) {

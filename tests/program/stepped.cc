@@ -6,10 +6,7 @@
 
 #include <debond/contact/laws/stepped.h>
 #include <debond/elasticity/contact_condensation.h>
-#include <debond/input/parameters.h>
 #include <debond/solve/load_path.h>
-#include <debond/solve/scene.h>
-#include <debond/solve/solve.h>
 
 #include <cmath>
 #include <iostream>
@@ -17,6 +14,7 @@
 
 #include "../check.h"
 #include "../optimization/enumeration.h"
+#include "solved.h"
 
 using namespace Debond;
 
@@ -28,27 +26,11 @@ namespace
 
   /// 7 contact nodes, which have 3^7 states. At half the load the least J has
   /// bonds of all kinds.
-  const std::vector<std::string> small = {
-    "Mesh/Cells=8, 1",
-    "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)",
-    "Contact law/Law=stepped",
-    "Contact law/Stepped/Stiffnesses=690, 100",
-    "Contact law/Stepped/Thresholds=0.001, 0.003"};
-
-
-
-  Parameters
-  parameters_of(const std::vector<std::string> &scene,
-                const std::vector<std::string> &others)
-  {
-    SceneTable table;
-    table.assign("Output/Machine details=false");
-    for (const std::string &assignment : scene)
-      table.assign(assignment);
-    for (const std::string &assignment : others)
-      table.assign(assignment);
-    return table.parameters("scene.prm");
-  }
+  const Values small = {"Mesh/Cells=8, 1",
+                        "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)",
+                        "Contact law/Law=stepped",
+                        "Contact law/Stepped/Stiffnesses=690, 100",
+                        "Contact law/Stepped/Thresholds=0.001, 0.003"};
 
 
 
@@ -85,14 +67,10 @@ namespace
 
 
   SolveResult
-  run(const std::vector<std::string> &scene,
-      const std::vector<std::string> &others)
+  run(const Values &scene, const Values &others)
   {
-    const Parameters   parameters = parameters_of(scene, others);
-    const MethodChoice choice =
-      choose_method(parameters, parameters.solver, parameters.accuracy);
-    const Scene<2> mesh(parameters, matrix_storage(choice));
-    return solve(choice, parameters.solver, mesh);
+    const Parameters parameters = parameters_of(scene + others);
+    return solved(parameters, scene_of<2>(parameters));
   }
 
 
@@ -100,7 +78,7 @@ namespace
   void
   test_methods()
   {
-    const Scene<2> scene(parameters_of(small, {}), MatrixStorage::serial);
+    const Scene<2> scene(parameters_of(small), MatrixStorage::serial);
     const double   least = least_functional(scene, 1.);
     for (const std::vector<std::string> &settings :
          std::vector<std::vector<std::string>>{
@@ -170,12 +148,10 @@ namespace
   test_load_path()
   {
     const Parameters parameters =
-      parameters_of(small,
-                    {"Load path/Factors=0:0.1:2, 2:-0.1:0.5",
-                     "Load path/Global branch=prove"});
-    const MethodChoice choice =
-      choose_method(parameters, parameters.solver, parameters.accuracy);
-    const Scene<2>               scene(parameters, matrix_storage(choice));
+      parameters_of(with(small,
+                         {"Load path/Factors=0:0.1:2, 2:-0.1:0.5",
+                          "Load path/Global branch=prove"}));
+    const Scene<2>               scene = scene_of<2>(parameters);
     std::vector<LoadPathStep<2>> steps, arc;
     const SolveResult            result = follow_load_path<2>(
       parameters.load_path,

@@ -4,7 +4,7 @@
 // scenes with many patches against branch and bound. Takes the numbers of small
 // scenes and of scenes with many patches, and prints each miss with its gap; a
 // third argument is the seed of other scenes, a fourth one the nodes of branch
-// and bound, 3000 if there is none.
+// and bound, 3000 if there is none, but for large scenes fewer.
 
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/input/parameters.h>
@@ -24,6 +24,7 @@
 
 #include "../check.h"
 #include "../optimization/enumeration.h"
+#include "solved.h"
 
 using namespace Debond;
 
@@ -37,6 +38,9 @@ namespace
   constexpr double allowed = 1e-9;
 
   unsigned int proof_nodes = 3000;
+
+  /// A node takes about n^3 operations, of which this is some seconds' worth.
+  constexpr double proof_operations = 1e9;
 
 
 
@@ -189,18 +193,6 @@ namespace
 
 
 
-  Parameters
-  read(const std::vector<std::string> &entries)
-  {
-    SceneTable table;
-    table.assign("Output/Machine details=false");
-    for (const std::string &entry : entries)
-      table.assign(entry);
-    return table.parameters("random.prm");
-  }
-
-
-
   /// The least value over all bond states: for each the minimum for s <= 0 of
   /// a convex quadratic, by principal pivoting.
   long double
@@ -246,7 +238,7 @@ namespace
     c.entries.push_back("Solver/Method=automatic");
     double largest, stiffness;
     {
-      const Parameters   parameters = read(c.entries);
+      const Parameters   parameters = parameters_of(c.entries);
       const Scene<dim>   scene(parameters, MatrixStorage::serial);
       const Condensation condensed =
         condense_to_contact(scene.problem(), scene.adhesion());
@@ -268,12 +260,9 @@ namespace
     c.entries.push_back(
       text("Contact law/Bond stiffness=", stiffness * random.log10(-2.5, 1.)));
 
-    const Parameters  parameters = read(c.entries);
+    const Parameters  parameters = parameters_of(c.entries);
     const Scene<dim>  scene(parameters, MatrixStorage::serial);
-    const SolveResult result =
-      solve(choose_method(parameters, parameters.solver),
-            parameters.solver,
-            scene);
+    const SolveResult result = solved(parameters, scene);
     ++counts.scenes;
     if (result.status != SolverStatus::success)
       {
@@ -298,7 +287,8 @@ namespace
       {
         BranchAndBoundParameters proof_parameters;
         proof_parameters.tolerance     = 1e-10 * std::abs(found);
-        proof_parameters.maximum_nodes = proof_nodes;
+        proof_parameters.maximum_nodes = static_cast<unsigned int>(
+          std::min<double>(proof_nodes, proof_operations / std::pow(n, 3)));
         const BranchAndBoundResult proof =
           BranchAndBound(proof_parameters)
             .minimize(condensed.schur_complement(), condensed.load(), bonds, s);
@@ -391,7 +381,7 @@ namespace
       {
         std::vector<std::string> more = entries;
         more.push_back(entry);
-        const Parameters   parameters = read(more);
+        const Parameters   parameters = parameters_of(more);
         const Scene<2>     scene(parameters, MatrixStorage::serial);
         const Condensation condensed =
           condense_to_contact(scene.problem(), scene.adhesion());
@@ -432,25 +422,22 @@ namespace
     constexpr double minimum = -4.56234928075e-3;
     for (const std::string search : {"automatic", "full"})
       {
-        const Parameters parameters =
-          read({"Dimension=2",
-                "Material/Young modulus=1",
-                "Material/Poisson ratio=0.0958529",
-                "Boundary conditions/Contact boundary=bottom",
-                "Boundary conditions/Clamped boundaries=top",
-                "Contact law/Tangential displacement=fixed",
-                "Mesh/Lengths=1.7075, 0.111103",
-                "Mesh/Cells=124, 1",
-                "Loads/Traction bottom=0; "
-                "0.950284*sin(6.283*4.56869*x/1.7075+5.64752)+0.347743",
-                "Contact law/Bond threshold=0.00697278",
-                "Contact law/Bond stiffness=1372.05",
-                "Solver/Search=" + search});
+        const Parameters parameters = parameters_of(
+          {"Dimension=2",
+           "Material/Young modulus=1",
+           "Material/Poisson ratio=0.0958529",
+           "Boundary conditions/Contact boundary=bottom",
+           "Boundary conditions/Clamped boundaries=top",
+           "Contact law/Tangential displacement=fixed",
+           "Mesh/Lengths=1.7075, 0.111103",
+           "Mesh/Cells=124, 1",
+           "Loads/Traction bottom=0; "
+           "0.950284*sin(6.283*4.56869*x/1.7075+5.64752)+0.347743",
+           "Contact law/Bond threshold=0.00697278",
+           "Contact law/Bond stiffness=1372.05",
+           "Solver/Search=" + search});
         const Scene<2>    scene(parameters, MatrixStorage::serial);
-        const SolveResult result =
-          solve(choose_method(parameters, parameters.solver),
-                parameters.solver,
-                scene);
+        const SolveResult result = solved(parameters, scene);
         std::cout << "a pad with five patches, " << search << ": "
                   << verdict(std::abs(result.functional / minimum - 1.), 1e-9)
                   << '\n';

@@ -5,13 +5,8 @@
 . "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
 bundle="Solver/Euclidean bundle"
-cat >bar.prm <<'SCENE'
-subsection Mesh
-  set Cells = 40, 4
-end
-subsection Loads
-  set Traction top = 0; if(x < 0.2, 0.69, -0.345)
-end
+benchmark "40, 4"
+cat >>bar.prm <<'SCENE'
 subsection Solver
   set Method = euclidean bundle
   subsection Euclidean bundle

@@ -4,14 +4,7 @@
 # on later with those that are not finished; the end is the same.
 . "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 
-cat >bar.prm <<'SCENE'
-subsection Mesh
-  set Cells = 10, 1
-end
-subsection Loads
-  set Traction top = 0; if(x < 0.2, 0.69, -0.345)
-end
-SCENE
+benchmark "10, 1"
 cat >study.prm <<'STUDY'
 subsection Study
   set Scene   = bar.prm

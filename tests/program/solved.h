@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Scenes and their solutions by the method that the program would choose.
+#ifndef debond_tests_program_solved_h
+#define debond_tests_program_solved_h
+
+#include <debond/solve/adaptive_loop.h>
+#include <debond/solve/method_choice.h>
+#include <debond/solve/scene.h>
+#include <debond/solve/solve.h>
+
+#include "parameters_of.h"
+
+inline Debond::MethodChoice
+choice_of(const Debond::Parameters &parameters)
+{
+  return Debond::choose_method(parameters,
+                               parameters.solver,
+                               parameters.accuracy);
+}
+
+
+
+template <int dim>
+Debond::Scene<dim>
+scene_of(const Debond::Parameters &parameters)
+{
+  return Debond::Scene<dim>(parameters,
+                            Debond::matrix_storage(choice_of(parameters)));
+}
+
+
+
+/// From rest or from @p start.
+template <int dim>
+Debond::SolveResult
+solved(const Debond::Parameters &parameters,
+       const Debond::Scene<dim> &scene,
+       const Debond::DofVector  *start = nullptr)
+{
+  return Debond::solve(choice_of(parameters),
+                       parameters.solver,
+                       scene,
+                       nullptr,
+                       false,
+                       nullptr,
+                       start);
+}
+
+
+
+/// A scene on the last of its meshes.
+template <int dim>
+struct Refined
+{
+  std::shared_ptr<const Debond::Scene<dim>> scene;
+  std::vector<Debond::AdaptiveLevel>        levels;
+  Debond::AdaptiveResult                    result;
+};
+
+
+
+template <int dim>
+Refined<dim>
+refined(const Debond::Parameters  &parameters,
+        Debond::FollowedPath<dim> *path = nullptr)
+{
+  const Debond::MethodChoice choice = choice_of(parameters);
+  Refined<dim>               refined;
+  refined.scene  = Debond::make_first_scene<dim>(parameters,
+                                                parameters.accuracy,
+                                                Debond::matrix_storage(choice));
+  refined.result = Debond::solve_adaptively<dim>(
+    choice,
+    parameters.solver,
+    parameters.accuracy,
+    parameters.certificate.kind,
+    parameters.verification.tolerance,
+    [&](const Debond::AdaptiveLevel &level) {
+      refined.levels.push_back(level);
+    },
+    refined.scene,
+    path);
+  return refined;
+}
+
+#endif
