@@ -376,25 +376,43 @@ namespace Debond
 
 
   template <int dim>
-  EquilibriumElement<dim>::EquilibriumElement(
-    const std::vector<dealii::Point<dim>> &corners,
-    const Material                        &material,
-    const dealii::Tensor<1, dim>          &body_force,
-    const double                           thermal_stress)
-    : corners(corners)
-    , centre(mean(corners))
-    , measure(0.)
+  class EquilibriumElement<dim>::Shape
   {
-    const int n          = static_cast<int>(corners.size());
-    const int n_stresses = n_of_simplex<dim> * n;
+  public:
+    Shape(const std::vector<dealii::Point<dim>> &corners,
+          const Material                        &material);
+
+    double          measure;
+    Eigen::MatrixXd K;
+    Eigen::MatrixXd to_stress; ///< stress without loads for l
+
+    /// For loads of 1: F, and the stress for l = 0. The constant is a quadratic
+    /// form.
+    Eigen::Matrix<double, Eigen::Dynamic, dim + 1> F;
+    Eigen::Matrix<double, Eigen::Dynamic, dim + 1> particular;
+    Eigen::Matrix<double, dim + 1, dim + 1>        constant;
+  };
+
+
+
+  template <int dim>
+  EquilibriumElement<dim>::Shape::Shape(
+    const std::vector<dealii::Point<dim>> &corners,
+    const Material                        &material)
+    : measure(0.)
+  {
+    const int                n          = static_cast<int>(corners.size());
+    const int                n_stresses = n_of_simplex<dim> * n;
+    const dealii::Point<dim> centre     = mean(corners);
 
     // Moments of the tractions on the sides, and the flexibility.
     Eigen::MatrixXd T =
       Eigen::MatrixXd::Zero(unknowns_of_a_side * n, n_stresses);
     Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n_stresses, n_stresses);
-    // A stress with the given divergence, and the thermal stress.
-    Eigen::VectorXd balance = Eigen::VectorXd::Zero(n_stresses);
-    Eigen::VectorXd thermal = Eigen::VectorXd::Zero(n_stresses);
+    // Stresses with a divergence of -1 in each direction, and the thermal one.
+    Eigen::Matrix<double, Eigen::Dynamic, dim + 1> balance, given;
+    balance.setZero(n_stresses, dim + 1);
+    given.setZero(n_stresses, dim + 1);
     for (int i = 0; i < n; ++i)
       {
         const auto points = simplex_above(corners, centre, i);
@@ -419,38 +437,82 @@ namespace Debond
         for (int corner = 0; corner <= dim; ++corner)
           for (int d = 0; d < dim; ++d)
             {
-              const int k = stress_index<dim>(i, corner, d);
-              balance(k)  = -body_force[d] * (points[corner] - centre)[d];
-              thermal(k)  = thermal_stress;
+              const int k   = stress_index<dim>(i, corner, d);
+              balance(k, d) = -(points[corner] - centre)[d];
+              given(k, dim) = 1.;
             }
       }
+    given += balance;
 
     const Eigen::MatrixXd             Z = mapped_basis(corners);
     const Eigen::LLT<Eigen::MatrixXd> factor(Z.transpose() * M * Z);
-    const Eigen::VectorXd             given   = balance + thermal;
-    const Eigen::VectorXd             b       = Z.transpose() * (M * given);
-    const Eigen::VectorXd             lifting = factor.solve(b);
+    const Eigen::MatrixXd             b       = Z.transpose() * (M * given);
+    const Eigen::MatrixXd             lifting = factor.solve(b);
 
     const Eigen::MatrixXd B = T * Z;
     const Eigen::MatrixXd Y = factor.matrixL().solve(B.transpose());
     K                       = Y.transpose() * Y;
     F                       = B * lifting - T * balance;
-    constant                = 0.5 * b.dot(lifting) - 0.5 * given.dot(M * given);
-    to_stress               = Z * factor.solve(B.transpose());
-    particular              = balance - Z * lifting;
+    constant =
+      0.5 * (b.transpose() * lifting) - 0.5 * (given.transpose() * M * given);
+    to_stress  = Z * factor.solve(B.transpose());
+    particular = balance - Z * lifting;
   }
 
 
 
   template <int dim>
-  EquilibriumElement<dim>
-  EquilibriumElement<dim>::moved_to(
-    const std::vector<dealii::Point<dim>> &other_corners) const
+  std::shared_ptr<const typename EquilibriumElement<dim>::Shape>
+  EquilibriumElement<dim>::make_shape(
+    const std::vector<dealii::Point<dim>> &corners,
+    const Material                        &material)
   {
-    EquilibriumElement result = *this;
-    result.corners            = other_corners;
-    result.centre             = mean(other_corners);
-    return result;
+    return std::make_shared<const Shape>(corners, material);
+  }
+
+
+
+  template <int dim>
+  EquilibriumElement<dim>::EquilibriumElement(
+    const std::vector<dealii::Point<dim>> &corners,
+    const std::shared_ptr<const Shape>    &shape,
+    const dealii::Tensor<1, dim>          &body_force,
+    const double                           thermal_stress)
+    : corners(corners)
+    , centre(mean(corners))
+    , measure(shape->measure)
+    , shape(shape)
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      load(d) = body_force[d];
+    load(dim) = thermal_stress;
+  }
+
+
+
+  template <int dim>
+  const Eigen::MatrixXd &
+  EquilibriumElement<dim>::K() const
+  {
+    return shape->K;
+  }
+
+
+
+  template <int dim>
+  Eigen::VectorXd
+  EquilibriumElement<dim>::F() const
+  {
+    return shape->F * load;
+  }
+
+
+
+  template <int dim>
+  double
+  EquilibriumElement<dim>::constant() const
+  {
+    return load.dot(shape->constant * load);
   }
 
 
@@ -460,7 +522,8 @@ namespace Debond
   EquilibriumElement<dim>::stress(const Eigen::VectorXd &displacements,
                                   const double           weight) const
   {
-    return weight * (to_stress * displacements) + particular;
+    return weight * (shape->to_stress * displacements) +
+           shape->particular * load;
   }
 
 

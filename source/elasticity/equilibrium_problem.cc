@@ -86,34 +86,40 @@ namespace Debond
   void
   EquilibriumProblem<dim>::make_elements()
   {
-    // The last ones that were no copies.
-    constexpr unsigned int    most_distinct = 64;
-    std::deque<unsigned int>  distinct;
-    const std::vector<Place> &places = mesh.places();
-    for (const Place &place : places)
+    struct Known
+    {
+      std::vector<dealii::Point<dim>>                                corners;
+      const Material                                                *material;
+      std::shared_ptr<const typename EquilibriumElement<dim>::Shape> shape;
+    };
+    // The last ones that were new.
+    constexpr unsigned int most_known = 64;
+    std::deque<Known>      known;
+    for (const Place &place : mesh.places())
       {
         std::vector<dealii::Point<dim>> corners;
         for (const unsigned int vertex : place.vertices)
           corners.push_back(vertices()[vertex]);
         const Material &material = materials(place.cells[0]->material_id());
-        const double    p        = mesh.thermal_stress(place.cells[0]);
-        const auto      same     = std::find_if(
-          distinct.begin(), distinct.end(), [&](const unsigned int other) {
-            return is_moved(all_elements[other].corners, corners) &&
-                   &materials(places[other].cells[0]->material_id()) ==
-                     &material &&
-                   places[other].body_force == place.body_force &&
-                   mesh.thermal_stress(places[other].cells[0]) == p;
+        auto            same =
+          std::find_if(known.begin(), known.end(), [&](const Known &other) {
+            return is_moved(other.corners, corners) &&
+                   other.material == &material;
           });
-        if (same != distinct.end())
-          all_elements.push_back(all_elements[*same].moved_to(corners));
-        else
+        if (same == known.end())
           {
-            distinct.push_back(static_cast<unsigned int>(all_elements.size()));
-            if (distinct.size() > most_distinct)
-              distinct.pop_front();
-            all_elements.emplace_back(corners, material, place.body_force, p);
+            if (known.size() == most_known)
+              known.pop_back();
+            known.push_front(
+              {corners,
+               &material,
+               EquilibriumElement<dim>::make_shape(corners, material)});
+            same = known.begin();
           }
+        all_elements.emplace_back(corners,
+                                  same->shape,
+                                  place.body_force,
+                                  mesh.thermal_stress(place.cells[0]));
       }
   }
 
@@ -227,8 +233,8 @@ namespace Debond
         const double          weight = weights.empty() ? 1. : weights[element];
         const Eigen::MatrixXd turn   = to_element(element);
         const Eigen::MatrixXd matrix =
-          weight * (turn.transpose() * own.K * turn);
-        const Eigen::VectorXd           load = turn.transpose() * own.F;
+          weight * (turn.transpose() * own.K() * turn);
+        const Eigen::VectorXd           load = turn.transpose() * own.F();
         const std::vector<unsigned int> unknowns =
           mesh.unknowns_of(mesh.places()[element]);
         for (unsigned int i = 0; i < unknowns.size(); ++i)
@@ -239,7 +245,7 @@ namespace Debond
                     unknowns[j],
                     0.5 * (matrix(i, j) + matrix(j, i)));
           }
-        constant += own.constant / weight;
+        constant += own.constant() / weight;
       }
     for (unsigned int i = 0; i < n; ++i)
       f(i) += mesh.loads_on_sides()(i);

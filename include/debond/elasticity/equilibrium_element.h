@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <memory>
 #include <vector>
 
 namespace Debond
@@ -56,19 +57,34 @@ namespace Debond
   {
     static constexpr int unknowns_of_a_side = dim * dim;
 
-    /// @p corners: of a triangle or a parallelogram counterclockwise; of a
-    /// tetrahedron such that its volume is not negative. @p body_force:
-    /// constant, force per volume (per area of the plane in 2D). @p
-    /// thermal_stress: p, see Material::thermal_stress().
+    /// What does not depend on the loads: the same for all cells of a material
+    /// that are the same polygon or tetrahedron at different places.
+    class Shape;
+
+    /// Of the cell with @p corners, those of a triangle or a parallelogram
+    /// counterclockwise, those of a tetrahedron such that its volume is not
+    /// negative.
+    static std::shared_ptr<const Shape>
+    make_shape(const std::vector<dealii::Point<dim>> &corners,
+               const Material                        &material);
+
+    /// @p shape: of a cell with @p corners but for a motion without rotation.
+    /// @p body_force: constant, force per volume (per area of the plane in 2D).
+    /// @p thermal_stress: p, see Material::thermal_stress().
     EquilibriumElement(const std::vector<dealii::Point<dim>> &corners,
-                       const Material                        &material,
+                       const std::shared_ptr<const Shape>    &shape,
                        const dealii::Tensor<1, dim>          &body_force,
                        const double                           thermal_stress);
 
-    /// The same at another place: @p other_corners are its corners but for a
-    /// motion without rotation.
-    EquilibriumElement
-    moved_to(const std::vector<dealii::Point<dim>> &other_corners) const;
+    /// With C made c times as stiff these are c K, F and constant / c.
+    const Eigen::MatrixXd &
+    K() const;
+
+    Eigen::VectorXd
+    F() const;
+
+    double
+    constant() const;
 
     /// The stress that is reached for @p displacements l, with C made @p weight
     /// times as stiff: a LinearStress for each side, of the simplex above it
@@ -81,14 +97,12 @@ namespace Debond
     dealii::Point<dim>              centre;
     double                          measure; ///< area or volume
 
-    /// With C made c times as stiff these are c K, F and constant / c.
-    Eigen::MatrixXd K;
-    Eigen::VectorXd F;
-    double          constant;
-
   private:
-    Eigen::MatrixXd to_stress;  ///< stress without loads for l
-    Eigen::VectorXd particular; ///< stress for l = 0
+    /// The body force, and p.
+    using LoadValues = Eigen::Matrix<double, dim + 1, 1>;
+
+    std::shared_ptr<const Shape> shape;
+    LoadValues                   load;
   };
 
 
