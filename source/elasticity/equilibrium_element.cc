@@ -370,7 +370,26 @@ namespace Debond
                        const double             measure,
                        const Material          &material)
   {
-    return stress.dot(compliance_matrix<dim>(measure, material) * stress);
+    constexpr int n       = n_stress_components<dim>;
+    const double  mu      = material.shear_modulus();
+    const double  lambda  = material.lame_lambda<dim>();
+    const double  coupled = lambda / (dim * lambda + 2. * mu);
+    // 2 mu sigma : C^{-1} sigma.
+    const auto density = [coupled](const auto &sigma) {
+      const double trace = sigma.template head<dim>().sum();
+      return sigma.squaredNorm() +
+             sigma.template tail<n - dim>().squaredNorm() -
+             coupled * trace * trace;
+    };
+    Eigen::Matrix<double, n, 1> sum = Eigen::Matrix<double, n, 1>::Zero();
+    double                      own = 0.;
+    for (int corner = 0; corner <= dim; ++corner)
+      {
+        const auto sigma = stress.template segment<n>(n * corner);
+        sum += sigma;
+        own += density(sigma);
+      }
+    return measure / ((dim + 1) * (dim + 2)) * (own + density(sum)) / (2. * mu);
   }
 
 

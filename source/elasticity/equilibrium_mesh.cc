@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <unordered_map>
 #include <utility>
 
 namespace Debond
@@ -37,7 +37,9 @@ namespace Debond
         ++k;
       const std::array<unsigned int, 2> next = {
         {cell->vertex_index((k + 1) % 3), cell->vertex_index((k + 2) % 3)}};
-      if (LinearSimplex<2>(cell).volume < 0.)
+      const dealii::Tensor<1, 2> one   = cell->vertex(1) - cell->vertex(0);
+      const dealii::Tensor<1, 2> other = cell->vertex(2) - cell->vertex(0);
+      if (one[0] * other[1] < one[1] * other[0])
         return {{next[1], next[0]}};
       return next;
     }
@@ -54,14 +56,16 @@ namespace Debond
       std::vector<std::pair<unsigned int, Triangle>> result;
       if (cells.size() != 4)
         return result;
-      unsigned int corner = others(cells[0], vertex)[0];
+      std::array<std::array<unsigned int, 2>, 4> pairs;
       for (unsigned int i = 0; i < 4; ++i)
-        for (const Triangle &cell : cells)
-          if (const auto pair = others(cell, vertex);
-              pair[0] == corner && result.size() == i)
+        pairs[i] = others(cells[i], vertex);
+      unsigned int corner = pairs[0][0];
+      for (unsigned int i = 0; i < 4; ++i)
+        for (unsigned int k = 0; k < 4; ++k)
+          if (pairs[k][0] == corner && result.size() == i)
             {
-              result.emplace_back(corner, cell);
-              corner = pair[1];
+              result.emplace_back(corner, cells[k]);
+              corner = pairs[k][1];
             }
       if (result.size() != 4 || corner != result[0].first)
         return {};
@@ -291,7 +295,19 @@ namespace Debond
   void
   EquilibriumMesh<dim>::make_sides()
   {
-    std::map<std::array<unsigned int, dim>, unsigned int> numbers;
+    struct Hash
+    {
+      std::size_t
+      operator()(const std::array<unsigned int, dim> &key) const
+      {
+        std::size_t hash = 0;
+        for (const unsigned int entry : key)
+          hash = (hash ^ entry) * 0x9e3779b97f4a7c15;
+        return hash;
+      }
+    };
+    std::unordered_map<std::array<unsigned int, dim>, unsigned int, Hash>
+      numbers;
     for (Place &place : all_places)
       for (unsigned int i = 0; i < place.vertices.size(); ++i)
         {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
-
 #include <debond/elasticity/equilibrium_problem.h>
 #include <debond/elasticity/linear_simplex.h>
 #include <debond/elasticity/side_moments.h>
@@ -8,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <map>
 
 namespace Debond
 {
@@ -46,6 +45,18 @@ namespace Debond
             rounding * size)
           return false;
       return true;
+    }
+
+
+
+    template <int dim>
+    dealii::SymmetricTensor<2, dim>
+    elastic_stress(const Material                        &material,
+                   const dealii::SymmetricTensor<2, dim> &strain)
+    {
+      return 2. * material.shear_modulus() * strain +
+             material.template lame_lambda<dim>() * trace(strain) *
+               dealii::unit_symmetric_tensor<dim>();
     }
 
 
@@ -180,13 +191,12 @@ namespace Debond
 
 
   template <int dim>
-  Eigen::MatrixXd
-  EquilibriumProblem<dim>::to_element(const unsigned int element) const
+  template <typename Add>
+  void
+  EquilibriumProblem<dim>::for_each_coefficient(const Place &place,
+                                                const Add   &add) const
   {
-    constexpr unsigned int n     = unknowns_of_a_side<dim>;
-    const Place           &place = mesh.places()[element];
-    Eigen::MatrixXd        result =
-      Eigen::MatrixXd::Zero(n * place.sides.size(), n * place.sides.size());
+    constexpr unsigned int n = unknowns_of_a_side<dim>;
     for (unsigned int i = 0; i < place.sides.size(); ++i)
       for (unsigned int k = 0; k < dim; ++k)
         {
@@ -195,75 +205,170 @@ namespace Debond
           const unsigned int position = place.positions[i][k];
           const unsigned int own      = dim == 2 ? k : position;
           const double sign = dim == 2 && k != position && k == 1 ? -1. : 1.;
+          const dealii::Tensor<2, dim> &directions =
+            mesh.sides()[place.sides[i]].directions;
           for (unsigned int d = 0; d < dim; ++d)
             for (unsigned int j = 0; j < dim; ++j)
-              result(n * i + dim * k + d, n * i + dim * own + j) =
-                sign * mesh.sides()[place.sides[i]].directions[j][d];
+              if (directions[j][d] != 0.)
+                add(n * i + dim * k + d,
+                    n * i + dim * own + j,
+                    sign * directions[j][d]);
         }
-    return result;
   }
 
 
 
   template <int dim>
-  std::unique_ptr<Condensation>
-  EquilibriumProblem<dim>::condense(
-    const bool                                          keep_all,
-    const std::vector<double>                          &weights,
-    const std::vector<std::pair<unsigned int, double>> &added) const
+  Eigen::MatrixXd
+  EquilibriumProblem<dim>::matrix_of(const unsigned int element) const
   {
-    const unsigned int n =
-      static_cast<unsigned int>(mesh.loads_on_sides().size());
-    dealii::DynamicSparsityPattern entries(n);
-    for (unsigned int element = 0; element < mesh.places().size(); ++element)
+    const Place           &place = mesh.places()[element];
+    const Eigen::MatrixXd &K     = all_elements[element].K();
+    Eigen::MatrixXd        half  = Eigen::MatrixXd::Zero(K.rows(), K.cols());
+    Eigen::MatrixXd        whole = half;
+    const auto             turn_columns = [&](const Eigen::MatrixXd &matrix,
+                                  Eigen::MatrixXd       &result) {
+      for_each_coefficient(place,
+                           [&](const unsigned int row,
+                               const unsigned int column,
+                               const double       c) {
+                             result.col(column) += c * matrix.col(row);
+                           });
+    };
+    turn_columns(K, half);
+    turn_columns(half.transpose(), whole);
+
+    const std::vector<unsigned int> unknowns = mesh.unknowns_of(place);
+    std::vector<unsigned int>       rows;
+    for (unsigned int i = 0; i < unknowns.size(); ++i)
+      if (!mesh.is_fixed(unknowns[i]))
+        rows.push_back(i);
+    return whole(rows, rows);
+  }
+
+
+
+  template <int dim>
+  void
+  EquilibriumProblem<dim>::make_substructures() const
+  {
+    std::vector<char> is_at_contact(all_elements.size(), 0);
+    for (const ContactSide &side : mesh.contact_sides())
+      is_at_contact[side.element] = 1;
+    std::map<std::array<double, dim * dim>, unsigned int> frames;
+    std::map<const Eigen::MatrixXd *, unsigned int>       shapes;
+    std::map<std::vector<unsigned int>, unsigned int>     kinds;
+    std::vector<unsigned int>                             first_of_kind;
+
+    std::vector<SubstructureElement> parts;
+    f = mesh.loads_on_sides();
+    for (unsigned int element = 0; element < all_elements.size(); ++element)
       {
-        const std::vector<unsigned int> unknowns =
-          mesh.unknowns_of(mesh.places()[element]);
-        for (const unsigned int row : unknowns)
-          entries.add_entries(row, unknowns.begin(), unknowns.end());
-      }
-    dealii::SparsityPattern pattern;
-    pattern.copy_from(entries);
-    dealii::SparseMatrix<double> K(pattern);
-    DofVector                    f(n);
-    double                       constant = 0.;
-    for (unsigned int element = 0; element < mesh.places().size(); ++element)
-      {
-        const EquilibriumElement<dim> &own = all_elements[element];
-        const double          weight = weights.empty() ? 1. : weights[element];
-        const Eigen::MatrixXd turn   = to_element(element);
-        const Eigen::MatrixXd matrix =
-          weight * (turn.transpose() * own.K() * turn);
-        const Eigen::VectorXd           load = turn.transpose() * own.F();
-        const std::vector<unsigned int> unknowns =
-          mesh.unknowns_of(mesh.places()[element]);
-        for (unsigned int i = 0; i < unknowns.size(); ++i)
+        const EquilibriumElement<dim>  &own      = all_elements[element];
+        const Place                    &place    = mesh.places()[element];
+        const std::vector<unsigned int> unknowns = mesh.unknowns_of(place);
+        const Eigen::VectorXd           F        = own.F();
+        for_each_coefficient(place,
+                             [&](const unsigned int row,
+                                 const unsigned int column,
+                                 const double       c) {
+                               f(unknowns[column]) += c * F(row);
+                             });
+
+        SubstructureElement       part = {0, {}, {}, {}, false};
+        std::vector<unsigned int> key;
+        for (unsigned int i = 0; i < place.sides.size(); ++i)
           {
-            f(unknowns[i]) += load(i);
-            for (unsigned int j = 0; j < unknowns.size(); ++j)
-              K.add(unknowns[i],
-                    unknowns[j],
-                    0.5 * (matrix(i, j) + matrix(j, i)));
+            const Side &side = mesh.sides()[place.sides[i]];
+            key.insert(key.end(),
+                       place.positions[i].begin(),
+                       place.positions[i].end());
+            std::array<double, dim * dim> directions;
+            for (unsigned int k = 0; k < directions.size(); ++k)
+              directions[k] = side.directions[k / dim][k % dim];
+            key.push_back(
+              frames.emplace(directions, frames.size()).first->second);
           }
-        constant += own.constant() / weight;
+        for (const unsigned int unknown : unknowns)
+          {
+            key.push_back(mesh.is_fixed(unknown) ? 1 : 0);
+            if (!mesh.is_fixed(unknown))
+              part.unknowns.push_back(unknown);
+          }
+        key.push_back(shapes.emplace(&own.K(), shapes.size()).first->second);
+        const auto [entry, is_new] =
+          kinds.emplace(key, static_cast<unsigned int>(kinds.size()));
+        part.kind = entry->second;
+        if (is_new)
+          first_of_kind.push_back(element);
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            part.centre[d] = own.centre[d];
+            const auto [least, largest] =
+              std::minmax_element(own.corners.begin(),
+                                  own.corners.end(),
+                                  [d](const auto &one, const auto &other) {
+                                    return one[d] < other[d];
+                                  });
+            part.extent[d] = (*largest)[d] - (*least)[d];
+          }
+        part.has_weight = is_at_contact[element] != 0;
+        parts.push_back(part);
       }
-    for (unsigned int i = 0; i < n; ++i)
-      f(i) += mesh.loads_on_sides()(i);
 
     std::vector<unsigned int> kept;
-    for (unsigned int k = 0; k < (keep_all ? dim : 1); ++k)
+    for (unsigned int k = 0; k < dim; ++k)
       for (const ContactSide &side : mesh.contact_sides())
         kept.push_back(side.unknowns[k]);
-    for (const auto &[unknown, value] : added)
-      K.add(unknown, unknown, value);
-    return std::make_unique<Condensation>(
-      K,
-      f,
-      kept,
-      [this](const unsigned int i) { return mesh.is_fixed(i); },
-      OtherParts{{}, {}, [constant](const double, const double) {
-                   return constant;
-                 }});
+    substructures =
+      std::make_unique<Substructures>(parts,
+                                      static_cast<unsigned int>(f.size()),
+                                      kept,
+                                      [this,
+                                       first_of_kind](const unsigned int kind) {
+                                        return matrix_of(first_of_kind[kind]);
+                                      });
+  }
+
+
+
+  template <int dim>
+  std::unique_ptr<CondensedSubstructures>
+  EquilibriumProblem<dim>::condense(const std::vector<double> &weights) const
+  {
+    if (substructures == nullptr)
+      make_substructures();
+    double constant = 0.;
+    for (unsigned int element = 0; element < all_elements.size(); ++element)
+      constant += all_elements[element].constant() /
+                  (weights.empty() ? 1. : weights[element]);
+    return substructures->condense(f, weights, constant);
+  }
+
+
+
+  template <int dim>
+  std::vector<Eigen::VectorXd>
+  EquilibriumProblem<dim>::stresses(const Eigen::VectorXd     &unknowns,
+                                    const std::vector<double> &weights) const
+  {
+    std::vector<Eigen::VectorXd> result;
+    result.reserve(all_elements.size());
+    for (unsigned int element = 0; element < all_elements.size(); ++element)
+      {
+        const Place                    &place   = mesh.places()[element];
+        const std::vector<unsigned int> numbers = mesh.unknowns_of(place);
+        Eigen::VectorXd own = Eigen::VectorXd::Zero(numbers.size());
+        for_each_coefficient(place,
+                             [&](const unsigned int row,
+                                 const unsigned int column,
+                                 const double       c) {
+                               own(row) += c * unknowns(numbers[column]);
+                             });
+        result.push_back(all_elements[element].stress(
+          own, weights.empty() ? 1. : weights[element]));
+      }
+    return result;
   }
 
 
@@ -285,24 +390,25 @@ namespace Debond
             sum -= std::abs(simplex.weight) * p *
                    trace(own.strain(simplex, simplex.point(q)));
         }
+    const Eigen::VectorXd &loads = mesh.loads_on_sides();
     for (const Place &place : mesh.places())
       for (unsigned int i = 0; i < place.sides.size(); ++i)
         {
           const CellDisplacement<dim> &own =
             u[place.cells[i]->active_cell_index()];
-          const double volume =
-            std::abs(LinearSimplex<dim>(place.cells[i]).volume) /
-            place.parts_of_a_cell();
-          sum -= volume * (place.body_force * own.mean());
+          if (place.body_force != dealii::Tensor<1, dim>())
+            sum -= std::abs(LinearSimplex<dim>(place.cells[i]).volume) /
+                   place.parts_of_a_cell() * (place.body_force * own.mean());
 
           // Only sides of the boundary have loads.
+          const unsigned int first = unknowns_of_a_side<dim> * place.sides[i];
+          if (loads.segment<unknowns_of_a_side<dim>>(first).isZero(0.))
+            continue;
           const Side &side = mesh.sides()[place.sides[i]];
           const auto  l    = side_unknowns(own.on_side(side.vertices));
           for (unsigned int k = 0; k < dim; ++k)
             for (unsigned int d = 0; d < dim; ++d)
-              sum -= mesh.loads_on_sides()(
-                       unknowns_of_a_side<dim> * place.sides[i] + dim * k + d) *
-                     (l[k] * side.directions[d]);
+              sum -= loads(first + dim * k + d) * (l[k] * side.directions[d]);
         }
     return sum;
   }
@@ -319,15 +425,14 @@ namespace Debond
       {
         const CellDisplacement<dim> &own = u[cell->active_cell_index()];
         const BernsteinSimplex<dim>  simplex(cell, own.degree);
-        const auto                   C =
-          materials(cell->material_id()).template elasticity_tensor<dim>();
+        const Material              &material = materials(cell->material_id());
         result.push_back(0.);
         for (unsigned int q = 0; q < simplex.n_points; ++q)
           {
             const dealii::SymmetricTensor<2, dim> epsilon =
               own.strain(simplex, simplex.point(q));
-            result.back() +=
-              std::abs(simplex.weight) * (epsilon * (C * epsilon));
+            result.back() += std::abs(simplex.weight) *
+                             (epsilon * elastic_stress(material, epsilon));
           }
       }
     return result;
@@ -357,33 +462,17 @@ namespace Debond
 
 
   template <int dim>
-  Eigen::VectorXd
-  EquilibriumProblem<dim>::stress_of(const unsigned int element,
-                                     const DofVector   &unknowns,
-                                     const double       weight) const
-  {
-    const std::vector<unsigned int> numbers =
-      mesh.unknowns_of(mesh.places()[element]);
-    Eigen::VectorXd own(numbers.size());
-    for (unsigned int i = 0; i < numbers.size(); ++i)
-      own(i) = unknowns(numbers[i]);
-    return all_elements[element].stress(to_element(element) * own, weight);
-  }
-
-
-
-  template <int dim>
   std::vector<double>
   EquilibriumProblem<dim>::constitutive_gaps(
     const std::vector<CellDisplacement<dim>> &u,
-    const DofVector                          &unknowns) const
+    const std::vector<Eigen::VectorXd>       &stresses) const
   {
     std::vector<double> gaps(mesh.triangulation().n_active_cells(), 0.);
     for (unsigned int element = 0; element < mesh.places().size(); ++element)
       {
         const Place                   &place  = mesh.places()[element];
         const EquilibriumElement<dim> &shape  = all_elements[element];
-        const Eigen::VectorXd          stress = stress_of(element, unknowns);
+        const Eigen::VectorXd         &stress = stresses[element];
         for (unsigned int i = 0; i < place.cells.size(); ++i)
           {
             const Cell                  &cell = place.cells[i];
@@ -399,10 +488,10 @@ namespace Debond
               {
                 const dealii::Point<dim> &point =
                   corner < dim ? shape.corners[local[corner]] : shape.centre;
-                const dealii::SymmetricTensor<2, dim> elastic =
-                  material.template elasticity_tensor<dim>() *
+                const dealii::SymmetricTensor<2, dim> elastic = elastic_stress(
+                  material,
                   own.strain(simplex,
-                             barycentric_of<dim>(simplex, cell, point));
+                             barycentric_of<dim>(simplex, cell, point)));
                 for (unsigned int k = 0; k < n_at_corner<dim>; ++k)
                   difference(n_at_corner<dim> * corner + k) -=
                     elastic.access_raw_entry(k) -
@@ -423,17 +512,18 @@ namespace Debond
 
   template <int dim>
   double
-  EquilibriumProblem<dim>::rounding_of(const Condensation        &condensed,
-                                       const Eigen::VectorXd     &kept,
-                                       const std::vector<double> &weights) const
+  EquilibriumProblem<dim>::rounding_of(
+    const CondensedSubstructures       &condensed,
+    const Eigen::VectorXd              &kept,
+    const std::vector<Eigen::VectorXd> &stresses,
+    const std::vector<double>          &weights) const
   {
-    const DofVector unknowns = condensed.expand(kept);
-    double          energy   = 0.;
+    double energy = 0.;
     for (unsigned int element = 0; element < mesh.places().size(); ++element)
       {
-        const Place          &place  = mesh.places()[element];
-        const double          weight = weights.empty() ? 1. : weights[element];
-        const Eigen::VectorXd stress = stress_of(element, unknowns, weight);
+        const Place           &place  = mesh.places()[element];
+        const double           weight = weights.empty() ? 1. : weights[element];
+        const Eigen::VectorXd &stress = stresses[element];
         for (unsigned int i = 0; i < place.cells.size(); ++i)
           {
             const Cell       &cell = place.cells[i];
@@ -451,7 +541,7 @@ namespace Debond
                                         materials(cell->material_id()));
           }
       }
-    const auto S = condensed.schur_complement();
+    const Eigen::MatrixXd &S = condensed.schur_complement();
     // It may be more at other displacements.
     return 4. * std::abs(condensed.energy_at_zero() - 0.5 * kept.dot(S * kept) +
                          energy);
@@ -461,15 +551,16 @@ namespace Debond
 
   template <int dim>
   std::vector<dealii::SymmetricTensor<2, dim>>
-  EquilibriumProblem<dim>::mean_stresses(const DofVector &unknowns) const
+  EquilibriumProblem<dim>::mean_stresses(
+    const std::vector<Eigen::VectorXd> &stresses) const
   {
     std::vector<dealii::SymmetricTensor<2, dim>> result(
       mesh.triangulation().n_active_cells());
     for (unsigned int element = 0; element < mesh.places().size(); ++element)
       {
-        const Place          &place  = mesh.places()[element];
-        const Eigen::VectorXd stress = stress_of(element, unknowns);
-        const double          share  = (dim + 1.) * place.parts_of_a_cell();
+        const Place           &place  = mesh.places()[element];
+        const Eigen::VectorXd &stress = stresses[element];
+        const double           share  = (dim + 1.) * place.parts_of_a_cell();
         for (unsigned int i = 0; i < place.cells.size(); ++i)
           for (unsigned int corner = 0; corner <= dim; ++corner)
             for (unsigned int k = 0; k < n_at_corner<dim>; ++k)

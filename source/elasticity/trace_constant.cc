@@ -16,68 +16,6 @@ namespace Debond
 {
   namespace
   {
-    /// The least value of S relative to the mass matrix of the traces that are
-    /// linear on each of n sides, without those that are linear on all of them;
-    /// S comes from a part 1 - theta of the stiffness at the sides.
-    double
-    least_eigenvalue(const dealii::Triangulation<2>             &mesh,
-                     const std::set<dealii::types::boundary_id> &I,
-                     const double                                width,
-                     const Material                             &material,
-                     const bool         tangential_fixed,
-                     const unsigned int n,
-                     const double       theta)
-    {
-      BoundaryConditions conditions;
-      conditions.contact                       = I;
-      conditions.tangential_displacement_fixed = tangential_fixed;
-      EquilibriumProblem<2> problem(mesh, conditions, {}, material, Loads<2>());
-      // A motion along I does not change the energy.
-      if (!tangential_fixed)
-        problem.fix(problem.contact_sides()[0].unknowns[0] + 1);
-
-      const auto         &sides = problem.contact_sides();
-      std::vector<double> weights(problem.elements().size(), 1.);
-      for (const EquilibriumProblem<2>::ContactSide &side : sides)
-        weights[side.element] = 1. - theta;
-
-      const double    h = width / n;
-      Eigen::VectorXd mass(2 * n);
-      Eigen::MatrixXd linear = Eigen::MatrixXd::Zero(2 * n, 2);
-      // Rigid motions have no energy: they get that of springs at I.
-      const double spring = material.young_modulus / width;
-      std::vector<std::pair<unsigned int, double>> springs;
-      for (unsigned int i = 0; i < n; ++i)
-        {
-          mass(i)      = h;
-          mass(n + i)  = h / 3.;
-          linear(i, 0) = 1.;
-          linear(i, 1) =
-            0.5 * (sides[i].corners[0][0] + sides[i].corners[1][0]);
-          linear(n + i, 1) =
-            0.5 * (sides[i].corners[1][0] - sides[i].corners[0][0]);
-          springs.emplace_back(sides[i].unknowns[0], spring * mass(i));
-          springs.emplace_back(sides[i].unknowns[1], spring * mass(n + i));
-        }
-      const auto condensed       = problem.condense(true, weights, springs);
-      const Eigen::MatrixXd S    = condensed->schur_complement();
-      const Eigen::VectorXd root = mass.cwiseSqrt();
-      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(root.asDiagonal() *
-                                                     linear);
-      const Eigen::MatrixXd                       complement =
-        Eigen::MatrixXd(qr.householderQ()).rightCols(2 * n - 2);
-      const Eigen::VectorXd inverse_root = root.cwiseInverse();
-      const Eigen::MatrixXd scaled       = complement.transpose() *
-                                     inverse_root.asDiagonal() * S *
-                                     inverse_root.asDiagonal() * complement;
-      return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
-               scaled, Eigen::EigenvaluesOnly)
-               .eigenvalues()(0) -
-             spring;
-    }
-
-
-
     /// The parts of the stiffness that are tried: theta n has to be more than
     /// 1.
     std::array<double, 4>
@@ -87,6 +25,67 @@ namespace Debond
       for (double &part : theta)
         part = std::min(part / n, 0.9);
       return theta;
+    }
+
+
+
+    /// The least value of S relative to the mass matrix of the traces that are
+    /// linear on each of n sides, without those that are linear on all of them;
+    /// S comes from a part 1 - theta of the stiffness at the sides, for each of
+    /// parts_of_stiffness().
+    std::array<double, 4>
+    least_eigenvalues(const dealii::Triangulation<2>             &mesh,
+                      const std::set<dealii::types::boundary_id> &I,
+                      const double                                width,
+                      const Material                             &material,
+                      const bool         tangential_fixed,
+                      const unsigned int n)
+    {
+      BoundaryConditions conditions;
+      conditions.contact                       = I;
+      conditions.tangential_displacement_fixed = tangential_fixed;
+      EquilibriumProblem<2> problem(mesh, conditions, {}, material, Loads<2>());
+      // A motion along I does not change the energy.
+      if (!tangential_fixed)
+        problem.fix(problem.contact_sides()[0].unknowns[0] + 1);
+
+      const auto     &sides = problem.contact_sides();
+      const double    h     = width / n;
+      Eigen::VectorXd mass(2 * n);
+      Eigen::MatrixXd linear = Eigen::MatrixXd::Zero(2 * n, 2);
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          mass(i)      = h;
+          mass(n + i)  = h / 3.;
+          linear(i, 0) = 1.;
+          linear(i, 1) =
+            0.5 * (sides[i].corners[0][0] + sides[i].corners[1][0]);
+          linear(n + i, 1) =
+            0.5 * (sides[i].corners[1][0] - sides[i].corners[0][0]);
+        }
+      const Eigen::VectorXd                       root = mass.cwiseSqrt();
+      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(root.asDiagonal() *
+                                                     linear);
+      const Eigen::MatrixXd                       complement =
+        Eigen::MatrixXd(qr.householderQ()).rightCols(2 * n - 2);
+      const Eigen::MatrixXd scaled =
+        root.cwiseInverse().asDiagonal() * complement;
+
+      const std::array<double, 4> theta = parts_of_stiffness(n);
+      std::array<double, 4>       least;
+      for (unsigned int k = 0; k < theta.size(); ++k)
+        {
+          std::vector<double> weights(problem.elements().size(), 1.);
+          for (const EquilibriumProblem<2>::ContactSide &side : sides)
+            weights[side.element] = 1. - theta[k];
+          const auto            condensed = problem.condense(weights);
+          const Eigen::MatrixXd S =
+            scaled.transpose() * condensed->schur_complement() * scaled;
+          least[k] = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
+                       S, Eigen::EigenvaluesOnly)
+                       .eigenvalues()(0);
+        }
+      return least;
     }
 
 
@@ -173,10 +172,8 @@ namespace Debond
         .make_mesh(mesh)
         .boundaries;
     const std::array<double, 4> theta = parts_of_stiffness(n);
-    std::array<double, 4>       least;
-    for (unsigned int k = 0; k < theta.size(); ++k)
-      least[k] = least_eigenvalue(
-        mesh, names.at("bottom"), 1., unit, tangential_fixed, n, theta[k]);
+    const std::array<double, 4> least = least_eigenvalues(
+      mesh, names.at("bottom"), 1., unit, tangential_fixed, n);
 
     double constant = elementary_trace_constant(shape, unit, tangential_fixed);
     for (double previous = 0.; constant > (1. + 1e-6) * previous;)
@@ -203,12 +200,10 @@ namespace Debond
     dealii::Triangulation<2> mesh;
     make_divided_triangle({Q.apex / Q.width, Q.height / Q.width}, n, mesh);
 
-    double constant = 0.;
-    for (const double theta : parts_of_stiffness(n))
-      constant = std::max(
-        constant,
-        least_eigenvalue(mesh, {1}, 1., unit, tangential_fixed, n, theta));
-    return (1. - constant_rounding) * constant * material.young_modulus /
-           Q.width;
+    const std::array<double, 4> least =
+      least_eigenvalues(mesh, {1}, 1., unit, tangential_fixed, n);
+    return (1. - constant_rounding) *
+           *std::max_element(least.begin(), least.end()) *
+           material.young_modulus / Q.width;
   }
 } // namespace Debond

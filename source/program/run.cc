@@ -196,6 +196,14 @@ namespace Debond
                      solver.memory_limit,
                      scene,
                      result);
+    if (result.certificate)
+      choice.memory = std::max(
+        choice.memory,
+        memory_with_certificate(scene_size(scene->body(),
+                                           dim,
+                                           parameters.contact_boundaries,
+                                           parameters.degree),
+                                dim));
     std::string output_error = finish_checkpoints(checkpoints, result, written);
     report_result(*scene, choice, result, record);
 

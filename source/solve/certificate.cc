@@ -9,6 +9,8 @@
 #include <debond/solve/certificate.h>
 #include <debond/solve/scene_size.h>
 
+#include <Eigen/SparseCore>
+
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
@@ -308,23 +310,25 @@ namespace Debond
                       Certificate                              &certificate)
     {
       const std::vector<SideOf<dim>> &sides = equilibrium.contact_sides();
-      const Eigen::Index    n         = static_cast<Eigen::Index>(sides.size());
-      const auto            condensed = equilibrium.condense(true);
-      const Eigen::MatrixXd S         = condensed->schur_complement();
-      const Eigen::VectorXd g         = condensed->load();
+      const Eigen::Index     n = static_cast<Eigen::Index>(sides.size());
+      const auto             condensed = equilibrium.condense();
+      const Eigen::MatrixXd &S         = condensed->schur_complement();
+      const Eigen::VectorXd &g         = condensed->load();
 
       // Weighted means, which are <= 0 if the displacement is, as linear
       // tractions <= 0 see it. Their work-conjugates are the tractions at the
       // corners times a part of the side.
       const Eigen::Matrix<double, dim, dim> own = from_weighted_means<dim>();
-      Eigen::MatrixXd T = Eigen::MatrixXd::Zero(dim * n, dim * n);
+      Eigen::SparseMatrix<double>           T(dim * n, dim * n);
+      T.reserve(Eigen::VectorXi::Constant(dim * n, dim));
       for (Eigen::Index i = 0; i < n; ++i)
         for (Eigen::Index k = 0; k < dim; ++k)
           for (Eigen::Index l = 0; l < dim; ++l)
-            T(k * n + i, l * n + i) = own(k, l);
+            if (own(k, l) != 0.)
+              T.insert(k * n + i, l * n + i) = own(k, l);
       std::vector<BranchMinimum::Piece> pieces;
       Eigen::VectorXd                   u_nu(dim * n); ///< weighted means
-      Eigen::MatrixXd                   M = T.transpose() * S * T;
+      Eigen::MatrixXd                   M = T.transpose() * (S * T);
       const Eigen::VectorXd             f = T.transpose() * g;
       Eigen::VectorXd                   r = f;
       for (Eigen::Index i = 0; i < n; ++i)
@@ -375,12 +379,13 @@ namespace Debond
         for (const Eigen::VectorXd *of : {&moments, &f})
           for (const double traction : at_corners(*of, i))
             largest_traction = std::max(largest_traction, std::abs(traction));
-      certificate.lower   = condensed->energy_at_zero() - 0.5 * x.dot(S * x);
-      certificate.reserve = equilibrium.rounding_of(*condensed, x);
+      certificate.lower = condensed->energy_at_zero() - 0.5 * x.dot(S * x);
+      const std::vector<Eigen::VectorXd> stresses =
+        equilibrium.stresses(condensed->expand(x));
+      certificate.reserve = equilibrium.rounding_of(*condensed, x, stresses);
       certificate.upper   = equilibrium.elastic_functional(displacement);
-      const DofVector unknowns = condensed->expand(x);
-      certificate.gaps = equilibrium.constitutive_gaps(displacement, unknowns);
-      for (const auto &stress : equilibrium.mean_stresses(unknowns))
+      certificate.gaps = equilibrium.constitutive_gaps(displacement, stresses);
+      for (const auto &stress : equilibrium.mean_stresses(stresses))
         {
           certificate.stresses.emplace_back();
           for (unsigned int d = 0; d < dim; ++d)

@@ -240,10 +240,10 @@ namespace Debond
     std::vector<double> weights(equilibrium.elements().size(), 1.);
     for (unsigned int i = 0; i < n; ++i)
       weights[sides[i].element] -= (D[i] + rests[i]) / trace_constants[i];
-    std::unique_ptr<const Condensation> condensed;
+    std::unique_ptr<const CondensedSubstructures> condensed;
     try
       {
-        condensed = equilibrium.condense(true, weights);
+        condensed = equilibrium.condense(weights);
       }
     catch (const std::runtime_error &)
       {
@@ -329,9 +329,13 @@ namespace Debond
     result.g   = b(result.kept) + result.to_others.transpose() * b_others;
     result.phi = std::make_unique<SeparableBranches>(laws);
 
-    result.rounding = equilibrium.rounding_of(*condensed,
-                                              result.all(result.kept_of(means)),
-                                              weights);
+    const Eigen::VectorXd at = result.all(result.kept_of(means));
+    result.rounding =
+      equilibrium.rounding_of(*condensed,
+                              at,
+                              equilibrium.stresses(condensed->expand(at),
+                                                   weights),
+                              weights);
     return result;
   }
 

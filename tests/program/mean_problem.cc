@@ -84,7 +84,7 @@ namespace
       for (unsigned int i = 0; i < n; ++i)
         weights[sides[i].element] -=
           (problem.shifts[i] + problem.rests[i]) / trace_constants[i];
-      const auto condensed = stresses.condense(true, weights);
+      const auto condensed = stresses.condense(weights);
       return {condensed->energy_at_zero(),
               condensed->schur_complement(),
               condensed->load()};

@@ -4,8 +4,7 @@
 
 #include <debond/elasticity/cell_displacement.h>
 #include <debond/elasticity/equilibrium_mesh.h>
-#include <debond/linear_algebra/condensation.h>
-#include <debond/linear_algebra/dof_vector.h>
+#include <debond/linear_algebra/substructures.h>
 #include <debond/mesh/by_region.h>
 
 #include <memory>
@@ -44,7 +43,7 @@ namespace Debond
     const std::vector<dealii::Point<dim>> &
     vertices() const;
 
-    /// Fixes an unknown.
+    /// Fixes an unknown, before anything is condensed.
     void
     fix(const unsigned int unknown);
 
@@ -57,23 +56,25 @@ namespace Debond
     loads_are_exact() const;
 
     /// The problem condensed onto the first unknowns of the contact sides in
-    /// their order, the means in 2D, or then onto the second ones (and the
-    /// third ones) as well:
+    /// their order, the means in 2D, then the second ones (and the third ones):
     ///     max_sigma -1/2 int (sigma + p 1) : C^{-1} (sigma + p 1)
     ///               + int_{Gamma_C} sigma_nu p
     ///         = c_0 + 1/2 s'S s - g's,
-    /// p the linear normal displacement that these unknowns s are of, and in 2D
-    /// without the slopes the best one.
-    /// Each element is @p weights times as stiff (all as they are if empty);
-    /// @p added has unknowns and what is added to their diagonal entries of the
-    /// matrix.
+    /// p the linear normal displacement that these unknowns s are of. Each
+    /// element is @p weights times as stiff (all as they are if empty); only
+    /// those at contact sides may have one that is not 1. What does not depend
+    /// on them is condensed the first time.
     ///
-    /// Throws std::runtime_error if the matrix is not positive definite.
-    std::unique_ptr<Condensation>
-    condense(
-      const bool                                          keep_all,
-      const std::vector<double>                          &weights = {},
-      const std::vector<std::pair<unsigned int, double>> &added   = {}) const;
+    /// Throws std::runtime_error if the matrix of the other unknowns is not
+    /// positive definite.
+    std::unique_ptr<CondensedSubstructures>
+    condense(const std::vector<double> &weights = {}) const;
+
+    /// The stress of each element, see EquilibriumElement::stress(), for all
+    /// unknowns, those of a condensation with these @p weights.
+    std::vector<Eigen::VectorXd>
+    stresses(const Eigen::VectorXd     &unknowns,
+             const std::vector<double> &weights = {}) const;
 
     /// 1/2 a(u,u) - L(u) of the displacement u, given in the order of the
     /// active cells, for the loads as represented here.
@@ -90,24 +91,24 @@ namespace Debond
 
     /// Of each active cell
     ///     1/2 int |C^{1/2} epsilon(u) - C^{-1/2} (sigma + p 1)|^2
-    /// of u as above and of the stress for @p unknowns, which are those of a
-    /// condensation without weights.
+    /// of u as above and of @p stresses without weights.
     std::vector<double>
     constitutive_gaps(const std::vector<CellDisplacement<dim>> &u,
-                      const DofVector                          &unknowns) const;
+                      const std::vector<Eigen::VectorXd>       &stresses) const;
 
     /// What elimination may have lost of
     ///     c_0 - 1/2 s'S s = -1/2 int (sigma + p 1) : C^{-1} (sigma + p 1)
     /// of a condensation with @p weights to rounding: four times by how much
-    /// this fails at @p kept for the stress that belongs to it.
+    /// this fails at @p kept for the @p stresses that belong to it.
     double
-    rounding_of(const Condensation        &condensed,
-                const Eigen::VectorXd     &kept,
-                const std::vector<double> &weights = {}) const;
+    rounding_of(const CondensedSubstructures       &condensed,
+                const Eigen::VectorXd              &kept,
+                const std::vector<Eigen::VectorXd> &stresses,
+                const std::vector<double>          &weights = {}) const;
 
-    /// Of each active cell the mean of the same stress without p.
+    /// Of each active cell the mean of a stress without p.
     std::vector<dealii::SymmetricTensor<2, dim>>
-    mean_stresses(const DofVector &unknowns) const;
+    mean_stresses(const std::vector<Eigen::VectorXd> &stresses) const;
 
   private:
     using Cell  = typename EquilibriumMesh<dim>::Cell;
@@ -117,19 +118,27 @@ namespace Debond
     void
     make_elements();
 
-    /// EquilibriumElement::stress() for all unknowns.
-    Eigen::VectorXd
-    stress_of(const unsigned int element,
-              const DofVector   &unknowns,
-              const double       weight = 1.) const;
+    /// Groups elements with the same matrix of their sides' free unknowns.
+    void
+    make_substructures() const;
 
-    /// l of EquilibriumElement as this matrix times the element's unknowns.
+    /// l of EquilibriumElement as linear functions of the unknowns of the
+    /// element's sides: calls @p add(row, column, coefficient).
+    template <typename Add>
+    void
+    for_each_coefficient(const Place &place, const Add &add) const;
+
+    /// Of the free unknowns of the element's sides.
     Eigen::MatrixXd
-    to_element(const unsigned int element) const;
+    matrix_of(const unsigned int element) const;
 
     EquilibriumMesh<dim>                 mesh;
     const ByRegion<Material>             materials;
     std::vector<EquilibriumElement<dim>> all_elements;
+
+    // What condense() makes when it is called first.
+    mutable std::unique_ptr<Substructures> substructures;
+    mutable Eigen::VectorXd                f;
   };
 } // namespace Debond
 
