@@ -120,7 +120,8 @@ namespace Debond
       }
     // Nine on each of two faces a tetrahedron; three kept on each face in
     // contact, of which there are two a vertex, or four times as many as edges
-    // and vertices are eight. Each tetrahedron has its matrices.
+    // and vertices are eight. Tetrahedra that are not congruent have matrices
+    // of their own; with congruent ones it is less.
     stresses.unknowns = 18. * size.cells;
     stresses.contact_nodes *= size.degree == 2 ? 1.5 : 6.;
     return memory_with_factorisation(stresses, dimension) + 40e3 * size.cells;

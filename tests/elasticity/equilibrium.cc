@@ -9,6 +9,7 @@
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/equilibrium_problem.h>
 #include <debond/elasticity/trace_constant.h>
+#include <debond/linear_algebra/condensation.h>
 #include <debond/mesh/box.h>
 
 #include <Eigen/Cholesky>

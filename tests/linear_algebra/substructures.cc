@@ -191,6 +191,8 @@ main(int argc, char *[])
   test("two", Grid(2, 1, 1, 2, 1.));
   test("13x5 of one kind", Grid(13, 5, 1, 13, 1.));
   test("13x5 of three kinds", Grid(13, 5, 3, 13, 1.));
+  // Equal squares are beside each other and one above the other.
+  test("12x12 of one kind", Grid(12, 12, 1, 12, 1.));
   test("slender", Grid(30, 3, 2, 30, 100.));
   test("in two pieces", Grid(9, 4, 2, 4, 0.1));
   test_uniform();
