@@ -3,6 +3,7 @@
 #define debond_optimization_global_branch_and_bound_h
 
 #include <debond/optimization/global/separable_branches.h>
+#include <debond/optimization/interval.h>
 
 #include <functional>
 #include <limits>
@@ -87,13 +88,15 @@ namespace Debond
 
     explicit BranchAndBound(const BranchAndBoundParameters &parameters);
 
-    /// @p start is a good point, with s <= 0.
+    /// @p start is a good point, with s <= 0. If there are @p ranges of the
+    /// unknowns, the minimum is that of the points in them.
     BranchAndBoundResult
-    minimize(const MatrixView        &S,
-             const VectorView        &g,
-             const SeparableBranches &phi,
-             const VectorView        &start,
-             const Monitor           &monitor = {}) const;
+    minimize(const MatrixView            &S,
+             const VectorView            &g,
+             const SeparableBranches     &phi,
+             const VectorView            &start,
+             const Monitor               &monitor = {},
+             const std::vector<Interval> &ranges  = {}) const;
 
   private:
     BranchAndBoundParameters parameters;
