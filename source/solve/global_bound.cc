@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/elasticity/trace_constant.h>
+#include <debond/optimization/global/growth.h>
 #include <debond/solve/global_bound.h>
 #include <debond/solve/mean_problem.h>
 #include <debond/solve/side_ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <memory>
 #include <numeric>
 
 namespace Debond
@@ -45,6 +48,11 @@ namespace Debond
     constexpr unsigned int n_idle_stages = 3;
 
     constexpr double least_gain = 0.05;
+
+    /// Divisions into parts, and those in a row without such a gain that end
+    /// them, if there are not more parts.
+    constexpr unsigned int n_divisions      = 40;
+    constexpr unsigned int n_idle_divisions = 8;
 
     /// What another one may save of what the sides lose.
     constexpr double part_of_losses = 0.5;
@@ -97,6 +105,342 @@ namespace Debond
       if (law.index(interval.lower) != piece)
         return {};
       return piece;
+    }
+
+
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+
+
+
+    /// Some of the displacements with J at most the upper number.
+    struct Part
+    {
+      std::vector<CertifiedSide> ranges;
+      bool                       is_whole = true; ///< all of them
+
+      double              lower    = -infinity; ///< J is not below this
+      double              rounding = 0.;
+      ProofStatus         status   = ProofStatus::no_bound;
+      std::vector<double> losses; ///< where that bound is the least
+
+      /// The latest one, and its means and slopes where it is least.
+      std::shared_ptr<const MeanProblem> problem;
+      Eigen::VectorXd                    values;
+
+      Eigen::VectorXd
+      means() const
+      {
+        return values.head(ranges.size());
+      }
+
+      Eigen::VectorXd
+      slopes() const
+      {
+        return values.tail(ranges.size());
+      }
+    };
+
+
+
+    /// Whether saving what may be saved of what the sides lose would make the
+    /// interval narrower.
+    bool
+    losses_matter(const Part &part, const double upper)
+    {
+      const double loss =
+        std::accumulate(part.losses.begin(), part.losses.end(), 0.);
+      return part_of_losses * loss >= least_gain * (upper - part.lower);
+    }
+
+
+
+    /// Raises the bounds of parts and makes their ranges narrower.
+    class PartBounds
+    {
+    public:
+      PartBounds(const MeanProblems             &problems,
+                 const BranchMinimum            &law,
+                 const Eigen::VectorXd          &means,
+                 const double                    upper,
+                 const BranchAndBoundParameters &proof,
+                 const std::function<bool()>    &may_go_on)
+        : problems(problems)
+        , law(law)
+        , given_means(means)
+        , upper(upper)
+        , proof(proof)
+        , may_go_on(may_go_on)
+      {}
+
+      unsigned int nodes = 0; ///< of all bounds
+
+      void
+      bound_whole(Part &whole);
+
+      /// The part on either side of a kink, if it is worth it.
+      std::vector<Part>
+      divided(const Part &part);
+
+    private:
+      const MeanProblems             &problems;
+      const BranchMinimum            &law;
+      const Eigen::VectorXd          &given_means;
+      const double                    upper;
+      const BranchAndBoundParameters &proof;
+      const std::function<bool()>    &may_go_on;
+
+      /// Returns the bound.
+      double
+      add_bound(const std::vector<double> &D, const bool is_first, Part &part);
+
+      void
+      add_bound_for_ranges(const double least_shift, Part &part);
+
+      void
+      begin(const bool is_known, Part &whole);
+
+      /// Makes the ranges narrower by the latest problem; false if there are
+      /// none left. If nothing was known it has all means: then quickly and
+      /// without trials of single sides, as the next one has fewer.
+      bool
+      look(const bool is_quick, Part &part) const;
+
+      bool
+      bound_part(Part &part);
+    };
+
+
+
+    double
+    PartBounds::add_bound(const std::vector<double> &D,
+                          const bool                 is_first,
+                          Part                      &part)
+    {
+      const double             interval   = std::isfinite(part.lower) ?
+                                              upper - part.lower :
+                                              first_interval * std::abs(upper);
+      BranchAndBoundParameters parameters = proof;
+      parameters.tolerance = std::max(proof_tolerance * std::abs(upper),
+                                      part_of_the_interval * interval);
+      if (!is_first)
+        parameters.maximum_nodes =
+          std::min(parameters.maximum_nodes, n_later_nodes);
+      const auto problem = std::make_shared<const MeanProblem>(
+        problems.mean_problem(part.ranges,
+                              given_means,
+                              D,
+                              std::vector<double>(part.ranges.size(), 0.)));
+      // The whole is where J is at most the upper number, wherever the means
+      // are.
+      std::vector<Interval> ranges;
+      if (!part.is_whole)
+        for (const unsigned int i : problem->kept)
+          ranges.push_back(part.ranges[i].mean);
+      const BranchAndBoundResult bound =
+        BranchAndBound(parameters)
+          .minimize(
+            problem->S,
+            problem->g,
+            *problem->phi,
+            problem->kept_of(part.is_whole ? given_means : part.means()),
+            [&](const ProofProgress &) { return may_go_on(); },
+            ranges);
+      nodes += bound.nodes;
+      const double lower =
+        bound.status == ProofStatus::no_bound ?
+          -infinity :
+          problem->constant + bound.lower - problem->rounding;
+      part.problem = problem;
+      part.values  = problem->all(bound.s);
+      if (lower > part.lower)
+        {
+          part.lower    = lower;
+          part.rounding = problem->rounding;
+          part.status   = bound.status;
+          part.losses   = problems.losses(*problem, part.values);
+        }
+      return lower;
+    }
+
+
+
+    void
+    PartBounds::add_bound_for_ranges(const double least_shift, Part &part)
+    {
+      add_bound(problems.shifts_for_ranges(
+                  part.ranges, part.means(), part.slopes(), least_shift),
+                false,
+                part);
+    }
+
+
+
+    bool
+    PartBounds::look(const bool is_quick, Part &part) const
+    {
+      if (!shrink_ranges(
+            *part.problem, upper, is_quick, may_go_on, part.ranges))
+        return false;
+      if (!is_quick)
+        exclude_pieces(
+          *part.problem, upper, part.means(), may_go_on, part.ranges);
+      return true;
+    }
+
+
+
+    void
+    PartBounds::begin(const bool is_known, Part &whole)
+    {
+      std::vector<std::vector<double>> trials;
+      if (is_known)
+        {
+          const auto shifts = [&]() {
+            return problems.shifts_for_ranges(whole.ranges,
+                                              given_means,
+                                              Eigen::VectorXd::Zero(
+                                                given_means.size()),
+                                              least_shifts[0]);
+          };
+          const MeanProblem problem =
+            problems.mean_problem(whole.ranges,
+                                  given_means,
+                                  shifts(),
+                                  std::vector<double>(whole.ranges.size(), 0.));
+          exclude_pieces(problem, upper, given_means, may_go_on, whole.ranges);
+          shrink_ranges(problem, upper, false, may_go_on, whole.ranges);
+          trials.push_back(shifts());
+        }
+      for (const double multiple : first_shifts)
+        trials.push_back(problems.shifts_for_means(given_means, multiple));
+      std::shared_ptr<const MeanProblem> best;
+      Eigen::VectorXd                    best_values;
+      double                             best_lower = -infinity;
+      for (const std::vector<double> &D : trials)
+        {
+          const bool is_first = !is_known && !std::isfinite(whole.lower);
+          if (const double lower = add_bound(D, is_first, whole);
+              !best || lower > best_lower)
+            {
+              best        = whole.problem;
+              best_values = whole.values;
+              best_lower  = lower;
+            }
+          if (whole.status == ProofStatus::proved &&
+              (!is_known || !losses_matter(whole, upper)))
+            break;
+        }
+      whole.problem = best;
+      whole.values  = best_values;
+    }
+
+
+
+    void
+    PartBounds::bound_whole(Part &whole)
+    {
+      const bool is_known =
+        std::any_of(whole.ranges.begin(),
+                    whole.ranges.end(),
+                    [](const CertifiedSide &side) {
+                      return std::isfinite(side.linear().upper);
+                    });
+      begin(is_known, whole);
+      unsigned int n_idle = 0;
+      for (unsigned int stage = 0; stage < n_stages && may_go_on(); ++stage)
+        {
+          look(stage == 0 && !is_known, whole);
+          const double before = upper - whole.lower;
+          add_bound_for_ranges(least_shifts[stage % least_shifts.size()],
+                               whole);
+          n_idle =
+            upper - whole.lower > (1. - least_gain) * before ? n_idle + 1 : 0;
+          // The first one has only the ranges of a problem that knew nothing.
+          if (n_idle == n_idle_stages ||
+              (stage > 0 && !losses_matter(whole, upper)))
+            break;
+        }
+      if (may_go_on())
+        look(false, whole);
+    }
+
+
+
+    /// Returns whether there can be any of it with J at most the upper number.
+    bool
+    PartBounds::bound_part(Part &part)
+    {
+      for (const double least_shift : least_shifts)
+        {
+          if (!may_go_on())
+            return true;
+          if (!look(false, part))
+            return false;
+          const double before = upper - part.lower;
+          add_bound_for_ranges(least_shift, part);
+          if (part.lower > upper)
+            return false;
+          if (!losses_matter(part, upper) ||
+              (least_shift != least_shifts[0] &&
+               upper - part.lower > (1. - least_gain) * before))
+            break;
+        }
+      return !may_go_on() || look(false, part);
+    }
+
+
+
+    std::vector<Part>
+    PartBounds::divided(const Part &part)
+    {
+      // Where it is least certain on which side of a kink the mean is.
+      std::optional<unsigned int> side;
+      double                      kink = 0., largest = 0.;
+      for (const unsigned int i : part.problem->kept)
+        for (unsigned int k = 0; k + 1 < law.size(); ++k)
+          {
+            const Interval &mean = part.ranges[i].mean;
+            const double    distance =
+              std::min(law[k].lower - mean.lower, mean.upper - law[k].lower);
+            if (distance > largest)
+              {
+                largest = distance;
+                side    = i;
+                kink    = law[k].lower;
+              }
+          }
+      if (!side)
+        return {part};
+      std::vector<Part> halves(2, part);
+      halves[0].ranges[*side].mean.lower = kink;
+      halves[1].ranges[*side].mean.upper = kink;
+      std::vector<Part> left;
+      for (Part &half : halves)
+        {
+          half.is_whole = false;
+          if (bound_part(half))
+            left.push_back(std::move(half));
+        }
+      return left;
+    }
+
+
+
+    /// What holds in one of the parts.
+    std::vector<CertifiedSide>
+    hull(const std::vector<Part> &parts)
+    {
+      std::vector<CertifiedSide> result = parts[0].ranges;
+      for (const Part &part : parts)
+        for (unsigned int i = 0; i < result.size(); ++i)
+          {
+            const CertifiedSide &own = part.ranges[i];
+            result[i].mean           = hull(result[i].mean, own.mean);
+            for (const unsigned int k : {0, 1})
+              result[i].at_ends[k] = hull(result[i].at_ends[k], own.at_ends[k]);
+            result[i].deviation = std::max(result[i].deviation, own.deviation);
+          }
+      return result;
     }
   } // namespace
 
@@ -172,130 +516,65 @@ namespace Debond
                const double                    upper,
                std::vector<CertifiedSide>      known,
                const bool                      with_deviations,
-               const BranchAndBoundParameters &proof_parameters,
+               const BranchAndBoundParameters &proof,
                const std::function<bool()>    &may_go_on)
   {
     const MeanProblems sides(equilibrium, trace_constants, law, energies);
-
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    std::vector<CertifiedSide> &ranges = known;
-
-    const bool is_known =
-      std::any_of(ranges.begin(), ranges.end(), [](const CertifiedSide &side) {
-        return std::isfinite(side.linear().upper);
-      });
-    BranchAndBoundParameters   parameters = proof_parameters;
-    GlobalBound                result;
-    std::optional<MeanProblem> best, latest;
-    Eigen::VectorXd            latest_values;
-    const std::vector<double>  none(ranges.size(), 0.);
-    /// Returns the bound.
-    const auto add_bound = [&](const std::vector<double> &D) {
-      const double interval = std::isfinite(result.lower) ?
-                                upper - result.lower :
-                                first_interval * std::abs(upper);
-      parameters.tolerance  = std::max(proof_tolerance * std::abs(upper),
-                                      part_of_the_interval * interval);
-      if (is_known || std::isfinite(result.lower))
-        parameters.maximum_nodes =
-          std::min(parameters.maximum_nodes, n_later_nodes);
-      MeanProblem problem = sides.mean_problem(ranges, means, D, none);
-      const BranchAndBoundResult proof =
-        BranchAndBound(parameters)
-          .minimize(problem.S,
-                    problem.g,
-                    *problem.phi,
-                    problem.kept_of(means),
-                    [&](const ProofProgress &) { return may_go_on(); });
-      result.nodes += proof.nodes;
-      const double lower = proof.status == ProofStatus::no_bound ?
-                             -infinity :
-                             problem.constant + proof.lower - problem.rounding;
-      latest_values      = problem.all(proof.s);
-      latest             = std::move(problem);
-      if (lower > result.lower)
-        {
-          result.lower    = lower;
-          result.rounding = latest->rounding;
-          result.status   = proof.status;
-          result.losses   = sides.losses(*latest, latest_values);
-        }
-      return lower;
+    PartBounds         bounds(sides, law, means, upper, proof, may_go_on);
+    std::vector<Part>  parts(1);
+    parts[0].ranges = std::move(known);
+    bounds.bound_whole(parts[0]);
+    const auto worst = [&]() {
+      return std::min_element(parts.begin(),
+                              parts.end(),
+                              [](const Part &a, const Part &b) {
+                                return a.lower < b.lower;
+                              });
     };
-
-    double                           best_lower = -infinity;
-    Eigen::VectorXd                  best_values;
-    std::vector<std::vector<double>> first_trials;
-    if (is_known)
+    // Which of them is the least is the lower number, so that all have to be
+    // bounded better for it to rise.
+    double       reference = upper - parts[0].lower;
+    unsigned int n_idle    = 0;
+    for (unsigned int k = 0;
+         k < n_divisions &&
+         n_idle < std::max<std::size_t>(parts.size(), n_idle_divisions) &&
+         bounds.nodes < proof.maximum_nodes && losses_matter(*worst(), upper) &&
+         may_go_on();
+         ++k)
       {
-        const auto shifts = [&]() {
-          return sides.shifts_for_ranges(ranges,
-                                         means,
-                                         Eigen::VectorXd::Zero(means.size()),
-                                         least_shifts[0]);
-        };
-        const MeanProblem problem =
-          sides.mean_problem(ranges, means, shifts(), none);
-        exclude_pieces(problem, upper, means, may_go_on, ranges);
-        shrink_ranges(problem, upper, false, may_go_on, ranges);
-        first_trials.push_back(shifts());
-      }
-    for (const double multiple : first_shifts)
-      first_trials.push_back(sides.shifts_for_means(means, multiple));
-    /// Whether saving what may be saved of what the sides lose would make the
-    /// interval narrower.
-    const auto losses_matter = [&]() {
-      const double loss =
-        std::accumulate(result.losses.begin(), result.losses.end(), 0.);
-      return part_of_losses * loss >= least_gain * (upper - result.lower);
-    };
-    for (const std::vector<double> &D : first_trials)
-      {
-        if (const double lower = add_bound(D); !best || lower > best_lower)
+        const auto        part = worst();
+        std::vector<Part> left = bounds.divided(*part);
+        // If neither is left it is by rounding.
+        if (left.empty() && parts.size() == 1)
+          break;
+        parts.erase(part);
+        std::move(left.begin(), left.end(), std::back_inserter(parts));
+        const double now = upper - worst()->lower;
+        ++n_idle;
+        if (now <= (1. - least_gain) * reference)
           {
-            best        = std::move(latest);
-            best_values = latest_values;
-            best_lower  = lower;
+            reference = now;
+            n_idle    = 0;
           }
-        if (result.status == ProofStatus::proved &&
-            (!is_known || !losses_matter()))
-          break;
       }
-    /// Makes the ranges narrower by the best problem. If it has all means since
-    /// nothing was known, quickly and without trials of single sides: the next
-    /// one has fewer.
-    const auto look = [&](const bool is_quick) {
-      shrink_ranges(*best, upper, is_quick, may_go_on, ranges);
-      if (!is_quick)
-        exclude_pieces(
-          *best, upper, best_values.head(means.size()), may_go_on, ranges);
-    };
-    unsigned int n_idle = 0;
-    for (unsigned int stage = 0; stage < n_stages && may_go_on(); ++stage)
-      {
-        look(stage == 0 && !is_known);
-        const double before = upper - result.lower;
-        add_bound(
-          sides.shifts_for_ranges(ranges,
-                                  best_values.head(means.size()),
-                                  best_values.tail(means.size()),
-                                  least_shifts[stage % least_shifts.size()]));
-        best        = std::move(latest);
-        best_values = latest_values;
-        n_idle =
-          upper - result.lower > (1. - least_gain) * before ? n_idle + 1 : 0;
-        // The first one has only the ranges of a problem that knew nothing.
-        if (n_idle == n_idle_stages || (stage > 0 && !losses_matter()))
-          break;
-      }
-    if (may_go_on())
-      look(false);
 
+    GlobalBound result;
+    result.nodes     = bounds.nodes;
+    const Part &last = *worst();
+    // What is in no part is above the upper number.
+    result.lower                      = std::min(last.lower, upper);
+    result.rounding                   = last.rounding;
+    result.status                     = last.status;
+    result.losses                     = last.losses;
+    std::vector<CertifiedSide> ranges = hull(parts);
     if (with_deviations && may_go_on())
       {
-        const std::vector<double> &D = best->shifts;
+        const std::vector<double> D = sides.shifts_for_ranges(ranges,
+                                                              last.means(),
+                                                              last.slopes(),
+                                                              least_shifts[0]);
         shrink_ranges(sides.mean_problem(ranges,
-                                         best_values.head(means.size()),
+                                         last.means(),
                                          D,
                                          sides.rests_for(upper - result.lower,
                                                          D)),

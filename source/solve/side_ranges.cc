@@ -98,8 +98,9 @@ namespace Debond
 
 
 
-    /// Takes from the box of a node what is not in the ranges.
-    void
+    /// Takes from the box of a node what is not in the ranges; false if nothing
+    /// is left.
+    bool
     cut(ProofNode                        &node,
         const MeanProblem                &problem,
         const std::vector<CertifiedSide> &ranges)
@@ -110,6 +111,7 @@ namespace Debond
           node.lower(i)        = std::max(node.lower(i), mean.lower);
           node.upper(i)        = std::min(node.upper(i), mean.upper);
         }
+      return (node.lower.array() <= node.upper.array()).all();
     }
 
 
@@ -218,7 +220,7 @@ namespace Debond
 
 
 
-  void
+  bool
   shrink_ranges(const MeanProblem           &problem,
                 const double                 upper,
                 const bool                   is_quick,
@@ -230,14 +232,15 @@ namespace Debond
     std::vector<ProofNode> open;
     if (auto root = bound.root(best))
       {
-        cut(*root, problem, ranges);
+        if (!cut(*root, problem, ranges))
+          return false;
         // With as few relaxations as later nodes.
         if (is_quick)
           root->number = 1;
         open.push_back(std::move(*root));
       }
     else
-      return;
+      return true;
     const Interval empty    = {1., -1.};
     CertifiedSide  no_range = {};
     no_range.mean           = empty;
@@ -249,7 +252,7 @@ namespace Debond
     for (unsigned int nodes = 0; !open.empty(); ++nodes)
       {
         if (!may_go_on())
-          return;
+          return true;
         ProofNode node = std::move(open.back());
         open.pop_back();
         NodeResult result;
@@ -277,11 +280,12 @@ namespace Debond
           open.push_back(std::move(half));
       }
     for (unsigned int i = 0; i < ranges.size(); ++i)
-      // No displacement at all would be one of rounding.
+      // If there is none at all the ranges are left as they are.
       if (!hulls[i].mean.is_empty())
         {
           hulls[i].ends = ranges[i].ends;
           ranges[i]     = intersection(ranges[i], hulls[i]);
         }
+    return !ranges.empty() && !hulls[0].mean.is_empty();
   }
 } // namespace Debond

@@ -26,8 +26,9 @@ namespace Debond
 
 
   /// Shrinks such ranges to where these displacements are by theorem 2, with at
-  /// most 32 boxes; if @p is_quick with 4 that are bounded less well.
-  void
+  /// most 32 boxes; if @p is_quick with 4 that are bounded less well. Returns
+  /// false if it proves that there are none.
+  bool
   shrink_ranges(const MeanProblem           &problem,
                 const double                 upper,
                 const bool                   is_quick,
