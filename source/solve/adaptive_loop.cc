@@ -291,7 +291,8 @@ namespace Debond
                   const std::function<bool()>             &may_go_on)
     {
       const auto certify = [&](const CertificateKind           kind_of_this,
-                               const BranchAndBoundParameters &limits) {
+                               const BranchAndBoundParameters &limits,
+                               const double                    narrow_enough) {
         Certificate certificate =
           Certifier<dim>(kind_of_this, scene, memory_limit)
             .certify(*scene,
@@ -299,7 +300,8 @@ namespace Debond
                      limits,
                      may_go_on,
                      global ? &*global : nullptr,
-                     !is_last);
+                     !is_last,
+                     narrow_enough);
         if (certificate.minimum == CertifiedMinimum::global)
           global = certificate;
         return certificate;
@@ -308,7 +310,7 @@ namespace Debond
         try
           {
             const Certificate first =
-              certify(CertificateKind::fixed_state, proof);
+              certify(CertificateKind::fixed_state, proof, target);
             if (first.minimum == CertifiedMinimum::global)
               return first;
             if (first.width() > target)
@@ -316,7 +318,8 @@ namespace Debond
                 BranchAndBoundParameters limits = proof;
                 limits.maximum_nodes =
                   std::min(limits.maximum_nodes, n_nodes_on_the_way);
-                certify(kind, limits);
+                // Parts help only the interval of this mesh.
+                certify(kind, limits, std::numeric_limits<double>::infinity());
                 return first;
               }
           }
@@ -324,7 +327,7 @@ namespace Debond
           {
             // Such as a body that only bonds hold.
           }
-      return certify(kind, proof);
+      return certify(kind, proof, target);
     }
 
 

@@ -504,7 +504,8 @@ namespace Debond
                           const BranchAndBoundParameters &proof,
                           const std::function<bool()>    &may_go_on,
                           const Certificate              *earlier,
-                          const bool                      is_for_finer) const
+                          const bool                      is_for_finer,
+                          const double                    narrow_enough) const
   {
     const bool is_own = &solved == scene.get();
     Assert(is_own || is_for_finer_meshes(), dealii::ExcInternalError());
@@ -589,6 +590,7 @@ namespace Debond
                                            certificate.upper,
                                            known,
                                            is_for_finer,
+                                           narrow_enough,
                                            proof,
                                            may_go_on);
           certificate.lower        = bound.lower - own;

@@ -113,7 +113,7 @@ namespace Debond
 
 
     /// Some of the displacements with J at most the upper number.
-    struct Part
+    struct UncertainPart
     {
       std::vector<CertifiedSide> ranges;
       bool                       is_whole = true; ///< all of them
@@ -145,7 +145,7 @@ namespace Debond
     /// Whether saving what may be saved of what the sides lose would make the
     /// interval narrower.
     bool
-    losses_matter(const Part &part, const double upper)
+    losses_matter(const UncertainPart &part, const double upper)
     {
       const double loss =
         std::accumulate(part.losses.begin(), part.losses.end(), 0.);
@@ -175,11 +175,11 @@ namespace Debond
       unsigned int nodes = 0; ///< of all bounds
 
       void
-      bound_whole(Part &whole);
+      bound_whole(UncertainPart &whole);
 
       /// The part on either side of a kink, if it is worth it.
-      std::vector<Part>
-      divided(const Part &part);
+      std::vector<UncertainPart>
+      divided(const UncertainPart &part);
 
     private:
       const MeanProblems             &problems;
@@ -191,22 +191,24 @@ namespace Debond
 
       /// Returns the bound.
       double
-      add_bound(const std::vector<double> &D, const bool is_first, Part &part);
+      add_bound(const std::vector<double> &D,
+                const bool                 is_first,
+                UncertainPart             &part);
 
       void
-      add_bound_for_ranges(const double least_shift, Part &part);
+      add_bound_for_ranges(const double least_shift, UncertainPart &part);
 
       void
-      begin(const bool is_known, Part &whole);
+      begin(const bool is_known, UncertainPart &whole);
 
       /// Makes the ranges narrower by the latest problem; false if there are
       /// none left. If nothing was known it has all means: then quickly and
       /// without trials of single sides, as the next one has fewer.
       bool
-      look(const bool is_quick, Part &part) const;
+      look(const bool is_quick, UncertainPart &part) const;
 
       bool
-      bound_part(Part &part);
+      bound_part(UncertainPart &part);
     };
 
 
@@ -214,7 +216,7 @@ namespace Debond
     double
     PartBounds::add_bound(const std::vector<double> &D,
                           const bool                 is_first,
-                          Part                      &part)
+                          UncertainPart             &part)
     {
       const double             interval   = std::isfinite(part.lower) ?
                                               upper - part.lower :
@@ -265,7 +267,8 @@ namespace Debond
 
 
     void
-    PartBounds::add_bound_for_ranges(const double least_shift, Part &part)
+    PartBounds::add_bound_for_ranges(const double   least_shift,
+                                     UncertainPart &part)
     {
       add_bound(problems.shifts_for_ranges(
                   part.ranges, part.means(), part.slopes(), least_shift),
@@ -276,7 +279,7 @@ namespace Debond
 
 
     bool
-    PartBounds::look(const bool is_quick, Part &part) const
+    PartBounds::look(const bool is_quick, UncertainPart &part) const
     {
       if (!shrink_ranges(
             *part.problem, upper, is_quick, may_go_on, part.ranges))
@@ -290,7 +293,7 @@ namespace Debond
 
 
     void
-    PartBounds::begin(const bool is_known, Part &whole)
+    PartBounds::begin(const bool is_known, UncertainPart &whole)
     {
       std::vector<std::vector<double>> trials;
       if (is_known)
@@ -337,7 +340,7 @@ namespace Debond
 
 
     void
-    PartBounds::bound_whole(Part &whole)
+    PartBounds::bound_whole(UncertainPart &whole)
     {
       const bool is_known =
         std::any_of(whole.ranges.begin(),
@@ -368,7 +371,7 @@ namespace Debond
 
     /// Returns whether there can be any of it with J at most the upper number.
     bool
-    PartBounds::bound_part(Part &part)
+    PartBounds::bound_part(UncertainPart &part)
     {
       for (const double least_shift : least_shifts)
         {
@@ -390,8 +393,8 @@ namespace Debond
 
 
 
-    std::vector<Part>
-    PartBounds::divided(const Part &part)
+    std::vector<UncertainPart>
+    PartBounds::divided(const UncertainPart &part)
     {
       // Where it is least certain on which side of a kink the mean is.
       std::optional<unsigned int> side;
@@ -411,11 +414,11 @@ namespace Debond
           }
       if (!side)
         return {part};
-      std::vector<Part> halves(2, part);
+      std::vector<UncertainPart> halves(2, part);
       halves[0].ranges[*side].mean.lower = kink;
       halves[1].ranges[*side].mean.upper = kink;
-      std::vector<Part> left;
-      for (Part &half : halves)
+      std::vector<UncertainPart> left;
+      for (UncertainPart &half : halves)
         {
           half.is_whole = false;
           if (bound_part(half))
@@ -428,10 +431,10 @@ namespace Debond
 
     /// What holds in one of the parts.
     std::vector<CertifiedSide>
-    hull(const std::vector<Part> &parts)
+    hull(const std::vector<UncertainPart> &parts)
     {
       std::vector<CertifiedSide> result = parts[0].ranges;
-      for (const Part &part : parts)
+      for (const UncertainPart &part : parts)
         for (unsigned int i = 0; i < result.size(); ++i)
           {
             const CertifiedSide &own = part.ranges[i];
@@ -516,18 +519,20 @@ namespace Debond
                const double                    upper,
                std::vector<CertifiedSide>      known,
                const bool                      with_deviations,
+               const double                    narrow_enough,
                const BranchAndBoundParameters &proof,
                const std::function<bool()>    &may_go_on)
   {
     const MeanProblems sides(equilibrium, trace_constants, law, energies);
     PartBounds         bounds(sides, law, means, upper, proof, may_go_on);
-    std::vector<Part>  parts(1);
+    std::vector<UncertainPart> parts(1);
     parts[0].ranges = std::move(known);
     bounds.bound_whole(parts[0]);
     const auto worst = [&]() {
       return std::min_element(parts.begin(),
                               parts.end(),
-                              [](const Part &a, const Part &b) {
+                              [](const UncertainPart &a,
+                                 const UncertainPart &b) {
                                 return a.lower < b.lower;
                               });
     };
@@ -537,13 +542,14 @@ namespace Debond
     unsigned int n_idle    = 0;
     for (unsigned int k = 0;
          k < n_divisions &&
+         upper - worst()->lower > narrow_enough * std::abs(upper) &&
          n_idle < std::max<std::size_t>(parts.size(), n_idle_divisions) &&
          bounds.nodes < proof.maximum_nodes && losses_matter(*worst(), upper) &&
          may_go_on();
          ++k)
       {
-        const auto        part = worst();
-        std::vector<Part> left = bounds.divided(*part);
+        const auto                 part = worst();
+        std::vector<UncertainPart> left = bounds.divided(*part);
         // If neither is left it is by rounding.
         if (left.empty() && parts.size() == 1)
           break;
@@ -559,8 +565,8 @@ namespace Debond
       }
 
     GlobalBound result;
-    result.nodes     = bounds.nodes;
-    const Part &last = *worst();
+    result.nodes              = bounds.nodes;
+    const UncertainPart &last = *worst();
     // What is in no part is above the upper number.
     result.lower                      = std::min(last.lower, upper);
     result.rounding                   = last.rounding;

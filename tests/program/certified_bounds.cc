@@ -163,7 +163,8 @@ namespace
             parameters.solver.proof,
             []() { return true; },
             earlier,
-            true);
+            true,
+            0.);
         };
         certificate = certify(random.kind, scene, result.u, nullptr);
         counts.add_parts(

@@ -234,7 +234,8 @@ namespace
               {},
               []() { return true; },
               is_second ? &earlier : nullptr,
-              true);
+              true,
+              0.);
             if (is_second)
               for (unsigned int i = 0; i < certificate.sides.size(); ++i)
                 n_narrower +=
@@ -284,9 +285,9 @@ namespace
     unsigned int n_certain = 0, n_wrong = 0;
     for (const std::string &load : loads)
       {
-        const DofVector   u = solution(scene_values + Values{load});
-        const Certificate certificate =
-          certifier.certify(*scene, u, {}, []() { return true; });
+        const DofVector   u           = solution(scene_values + Values{load});
+        const Certificate certificate = certifier.certify(
+          *scene, u, {}, []() { return true; }, nullptr, false, 0.);
         is_below = is_below && certificate.lower < certificate.upper;
 
         std::map<double, double> displacements;
