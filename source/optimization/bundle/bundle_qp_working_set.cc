@@ -135,15 +135,21 @@ namespace Debond
     for (unsigned int k = 0; k < n; ++k)
       right_side(k) = bounded.col(cuts[k]).dot(b_active) - beta(cuts[k]);
     // What all entries share goes into v; left in, it would be lost against
-    // sum lambda = 1 where it is large beside H. What a long cut has more than
-    // a short one is no part of that: each entry counts by what one unit of
-    // lambda changes in it.
-    Eigen::VectorXd weights(n);
+    // sum lambda = 1 where it is large beside H. It is their mean; but what a
+    // long cut has more than a short one is no part of it, so that with cuts of
+    // very different lengths each entry counts by what one unit of lambda
+    // changes in it.
+    constexpr double very_different = 1e8; // of squared lengths
+    Eigen::VectorXd  diagonal(n);
     for (unsigned int k = 0; k < n; ++k)
-      weights(k) = 1. / (h(cuts[k], cuts[k]) + kappa);
-    weights /= weights.sum();
-    const auto without_shared = [&weights](const Eigen::VectorXd &r) {
-      return Eigen::VectorXd(r.array() - weights.dot(r));
+      diagonal(k) = h(cuts[k], cuts[k]) + kappa;
+    const bool is_weighted =
+      diagonal.maxCoeff() > very_different * diagonal.minCoeff();
+    const Eigen::VectorXd weights        = diagonal.cwiseInverse();
+    const auto            without_shared = [&](const Eigen::VectorXd &r) {
+      const double shared =
+        is_weighted ? weights.dot(r) / weights.sum() : r.mean();
+      return Eigen::VectorXd(r.array() - shared);
     };
     right_side = without_shared(right_side);
 
