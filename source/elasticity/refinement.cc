@@ -16,9 +16,6 @@ namespace Debond
     /// Of corrections, in the energy norm.
     constexpr double refinement_tolerance = 1e-13;
 
-    /// Results are refined if rounding can change more of their energy.
-    constexpr double largest_energy_rounding = 1e-9;
-
     /// Of stresses, from which on it is worth a note.
     constexpr double notable_stress_rounding = 1e-6;
 
@@ -164,6 +161,15 @@ namespace Debond
     DofVector result(r.size());
     levels.cycle().vmult(result, r);
     return result;
+  }
+
+
+
+  double
+  allowed_energy_rounding(const double n_unknowns)
+  {
+    return std::clamp(
+      100. * std::numeric_limits<double>::epsilon() * n_unknowns, 1e-10, 1e-9);
   }
 
 
@@ -473,7 +479,7 @@ namespace Debond
                       DofVector                   &u)
   {
     const double rounding = energy_rounding(problem, phi, factors, u);
-    if (rounding <= largest_energy_rounding)
+    if (rounding <= allowed_energy_rounding(u.size()))
       return {};
 
     const RefinementResult refined =

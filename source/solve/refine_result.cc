@@ -19,8 +19,6 @@ namespace Debond
     std::string
     note_on_rounding(const Scene<dim> &scene, const Vector &u)
     {
-      constexpr double largest_energy_rounding = 1e-9;
-
       const ProblemPiece<dim> &piece = *scene.piece();
       Vector                   terms = u;
       for (unsigned int i = 0; i < u.size(); ++i)
@@ -33,7 +31,14 @@ namespace Debond
         scene.adhesion().subgradient(s).dot(s);
       const double rounding = std::numeric_limits<double>::epsilon() *
                               piece.nodes().product(terms.begin(), u.begin());
-      if (rounding <= largest_energy_rounding * energy)
+      const Vector ones = [&u] {
+        Vector v(u.size());
+        v = 1.;
+        return v;
+      }();
+      const double allowed = allowed_energy_rounding(
+        piece.nodes().product(ones.begin(), ones.begin()));
+      if (rounding <= allowed * energy)
         return "";
       std::ostringstream note;
       note.precision(1);

@@ -142,6 +142,17 @@ namespace Debond
 
 
   /**
+   * Results are refined if rounding can change more of their energy than this:
+   * between 1e-10 on small meshes, which slender bodies of few cells reach
+   * where all else in them is exact to the last digits, and 1e-9 on large ones,
+   * whose sums have more terms.
+   */
+  double
+  allowed_energy_rounding(const double n_unknowns);
+
+
+
+  /**
    * Majorise-minimise from @p u in extended precision (ExtendedOperator), so
    * that what remains of its errors is the rounding of the result. Active sets
    * for u_nu <= 0; the linear systems are solved by flexible conjugate
@@ -174,7 +185,8 @@ namespace Debond
 
 
   /// Refines the minimiser @p u, or what rounding left of the way to one, if
-  /// rounding in double precision can change more than 1e-9 of its energy.
+  /// rounding in double precision can change more of its energy than
+  /// allowed_energy_rounding().
   template <int dim>
   Refined
   refine_where_needed(const ElasticProblem<dim>   &problem,
