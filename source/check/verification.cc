@@ -24,11 +24,22 @@ namespace Debond
 
 
 
+  namespace
+  {
+    /// Of Verification::force_rounding.
+    constexpr double largest_force_rounding = 0.1;
+  } // namespace
+
+
+
   template <int dim>
   double
   Verification<dim>::error() const
   {
-    // The comparisons of std::max would lose a NaN.
+    // Were all forces rounding, they would balance whatever u is. The
+    // comparisons of std::max would lose a NaN.
+    if (!(force_rounding <= largest_force_rounding))
+      return std::numeric_limits<double>::infinity();
     return std::isfinite(equilibrium_residual + force_imbalance +
                          law_violation) ?
              std::max({equilibrium_residual, force_imbalance, law_violation}) :
@@ -555,6 +566,13 @@ namespace Debond
                           piece,
                           result);
 
+    const double largest_load =
+      largest_entry(problem.fields().applied_nodal_forces(factors));
+    result.force_rounding =
+      largest_load > 0. ?
+        largest_entry(rounding) / std::max(largest_load, largest.supported) :
+        0.;
+
     displacement = problem.unknowns().cartesian_displacement(u, factors);
     result.displacements =
       piece == nullptr ?
@@ -570,6 +588,11 @@ namespace Debond
   std::string
   verification_failure(const double error, const double tolerance)
   {
+    if (std::isinf(error))
+      return "verification: the displacements are so large, or the forces so "
+             "small beside them, that the forces are rounding of double "
+             "precision or no numbers at all. Are bonds and loads in the units "
+             "of the Young modulus?";
     std::ostringstream text;
     text.precision(3);
     text << "verification: the largest of residual, force imbalance and "

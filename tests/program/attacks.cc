@@ -718,9 +718,14 @@ namespace
               is_hardly_off =
                 is_hardly_off ||
                 body.with_rounded_loads(seed).is_hardly_off(intact);
-            outcome = {body.is_off(intact) ? "comes off" :
-                       is_hardly_off       ? "refused" :
-                                             "wrong success: holds",
+            // Where the gap has broken all bonds that would hold it J falls
+            // without end from rest, though it also has a minimum where they
+            // have closed.
+            const bool is_off =
+              body.is_off(intact) || body.is_off(body.at_rest());
+            outcome = {is_off        ? "comes off" :
+                       is_hardly_off ? "refused" :
+                                       "wrong success: holds",
                        "what is not balanced is " +
                          text(double(body.unbalanced(intact)))};
           }
@@ -920,6 +925,14 @@ main(int argc, char *argv[])
       for (const unsigned int number : {40000, 40277, 40070, 80069})
         attack_with(number, loose, reasons);
       check("bodies that turn off come off", loose["comes off"] == 4);
+
+      // Bonds 1e12 times softer than the body, and twice 1e7 times stiffer ones
+      // that break.
+      Counts far;
+      for (const unsigned int number : {100245, 100572, 100928})
+        attack_with(number, far, reasons);
+      check("bonds far softer and stiffer than the body",
+            far["comes off"] == 2 && far["solved"] == 1);
     }
   if (argc > 1)
     for (const auto &counts : {kinds, reasons})

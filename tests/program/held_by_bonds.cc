@@ -275,6 +275,52 @@ namespace
 
 
 
+  /// Bonds of @p ratio times the stiffness of the body, beside which the softer
+  /// of the two is little more than rounding.
+  void
+  test_ratio(const unsigned int dim, const Units &units, const double ratio)
+  {
+    std::cout << "== Bonds " << ratio << " times as stiff as the body, " << dim
+              << "D, " << units.name << std::endl;
+    const double L = units.length, area = 0.2 * L * (dim == 3 ? 0.1 * L : 1.),
+                 E = 70. * units.modulus, H = 0.1 * L, a = ratio * E / H,
+                 M = 1e-3 * L, p = 0.9 * a * M;
+    const Values scene =
+      pad(dim, units, false) + Values{"Contact law/Bond stiffness=" + text(a)};
+
+    const Json result = solve_scene(scene + pulled(dim, text(p)));
+    check("bonds hold it", result["status"] == "success");
+    check("J",
+          relative(result["functional"],
+                   -0.5 * p * p * area * (H / E + 1. / a)),
+          1e-12);
+    const auto [least, largest] = range_of_openings(result);
+    check("least_u_nu", relative(least, -p / a), 1e-12);
+    check("largest_u_nu", relative(largest, -p / a), 1e-12);
+
+    const Json off = solve_scene(scene + pulled(dim, text(1.00001 * a * M)));
+    check("above their threshold it comes off",
+          off["status"] == "comes off" && off["exit_code"] == 0);
+    check_coming_off(off, dim, 1., 0., 1.00001 * a * M * area);
+  }
+
+
+
+  /// Of bonds this soft nothing is left in the forces.
+  void
+  test_softest(const Units &units)
+  {
+    std::cout << "== Bonds lost in rounding, " << units.name << std::endl;
+    const double a      = 1e-14 * 70. * units.modulus / (0.1 * units.length);
+    const Json   result = solve_scene(
+      pad(2, units, false) + Values{"Contact law/Bond stiffness=" + text(a)} +
+      pulled(2, text(0.9e-3 * a * units.length)));
+    check("no success", result["status"] == "not verified");
+    check("which the exit code says", result["exit_code"] == 3);
+  }
+
+
+
   void
   test_refusals()
   {
@@ -312,6 +358,11 @@ main(int argc, char *[])
         }
       test_crack(units);
       test_two_nodes(units);
+      for (const double ratio : {1e-11, 1e-6, 1e6, 1e10})
+        test_ratio(2, units, ratio);
+      for (const double ratio : {1e-11, 1e10})
+        test_ratio(3, units, ratio);
+      test_softest(units);
     }
   test_refusals();
 }

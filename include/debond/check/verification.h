@@ -134,8 +134,14 @@ namespace Debond
     /// or that many times the rounding of one.
     double force_imbalance;
 
+    /// What rounding of the displacements makes of A u - f, at most, relative
+    /// to the largest nodal force, applied or of the supports and the
+    /// foundation; zero without loads.
+    double force_rounding;
+
     /// The largest of equilibrium_residual, force_imbalance and
-    /// law_violation: how far the result is from a solution.
+    /// law_violation: how far the result is from a solution. Infinite where
+    /// force_rounding is above 0.1: there are no forces to verify then.
     double
     error() const;
 
@@ -146,8 +152,8 @@ namespace Debond
     name(const BondState state) const;
   };
 
-  /// What is wrong with a result whose Verification::error() is above the
-  /// tolerance.
+  /// What is wrong with a result whose @p error, that of Verification, is above
+  /// the tolerance.
   std::string
   verification_failure(const double error, const double tolerance);
 

@@ -19,11 +19,16 @@ namespace Debond
     /// the terms in a row of S s.
     constexpr double rounding_factor = 4.;
 
-    /// A stiffness of less than this part of that of the body is none.
+    /// Bonds that hold a motion by less than this part of the body's stiffness
+    /// are lost in the rounding of S + E.
     constexpr double least_stiffness = 1e-12;
 
-    /// Of the proximal terms, in the same units: small, so that few steps do,
-    /// but far from rounding.
+    /// A motion is loose if bonds hold it by less than this part of what all of
+    /// them, unbroken, hold: by rounding, not by bonds.
+    constexpr double loose = 1e-10;
+
+    /// Of the proximal terms, relative to the body's: small, so that few steps
+    /// do, but far from rounding.
     constexpr double proximal_stiffness = 1e-8;
 
     /// Far more than scenes need.
@@ -86,6 +91,11 @@ namespace Debond
     , s(start)
     , active(start.size())
   {
+    if (N.cols() > 0)
+      loose_stiffness =
+        loose *
+        (N.transpose() * (phi.curvature(Eigen::VectorXd::Zero(s.size())) * N))
+          .norm();
     for (unsigned int i = 0; i < s.size(); ++i)
       active[i] = s(i) == 0.;
   }
@@ -184,8 +194,13 @@ namespace Debond
   MajorantProblem::Minimisation
   CondensedProblem::minimise(const double)
   {
-    if (const Eigen::MatrixXd Z = motions_without_stiffness(); Z.cols() > 0)
-      return minimise_along(Z);
+    if (N.cols() > 0)
+      {
+        const Eigen::MatrixXd Z = motions_held_by_less(
+          std::max(least_stiffness * stiffness, loose_stiffness));
+        if (Z.cols() > 0)
+          return minimise_along(Z);
+      }
     if (guess != nullptr && !guess->empty())
       active = guess->active_set(M, E, r);
     const BoundQPResult qp =
@@ -226,15 +241,20 @@ namespace Debond
 
 
   Eigen::MatrixXd
-  CondensedProblem::motions_without_stiffness() const
+  CondensedProblem::motions_held_by_less(const double most) const
   {
-    if (N.cols() == 0)
-      return N;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(N.transpose() *
                                                                (E * N));
-    const double least = least_stiffness * stiffness;
     return N * eigen.eigenvectors().leftCols(
-                 (eigen.eigenvalues().array() <= least).count());
+                 (eigen.eigenvalues().array() <= most).count());
+  }
+
+
+
+  double
+  CondensedProblem::held(const Eigen::VectorXd &v) const
+  {
+    return v.dot(E * v);
   }
 
 
@@ -257,9 +277,14 @@ namespace Debond
   MajorantProblem::Minimisation
   CondensedProblem::minimise_along(const Eigen::MatrixXd &Z)
   {
-    if (falls_along(Z))
+    const Eigen::MatrixXd loose_motions = motions_held_by_less(loose_stiffness);
+    if (loose_motions.cols() > 0 && falls_along(loose_motions))
       return {SolverStatus::comes_off, 0, 0};
-    const double          delta    = proximal_stiffness * stiffness;
+    // Where bonds hold all of them, by little, more than what the least of them
+    // has only makes the steps shorter.
+    double delta = proximal_stiffness * stiffness;
+    if (loose_motions.cols() == 0)
+      delta = std::min(delta, held(Z.col(0)));
     const Eigen::MatrixXd proximal = M + delta * Z * Z.transpose();
     const double          forces   = r.norm();
 
@@ -300,10 +325,15 @@ namespace Debond
           {
             const Eigen::VectorXd &way   = is_same ? rigid : step;
             const double           least = towards_foundation * way.norm();
-            if (is_same && way.maxCoeff() <= least)
+            // Bonds that are far softer than delta let steps repeat as nothing
+            // does, but end the sum of the steps at delta over their stiffness.
+            const bool is_loose =
+              is_same && held(way) <= loose_stiffness * way.squaredNorm();
+            if (is_loose && way.maxCoeff() <= least)
               return {SolverStatus::comes_off, n_systems, 0};
-            double further = is_same ? std::numeric_limits<double>::max() :
-                                       ratio / (1. - ratio);
+            double further = is_loose ? std::numeric_limits<double>::max() :
+                             is_same  ? delta * way.squaredNorm() / held(way) :
+                                        ratio / (1. - ratio);
             for (Eigen::Index j = 0; j < x.size(); ++j)
               if (way[j] > least)
                 further = std::min(further, -x[j] / way[j]);

@@ -18,10 +18,13 @@ namespace Debond
    * Where points of Phi move with s, the minimum of a majorant is only a step
    * towards the limit, and what the last of them say of it is tried.
    *
-   * A majorant that leaves motions without stiffness is minimised by proximal
+   * A majorant that leaves motions without stiffness, or with so little that it
+   * is lost in that of the body, is minimised by proximal
    * steps along these (Rockafellar, SIAM J. Control Optim. 14, 1976), which
    * shrink if there is a minimum. If there is none, they come to repeat one
-   * along which the majorant falls without end, and J with it.
+   * along which the majorant falls without end, and J with it. Only what the
+   * unbroken bonds hold says which motions have none: bonds may be far softer
+   * or far stiffer than the body.
    */
   class CondensedProblem : public MajorantProblem
   {
@@ -63,9 +66,17 @@ namespace Debond
     const PiecewiseQuadratic &phi;
     Eigen::VectorXd          &s;
 
-    /// Orthonormal motions of N that the majorant leaves without stiffness.
+    /// What the majorant's bonds hold a rigid motion by, at most as rounding.
+    double loose_stiffness = 0.;
+
+    /// Orthonormal motions of N that the majorant's bonds hold by at most
+    /// @p most, the least held one first.
     Eigen::MatrixXd
-    motions_without_stiffness() const;
+    motions_held_by_less(const double most) const;
+
+    /// v'E v.
+    double
+    held(const Eigen::VectorXd &v) const;
 
     /// Whether the majorant has no minimum: no pressures of the foundation
     /// balance what its forces do along the columns of Z.
