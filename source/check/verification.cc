@@ -49,6 +49,27 @@ namespace Debond
 
 
   template <int dim>
+  std::string
+  Verification<dim>::failure(const double tolerance) const
+  {
+    std::ostringstream text;
+    text.precision(3);
+    if (!(force_rounding <= largest_force_rounding))
+      text << "verification: rounding of the displacements makes forces of "
+           << force_rounding << " of the largest one, required is at most "
+           << largest_force_rounding
+           << ". Are bonds and loads in the units of the Young modulus?";
+    else
+      text << "verification: the largest of residual, force imbalance and "
+              "contact law violation is "
+           << error() << ", required is at most " << tolerance
+           << ". Try a smaller stop tolerance.";
+    return text.str();
+  }
+
+
+
+  template <int dim>
   unsigned int
   Verification<dim>::count(const BondState state) const
   {
@@ -581,25 +602,6 @@ namespace Debond
         at_contact_nodes<dim>(piece->gather(displacement),
                               piece->normal_numbers());
     return result;
-  }
-
-
-
-  std::string
-  verification_failure(const double error, const double tolerance)
-  {
-    if (std::isinf(error))
-      return "verification: the displacements are so large, or the forces so "
-             "small beside them, that the forces are rounding of double "
-             "precision or no numbers at all. Are bonds and loads in the units "
-             "of the Young modulus?";
-    std::ostringstream text;
-    text.precision(3);
-    text << "verification: the largest of residual, force imbalance and "
-            "contact law violation is "
-         << error << ", required is at most " << tolerance
-         << ". Try a smaller stop tolerance.";
-    return text.str();
   }
 
 

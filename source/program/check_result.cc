@@ -40,8 +40,9 @@ namespace Debond
     for (const LoadPathStep<dim> &step : result.path)
       if (!step.message.empty())
         return step.message;
-    const double error = result.verification.error();
-    return error <= tolerance ? "" : verification_failure(error, tolerance);
+    return result.verification.error() <= tolerance ?
+             "" :
+             result.verification.failure(tolerance);
   }
 
 

@@ -392,7 +392,7 @@ namespace Debond
       std::string
       failure(const Verification<dim> &verification) const
       {
-        return verification_failure(verification.error(), tolerance);
+        return verification.failure(tolerance);
       }
 
       static std::string

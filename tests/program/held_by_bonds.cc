@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -306,16 +307,49 @@ namespace
 
 
 
+  /// Soft bonds at the middle node alone, which nothing but the foundation
+  /// keeps the body from turning about.
+  void
+  test_single_bond(const Units &units)
+  {
+    std::cout << "== A single soft bond, " << units.name << std::endl;
+    const double L = units.length, E = 70. * units.modulus, H = 0.1 * L,
+                 a = 1e-11 * E / H, M = 1e-3 * L, of_node = 0.025 * L;
+    const auto at = [&](const double part) {
+      return solve_scene(pad(2, units, false) +
+                         pulled(2, text(part * a * M * of_node / (0.2 * L))) +
+                         Values{"Contact law/Bond stiffness=if(abs(x - " +
+                                text(0.1 * L) + ") < " + text(0.01 * L) + ", " +
+                                text(a) + ", 0)"});
+    };
+    const Json result = at(0.9);
+    check("holds the body", result["status"] == "success");
+    check("J",
+          relative(result["functional"], -0.5 * 0.81 * a * M * M * of_node),
+          1e-9);
+    check("until it breaks", at(1.00001)["status"] == "comes off");
+  }
+
+
+
   /// Of bonds this soft nothing is left in the forces.
   void
   test_softest(const Units &units)
   {
     std::cout << "== Bonds lost in rounding, " << units.name << std::endl;
-    const double a      = 1e-14 * 70. * units.modulus / (0.1 * units.length);
-    const Json   result = solve_scene(
+    const double a = 1e-14 * 70. * units.modulus / (0.1 * units.length);
+    // Its figure is rounding.
+    const std::ostringstream message;
+    std::streambuf *const    before = std::cerr.rdbuf(message.rdbuf());
+
+    const Json result = solve_scene(
       pad(2, units, false) + Values{"Contact law/Bond stiffness=" + text(a)} +
       pulled(2, text(0.9e-3 * a * units.length)));
+    std::cerr.rdbuf(before);
     check("no success", result["status"] == "not verified");
+    check("and why",
+          message.str().find("rounding of the displacements") !=
+            std::string::npos);
     check("which the exit code says", result["exit_code"] == 3);
   }
 
@@ -362,6 +396,7 @@ main(int argc, char *[])
         test_ratio(2, units, ratio);
       for (const double ratio : {1e-11, 1e10})
         test_ratio(3, units, ratio);
+      test_single_bond(units);
       test_softest(units);
     }
   test_refusals();

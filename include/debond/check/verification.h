@@ -145,19 +145,16 @@ namespace Debond
     double
     error() const;
 
+    /// What is wrong with a result whose error() is above the tolerance.
+    std::string
+    failure(const double tolerance) const;
+
     unsigned int
     count(const BondState state) const;
 
     const std::string &
     name(const BondState state) const;
   };
-
-  /// What is wrong with a result whose @p error, that of Verification, is above
-  /// the tolerance.
-  std::string
-  verification_failure(const double error, const double tolerance);
-
-
 
   /// @p factors: the multiple of the problem's loads that @p u belongs to.
   ///

@@ -303,8 +303,13 @@ namespace Debond
         const Eigen::VectorXd step   = qp.x - x;
         const Eigen::VectorXd motion = Z.transpose() * step;
         x                            = qp.x;
-        // The proximal force balances what the foundation does not.
-        const bool is_balanced = delta * motion.norm() <= balanced * forces;
+        // The proximal force balances what the foundation does not, and where
+        // bonds are soft what rounding leaves of S x.
+        constexpr double epsilon = std::numeric_limits<double>::epsilon();
+        const bool       is_balanced =
+          delta * motion.norm() <=
+          std::max(balanced * forces,
+                   rounding_factor * epsilon * stiffness * x.norm());
         if (is_balanced)
           {
             s = x;

@@ -19,12 +19,12 @@ namespace Debond
    * towards the limit, and what the last of them say of it is tried.
    *
    * A majorant that leaves motions without stiffness, or with so little that it
-   * is lost in that of the body, is minimised by proximal
-   * steps along these (Rockafellar, SIAM J. Control Optim. 14, 1976), which
-   * shrink if there is a minimum. If there is none, they come to repeat one
-   * along which the majorant falls without end, and J with it. Only what the
-   * unbroken bonds hold says which motions have none: bonds may be far softer
-   * or far stiffer than the body.
+   * is lost in that of the body, is minimised by proximal steps along these
+   * (Rockafellar, SIAM J. Control Optim. 14, 1976), which shrink if there is a
+   * minimum. If there is none, they come to repeat one along which the majorant
+   * falls without end, and J with it. Only what the unbroken bonds hold says
+   * which motions have none: bonds may be far softer or far stiffer than the
+   * body.
    */
   class CondensedProblem : public MajorantProblem
   {
