@@ -166,7 +166,7 @@ namespace Debond
 
 
   double
-  allowed_energy_rounding(const double n_unknowns)
+  allowed_energy_rounding(const unsigned int n_unknowns)
   {
     return std::clamp(
       100. * std::numeric_limits<double>::epsilon() * n_unknowns, 1e-10, 1e-9);
@@ -479,7 +479,7 @@ namespace Debond
                       DofVector                   &u)
   {
     const double rounding = energy_rounding(problem, phi, factors, u);
-    if (rounding <= allowed_energy_rounding(u.size()))
+    if (rounding <= allowed_energy_rounding(problem.unknowns().n_free_dofs()))
       return {};
 
     const RefinementResult refined =

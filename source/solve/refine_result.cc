@@ -31,14 +31,7 @@ namespace Debond
         scene.adhesion().subgradient(s).dot(s);
       const double rounding = std::numeric_limits<double>::epsilon() *
                               piece.nodes().product(terms.begin(), u.begin());
-      const Vector ones = [&u] {
-        Vector v(u.size());
-        v = 1.;
-        return v;
-      }();
-      const double allowed = allowed_energy_rounding(
-        piece.nodes().product(ones.begin(), ones.begin()));
-      if (rounding <= allowed * energy)
+      if (rounding <= allowed_energy_rounding(scene.n_unknowns()) * energy)
         return "";
       std::ostringstream note;
       note.precision(1);

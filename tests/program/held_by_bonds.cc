@@ -110,6 +110,28 @@ namespace
 
 
 
+  /// Bonds of stiffness @p a bear the traction @p p on the pad.
+  void
+  check_held(const Json        &result,
+             const unsigned int dim,
+             const Units       &units,
+             const double       a,
+             const double       p)
+  {
+    const double L = units.length, E = 70. * units.modulus, H = 0.1 * L,
+                 area = 0.2 * L * (dim == 3 ? 0.1 * L : 1.);
+    check("bonds hold it", result["status"] == "success");
+    check("J",
+          relative(result["functional"],
+                   -0.5 * p * p * area * (H / E + 1. / a)),
+          1e-12);
+    const auto [least, largest] = range_of_openings(result);
+    check("least_u_nu", relative(least, -p / a), 1e-12);
+    check("largest_u_nu", relative(largest, -p / a), 1e-12);
+  }
+
+
+
   void
   test_column(const unsigned int dim, const Units &units, const bool may_widen)
   {
@@ -123,14 +145,7 @@ namespace
 
     const double p      = 0.9 * a * M;
     const Json   result = solve_scene(scene + pulled(dim, text(p)));
-    check("bonds hold it", result["status"] == "success");
-    check("J",
-          relative(result["functional"],
-                   -0.5 * p * p * area * (H / E + 1. / a)),
-          1e-12);
-    const auto [least, largest] = range_of_openings(result);
-    check("least_u_nu", relative(least, -p / a), 1e-12);
-    check("largest_u_nu", relative(largest, -p / a), 1e-12);
+    check_held(result, dim, units, a, p);
     check("force of the foundation",
           relative(result["contact_reaction"][1], -p * area),
           1e-12);
@@ -290,14 +305,7 @@ namespace
       pad(dim, units, false) + Values{"Contact law/Bond stiffness=" + text(a)};
 
     const Json result = solve_scene(scene + pulled(dim, text(p)));
-    check("bonds hold it", result["status"] == "success");
-    check("J",
-          relative(result["functional"],
-                   -0.5 * p * p * area * (H / E + 1. / a)),
-          1e-12);
-    const auto [least, largest] = range_of_openings(result);
-    check("least_u_nu", relative(least, -p / a), 1e-12);
-    check("largest_u_nu", relative(largest, -p / a), 1e-12);
+    check_held(result, dim, units, a, p);
 
     const Json off = solve_scene(scene + pulled(dim, text(1.00001 * a * M)));
     check("above their threshold it comes off",
@@ -310,17 +318,26 @@ namespace
   /// Soft bonds at the middle node alone, which nothing but the foundation
   /// keeps the body from turning about.
   void
-  test_single_bond(const Units &units)
+  test_single_bond(const unsigned int dim, const Units &units)
   {
-    std::cout << "== A single soft bond, " << units.name << std::endl;
+    std::cout << "== A single soft bond, " << dim << "D, " << units.name
+              << std::endl;
+    // In 3D eight triangles meet in the node, each a quarter of a cell's face.
     const double L = units.length, E = 70. * units.modulus, H = 0.1 * L,
-                 a = 1e-11 * E / H, M = 1e-3 * L, of_node = 0.025 * L;
+                 a = 1e-11 * E / H, M = 1e-3 * L,
+                 area    = 0.2 * L * (dim == 3 ? 0.1 * L : 1.),
+                 of_node = dim == 3 ? 2. / 3. * 0.05 * L * 0.05 * L : 0.025 * L;
+    const auto near      = [L](const char *coordinate, const double middle) {
+      return std::string("abs(") + coordinate + " - " + text(middle * L) +
+             ") < " + text(0.01 * L);
+    };
+    const std::string at_the_node =
+      near("x", 0.1) + (dim == 3 ? " && " + near("z", 0.05) : "");
     const auto at = [&](const double part) {
-      return solve_scene(pad(2, units, false) +
-                         pulled(2, text(part * a * M * of_node / (0.2 * L))) +
-                         Values{"Contact law/Bond stiffness=if(abs(x - " +
-                                text(0.1 * L) + ") < " + text(0.01 * L) + ", " +
-                                text(a) + ", 0)"});
+      return solve_scene(pad(dim, units, false) +
+                         pulled(dim, text(part * a * M * of_node / area)) +
+                         Values{"Contact law/Bond stiffness=if(" + at_the_node +
+                                ", " + text(a) + ", 0)"});
     };
     const Json result = at(0.9);
     check("holds the body", result["status"] == "success");
@@ -389,6 +406,7 @@ main(int argc, char *[])
           test_column(dim, units, true);
           test_column(dim, units, false);
           test_tilting(dim, units);
+          test_single_bond(dim, units);
         }
       test_crack(units);
       test_two_nodes(units);
@@ -396,7 +414,6 @@ main(int argc, char *[])
         test_ratio(2, units, ratio);
       for (const double ratio : {1e-11, 1e10})
         test_ratio(3, units, ratio);
-      test_single_bond(units);
       test_softest(units);
     }
   test_refusals();

@@ -145,10 +145,10 @@ namespace Debond
    * Results are refined if rounding can change more of their energy than this:
    * between 1e-10 on small meshes, which slender bodies of few cells reach
    * where all else in them is exact to the last digits, and 1e-9 on large ones,
-   * whose sums have more terms.
+   * whose sums have more terms. @p n_unknowns are the free ones.
    */
   double
-  allowed_energy_rounding(const double n_unknowns);
+  allowed_energy_rounding(const unsigned int n_unknowns);
 
 
 
