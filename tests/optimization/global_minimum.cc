@@ -394,6 +394,7 @@ namespace
     unsigned int invalid = 0, not_proved = 0, wrong = 0, most_nodes = 0;
     unsigned int lost        = 0;
     unsigned int interrupted = 0, found = 0, n_chains = 0, incomplete = 0;
+    unsigned int left_early = 0, not_left = 0;
     double       closest = std::numeric_limits<double>::infinity();
     for (unsigned int k = 0; k < n_problems; ++k)
       {
@@ -432,6 +433,16 @@ namespace
         interrupted += stopped.status == ProofStatus::node_limit;
         invalid += stopped.lower > minimum;
 
+        // Half of the unknowns at least, with each relaxation.
+        parameters.only_while_halving = true;
+        const auto left               = BranchAndBound(parameters)
+                            .minimize(p.S, p.g, p.bonds, Vector::Zero(n));
+        const bool is_proved = left.status == ProofStatus::proved;
+        invalid += left.lower > minimum;
+        wrong += is_proved && std::abs(left.upper - minimum) > tolerance;
+        not_left += is_proved;
+        left_early += !is_proved && stopped.status == ProofStatus::proved;
+
         Vector           s = Vector::Zero(n);
         MajoriseMinimise method({});
         CondensedProblem problem(p.S, p.g, p.bonds, s);
@@ -452,6 +463,10 @@ namespace
               << ", never outside the shrunk box: " << verdict(lost == 0)
               << "\n  some proofs stopped after one node: "
               << verdict(interrupted > n_problems / 100)
+              << ", some left before they were proved: "
+              << verdict(left_early > n_problems / 1000)
+              << ", most proved before they were left: "
+              << verdict(not_left > n_problems / 2)
               << "\nsearch: values as points say: " << verdict(incomplete == 0)
               << ", the minimum in seven of ten with coupled neighbours: "
               << verdict(found > 0.7 * n_chains) << '\n';
@@ -459,7 +474,9 @@ namespace
       std::cout << "  invalid " << invalid << ", not proved " << not_proved
                 << ", wrong " << wrong << ", closest " << closest
                 << ", most nodes " << most_nodes << ", interrupted "
-                << interrupted << ", found by search " << found << '\n';
+                << interrupted << ", found by search " << found
+                << ", left early " << left_early << ", not left " << not_left
+                << '\n';
   }
 
 

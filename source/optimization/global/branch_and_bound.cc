@@ -222,9 +222,11 @@ namespace Debond
       const auto                work = [&]() {
         for (unsigned int k = next++; k < batch.size(); k = next++)
           {
-            Job &job = batch[k];
-            job.result =
-              node_bound.bound(job.node, result.upper, parameters.tolerance);
+            Job &job   = batch[k];
+            job.result = node_bound.bound(job.node,
+                                          result.upper,
+                                          parameters.tolerance,
+                                          parameters.only_while_halving);
             if (job.node.bound < result.upper - parameters.tolerance)
               minimise_from(job.node.x, job);
           }

@@ -14,6 +14,9 @@ namespace Debond
     constexpr double       most_operations = 4e8;
     constexpr unsigned int most_nodes      = 500;
 
+    /// With more unknowns a few relaxations take longer than the first search.
+    constexpr unsigned int largest_first_look = 100;
+
     /// Each is begun because the one before found a lower point.
     constexpr unsigned int most_proofs = 4;
 
@@ -49,9 +52,14 @@ namespace Debond
       run(const std::function<bool(bool, Eigen::VectorXd &)> &may_end,
           Eigen::VectorXd                                    &s)
       {
-        const bool has_tried        = is_separable || parameters.proof_first;
+        const bool has_tried = is_separable || parameters.proof_first;
+        const bool looks_at_node =
+          parameters.proof_first || s.size() <= largest_first_look;
         const Eigen::VectorXd given = s;
-        if (has_tried && (is_proved(s, parameters.proof_first ? 1 : 0) ||
+        if (has_tried && (is_proved(s,
+                                    looks_at_node ? 1 : 0,
+                                    /*only_while_halving=*/
+                                    !parameters.proof_first) ||
                           (s != given && is_proved(s, 0))))
           return result;
         BranchSearchParameters quick;
@@ -96,13 +104,16 @@ namespace Debond
       /// Branch and bound, and whether it ends with a proof. What it finds is
       /// taken if it is lower.
       bool
-      is_proved(Eigen::VectorXd &s, const unsigned int maximum_nodes)
+      is_proved(Eigen::VectorXd   &s,
+                const unsigned int maximum_nodes,
+                const bool         only_while_halving = false)
       {
         CondensedProblem         problem(S, g, phi, s);
         const double             functional = problem.evaluate().functional;
         BranchAndBoundParameters limits;
         limits.tolerance                 = parameters.tolerance;
         limits.maximum_nodes             = maximum_nodes;
+        limits.only_while_halving        = only_while_halving;
         limits.n_threads                 = parameters.n_threads;
         const BranchAndBoundResult proof = BranchAndBound(limits).minimize(
           S, g, lumped, s, [this](const ProofProgress &) { return monitor(); });

@@ -76,7 +76,8 @@ namespace Debond
       NodeResult
       run(const double       best_value,
           const double       tolerance,
-          const unsigned int maximum_rounds);
+          const unsigned int maximum_rounds,
+          const bool         only_while_halving);
 
       std::optional<NodeBall>
       ball(const bool is_first);
@@ -290,12 +291,14 @@ namespace Debond
     NodeResult
     Relaxations::run(const double       best_value,
                      const double       tolerance,
-                     const unsigned int maximum_rounds)
+                     const unsigned int maximum_rounds,
+                     const bool         only_while_halving)
     {
       NodeResult result;
       for (unsigned int round = 0;; ++round)
         {
-          const bool all_decided = undecided().empty();
+          const std::size_t n_undecided = undecided().size();
+          const bool        all_decided = n_undecided == 0;
           if (!set_up(round == 0))
             break;
           minimise_relaxation(problem, envelopes, node.x);
@@ -317,7 +320,10 @@ namespace Debond
               if (round > 0)
                 raise(best_value - lower_bound.value);
             }
-          if (round + 1 >= maximum_rounds)
+          // The second relaxation is the first with shifts that raise it.
+          const bool is_slow = only_while_halving && round > 0 &&
+                               2 * undecided().size() > n_undecided;
+          if (round + 1 >= maximum_rounds || is_slow)
             choose(lower_bound, result);
           if (result.unknown)
             return result;
@@ -468,10 +474,14 @@ namespace Debond
   NodeResult
   NodeBound::bound(ProofNode   &node,
                    const double best_value,
-                   const double tolerance) const
+                   const double tolerance,
+                   const bool   only_while_halving) const
   {
     return Relaxations(S, g, phi, node)
-      .run(best_value, tolerance, node.number == 0 ? n_root_rounds : n_rounds);
+      .run(best_value,
+           tolerance,
+           node.number == 0 ? n_root_rounds : n_rounds,
+           only_while_halving);
   }
 
 

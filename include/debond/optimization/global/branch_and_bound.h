@@ -19,8 +19,13 @@ namespace Debond
     double tolerance = 0.;
 
     /// With 0 there is only the certificate of the start.
-    unsigned int maximum_nodes   = 1000000;
-    double       maximum_seconds = std::numeric_limits<double>::infinity();
+    unsigned int maximum_nodes = 1000000;
+
+    /// Whether a node is left once a relaxation decides less than half of the
+    /// unknowns that were undecided: then it takes many.
+    bool only_while_halving = false;
+
+    double maximum_seconds = std::numeric_limits<double>::infinity();
 
     /// For the open nodes.
     double maximum_bytes = std::numeric_limits<double>::infinity();

@@ -56,7 +56,8 @@ namespace Debond
    * Improves a minimum of 1/2 s'S s - g's + Phi(s), s <= 0, with as much effort
    * as it takes to prove it, up to a limit: nothing if its certificate does
    * (NodeBound::certificate) or, with proof_first, the first node of branch
-   * and bound, else a search that starts from rest and from all
+   * and bound, or up to 100 unknowns a few relaxations of that node
+   * (BranchAndBoundParameters::only_while_halving), else a search that starts from rest and from all
    * bonds broken and moves edges by one node; if the certificate of what that
    * finds is not enough, the first node of branch and bound; then the full
    * search, and branch and bound with a number of nodes that depends on n only,

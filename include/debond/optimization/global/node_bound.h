@@ -91,11 +91,13 @@ namespace Debond
     double
     certificate(const Eigen::VectorXd &s) const;
 
-    /// Raises the node's bound and shrinks its box.
+    /// Raises the node's bound and shrinks its box; with @p only_while_halving
+    /// as long as each relaxation decides half of what is undecided.
     NodeResult
     bound(ProofNode   &node,
           const double best_value,
-          const double tolerance) const;
+          const double tolerance,
+          const bool   only_while_halving = false) const;
 
     /// Balls for the convexity that the node's bound was raised with, which has
     /// a high value, and for that of its first relaxation, which has a large A;
