@@ -125,7 +125,7 @@ namespace Debond
       return true;
     constexpr double noise = 1e-12;
     return (b_c - previous_b_c).norm() > noise * (E_s.norm() + b_c.norm()) ||
-           (E - previous_E).norm() > noise * E.norm();
+           curvature_norm(E - previous_E) > noise * curvature_norm(E);
   }
 
 

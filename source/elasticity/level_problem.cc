@@ -220,8 +220,8 @@ namespace Debond
             return result;
           }
 
-        const bool is_changed =
-          !is_truncated || cycle_active != active || (cycle_E - E).norm() != 0.;
+        const bool is_changed = !is_truncated || cycle_active != active ||
+                                curvature_norm(cycle_E - E) != 0.;
         if (is_changed)
           {
             std::vector<unsigned int> held;

@@ -257,12 +257,13 @@ namespace Debond
         E                                              = phi.curvature(s);
         const Eigen::VectorXd E_s                      = E * s;
         b_c = E_s - phi.subgradient(s);
-        if (previous_b_c.size() != b_c.size())
-          return true;
+        // Without contact nodes the first one looks like none.
+        if (!has_majorant)
+          return has_majorant = true;
         constexpr double noise = 1e-12;
         return (b_c - previous_b_c).norm() >
                  noise * (E_s.norm() + b_c.norm()) ||
-               (E - previous_E).norm() > noise * E.norm();
+               curvature_norm(E - previous_E) > noise * curvature_norm(E);
       }
 
       bool
@@ -440,6 +441,7 @@ namespace Debond
 
       Eigen::SparseMatrix<double> E;
       Eigen::VectorXd             b_c;
+      bool                        has_majorant = false;
       ActiveSet                   active;
     };
   } // namespace

@@ -40,6 +40,16 @@ namespace Debond
       return false;
     }
   };
+
+
+
+  /// The Frobenius norm of a curvature or a difference of such; Eigen's own
+  /// refuses matrices without entries, as bodies without contact have.
+  inline double
+  curvature_norm(const Eigen::SparseMatrix<double> &E)
+  {
+    return E.size() == 0 ? 0. : E.norm();
+  }
 } // namespace Debond
 
 #endif

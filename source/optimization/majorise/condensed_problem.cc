@@ -180,7 +180,7 @@ namespace Debond
           return v.lpNorm<Eigen::Infinity>();
         };
         if (size(r - previous_r) <= noise * (size(E_s) + size(r)) &&
-            (E - previous_E).norm() <= noise * E.norm())
+            curvature_norm(E - previous_E) <= noise * curvature_norm(E))
           return false;
       }
     majorised = true;
