@@ -57,13 +57,14 @@ namespace Debond
    * as it takes to prove it, up to a limit: nothing if its certificate does
    * (NodeBound::certificate) or, with proof_first, the first node of branch
    * and bound, or up to 100 unknowns a few relaxations of that node
-   * (BranchAndBoundParameters::only_while_halving), else a search that starts from rest and from all
-   * bonds broken and moves edges by one node; if the certificate of what that
-   * finds is not enough, the first node of branch and bound; then the full
-   * search, and branch and bound with a number of nodes that depends on n only,
-   * 500 up to n = 92 and as n^-3 from there on; both again, at most thrice, if
-   * that finds something. @p may_end is asked after the first search, with
-   * whether that found anything, and may change s; if true the search ends.
+   * (BranchAndBoundParameters::only_while_halving), else a search that starts
+   * from rest and from all bonds broken and moves edges by one node; if the
+   * certificate of what that finds is not enough, the first node of branch and
+   * bound; then the full search, and branch and bound with a number of nodes
+   * that depends on n only, 500 up to n = 92 and as n^-3 from there on; both
+   * again, at most thrice, if that finds something. @p may_end is asked after
+   * the first search, with whether that found anything, and may change s; if
+   * true the search ends.
    *
    * If Phi is not separable, the proof is for the lumped one and says where
    * to look: the minimum that it finds is a start for the true Phi.
