@@ -179,6 +179,7 @@ namespace Debond
       record.add("/iterations/short", result.short_steps);
       record.add("/iterations/null", result.null_steps);
       record.add("/stop_criterion", result.criterion);
+      record.add("/refined", result.is_refined);
       record.add("/largest_qp_residual", result.largest_qp_residual);
       record.add("/linear_iterations", result.linear_iterations);
       record.add("/condition_estimate",
@@ -198,7 +199,10 @@ namespace Debond
                                                       ")") :
                                                 ""));
       record.line(is_bundle ? "last v_k" : "optimality residual",
-                  scientific(result.criterion, 3));
+                  scientific(result.criterion, 3) +
+                    (result.is_refined ?
+                       ", before the refinement in extended precision" :
+                       ""));
     }
 
 
@@ -221,7 +225,8 @@ namespace Debond
             texts.push_back(words(verification.name(state), " ", count));
         }
       record.add("/bond_states", states);
-      record.line("contact nodes", join(texts, ", "));
+      record.line("contact nodes",
+                  texts.empty() ? "all held" : join(texts, ", "));
 
       record.add("/largest_opening", verification.largest_opening);
       record.add("/broken_zone", verification.broken_zone);

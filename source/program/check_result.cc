@@ -147,6 +147,12 @@ namespace Debond
           }
       }
 
+    if (result.solve.status == SolverStatus::quadratic_program &&
+        !scene.problem().unknowns().held_by_contact().motions.empty())
+      result.solve.message +=
+        " Only its contact holds the body: where the bonds are softer than "
+        "1e-12 of it, rounding decides. Try stiffer bonds or a support.";
+
     dealii::Timer timer;
     // What bonds have left for good only the path knows.
     if (result.path.empty())

@@ -349,16 +349,16 @@ namespace Debond
       {
         DofVector           u = condensed.expand(point);
         CondensedCorrection solver(condensed);
-        const std::string   note = refine_where_needed(
-                                   scene.problem(),
-                                   adhesion,
-                                   factors,
-                                   solver,
-                                   [this]() { return !guard.requested(); },
-                                   u)
-                                   .note;
-        if (!note.empty() && result.notes.empty())
-          result.notes.push_back(note);
+        const Refined       refined = refine_where_needed(
+          scene.problem(),
+          adhesion,
+          factors,
+          solver,
+          [this]() { return !guard.requested(); },
+          u);
+        result.is_refined = refined.is_refined;
+        if (!refined.note.empty() && result.notes.empty())
+          result.notes.push_back(refined.note);
         return u;
       }
 

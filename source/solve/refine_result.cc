@@ -81,6 +81,7 @@ namespace Debond
       solver,
       [&watch]() { return watch.may_go_on(); },
       result.u);
+    result.is_refined       = refined.is_refined;
     const std::string &note = refined.note;
     if (!note.empty())
       result.notes.push_back(note);

@@ -404,4 +404,19 @@ main(int argc, char *argv[])
           tally);
   test<3>({1e4, "40, 1, 1", "left", "winkler", "free", "automatic"}, tally);
   test<3>({1e4, "20, 2, 2", "left", "none", "fixed", "automatic"}, tally);
+  // Both nodes of the contact boundary are clamped.
+  for (const std::string linear_solver : {"direct", "multigrid"})
+    test<2>("no free contact node, " + linear_solver,
+            {"Mesh/Lengths=1000, 1",
+             "Mesh/Cells=600, 3",
+             "Parts/held=left: y < 0.3 || y > 0.7",
+             "Parts/glued=left: y > 0.3 && y < 0.7",
+             "Material/Young modulus=2e5",
+             "Boundary conditions/Clamped boundaries=held",
+             "Boundary conditions/Contact boundary=glued",
+             "Contact law/Tangential displacement=free",
+             "Loads/Traction right=0; 1e-5",
+             "Solver/Method=majorise minimise",
+             "Solver/Linear solver=" + linear_solver},
+            tally);
 }

@@ -36,8 +36,11 @@ namespace Debond
     unsigned int null_steps  = 0;
 
     /// Of the stop criterion: v_k of a bundle method, the relative residual of
-    /// majorise-minimise.
+    /// majorise-minimise. A refined result is better than that.
     double criterion = 0.;
+
+    /// u is a minimiser in extended precision, from where the method ended.
+    bool is_refined = false;
 
     double largest_qp_residual = 0.; ///< of bundle methods
 
