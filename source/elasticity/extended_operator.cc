@@ -108,11 +108,11 @@ namespace Debond
 
   template <int dim>
   double
-  ExtendedOperator<dim>::stress_rounding(const ExtendedVector &u) const
+  ExtendedOperator<dim>::stress_rounding(const ExtendedVector &u,
+                                         const ExtendedVector &rounded_u) const
   {
-    const ExtendedVector displacement = cartesian(u);
-    const ExtendedVector rounded =
-      cartesian(u.template cast<double>().template cast<long double>());
+    const ExtendedVector  displacement = cartesian(u);
+    const ExtendedVector  rounded      = cartesian(rounded_u);
     long double           largest = 0., largest_change = 0.;
     std::vector<Gradient> gradients;
     for (unsigned int c = 0; c < cells.size(); ++c)

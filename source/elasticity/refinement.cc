@@ -191,12 +191,16 @@ namespace Debond
     const ElasticUnknowns<dim> &unknowns = problem.unknowns();
     if (unknowns.has_lifting())
       {
-        // Of u itself, what is large in w is not.
-        DofVector x = unknowns.lifting(factors);
-        x += u;
-        terms = 0.;
-        for (unsigned int i = 0; i < x.size(); ++i)
-          terms += problem.diagonal_entry(i) * x(i) * x(i);
+        // Of u itself, and of a lifting that w undoes, as a gap is undone where
+        // the body stays at rest.
+        const DofVector lifting = unknowns.lifting(factors);
+        terms                   = 0.;
+        for (unsigned int i = 0; i < u.size(); ++i)
+          {
+            const double size =
+              std::abs(u(i) + lifting(i)) + std::abs(lifting(i));
+            terms += problem.diagonal_entry(i) * size * size;
+          }
         const double energy = 2. * problem.fields().strain_energy(u, factors);
         return energy > 0. ?
                  std::numeric_limits<double>::epsilon() * terms / energy :
@@ -219,7 +223,8 @@ namespace Debond
   namespace
   {
     /// The majorant of J at a point, in extended precision, and its minimum
-    /// over u_nu <= 0.
+    /// over u_nu <= gap. In the displacements themselves: where a gap is far
+    /// larger than they are, nothing would be left of them in w.
     template <int dim>
     class ExtendedMajorant
     {
@@ -238,11 +243,17 @@ namespace Debond
         , may_go_on(go_on)
         , result(counts)
         , normals(problem.unknowns().contact().normals())
-        , u(to_extended(start))
-        , f(to_extended(problem.load_at(factors)))
+        , lifting(to_extended(problem.unknowns().lifting(factors)))
+        , u(to_extended(start) + lifting)
+        , f(load_at(problem, factors))
       {
         for (const double s : problem.unknowns().contact().trace(start))
           active.push_back(s == 0.);
+        // Of what w leaves of a lifting that it undoes.
+        constexpr long double epsilon = std::numeric_limits<double>::epsilon();
+        for (unsigned int i = 0; i < lifting.size(); ++i)
+          least_energy += problem.diagonal_entry(i) * epsilon * lifting(i) *
+                          epsilon * lifting(i);
       }
 
       /// Returns false if the majorant is the one of before.
@@ -251,7 +262,7 @@ namespace Debond
       {
         Eigen::VectorXd s(normals.size());
         for (unsigned int i = 0; i < s.size(); ++i)
-          s(i) = static_cast<double>(u(normals[i]));
+          s(i) = static_cast<double>(to_foundation(i));
         const Eigen::SparseMatrix<double> previous_E   = E;
         const Eigen::VectorXd             previous_b_c = b_c;
         E                                              = phi.curvature(s);
@@ -275,20 +286,20 @@ namespace Debond
             ++result.systems;
             for (unsigned int i = 0; i < normals.size(); ++i)
               if (active[i] != 0)
-                u(normals[i]) = 0.;
+                u(normals[i]) = lifting(normals[i]);
             solver.prepare(E, active);
             if (!solve())
               return false;
 
             Eigen::VectorXd      excess(normals.size()), mu(normals.size());
-            const ExtendedVector r        = force(u);
+            const ExtendedVector r        = force();
             long double          residual = 0., largest = 0.;
             std::vector<char>    held(static_cast<std::size_t>(u.size()), 0);
             for (unsigned int i = 0; i < normals.size(); ++i)
               {
-                excess(i) = static_cast<double>(u(normals[i]));
+                excess(i) = static_cast<double>(to_foundation(i));
                 mu(i)     = static_cast<double>(r(normals[i]));
-                largest   = std::max(largest, std::abs(u(normals[i])));
+                largest   = std::max(largest, std::abs(to_foundation(i)));
                 if (active[i] != 0)
                   held[normals[i]] = 1;
                 else
@@ -313,7 +324,7 @@ namespace Debond
       {
         DofVector point(static_cast<unsigned int>(u.size()));
         for (unsigned int i = 0; i < point.size(); ++i)
-          point(i) = static_cast<double>(u(i));
+          point(i) = static_cast<double>(u(i) - lifting(i));
         for (const auto normal : normals)
           point(normal) = std::min(point(normal), 0.);
         return point;
@@ -322,7 +333,10 @@ namespace Debond
       double
       stress_rounding() const
       {
-        return A.stress_rounding(u);
+        // A body at rest has no other stresses.
+        return energy() > least_energy ?
+                 A.stress_rounding(u, to_extended(rounded()) + lifting) :
+                 0.;
       }
 
     private:
@@ -331,6 +345,41 @@ namespace Debond
       {
         return Eigen::Map<const Eigen::VectorXd>(v.begin(), v.size())
           .template cast<long double>();
+      }
+
+      /// Cartesian forces are data, so that double precision is enough.
+      static ExtendedVector
+      load_at(const ElasticProblem<dim> &problem, const LoadFactors factors)
+      {
+        DofVector load = problem.unknowns().in_frames(
+          problem.fields().applied_nodal_forces(factors));
+        problem.unknowns().constraints().set_zero(load);
+        return to_extended(load);
+      }
+
+      /// s of a contact node.
+      long double
+      to_foundation(const Eigen::Index i) const
+      {
+        return u(normals[i]) - lifting(normals[i]);
+      }
+
+      /// Twice the energy of u and of the bonds' curvature, without what
+      /// supports move.
+      long double
+      energy() const
+      {
+        ExtendedVector v = u;
+        for (unsigned int i = 0; i < v.size(); ++i)
+          if (problem.unknowns().is_constrained(i))
+            v(i) = 0.;
+        long double sum = v.dot(A * v);
+        for (int j = 0; j < E.outerSize(); ++j)
+          for (Eigen::SparseMatrix<double>::InnerIterator entry(E, j); entry;
+               ++entry)
+            sum +=
+              to_foundation(entry.row()) * entry.value() * to_foundation(j);
+        return std::max(sum, least_energy);
       }
 
       /// (A + E) v.
@@ -347,9 +396,13 @@ namespace Debond
 
       /// Minus the majorant's gradient.
       ExtendedVector
-      force(const ExtendedVector &v) const
+      force() const
       {
-        ExtendedVector r = f - product(v);
+        ExtendedVector r = f - A * u;
+        for (int j = 0; j < E.outerSize(); ++j)
+          for (Eigen::SparseMatrix<double>::InnerIterator entry(E, j); entry;
+               ++entry)
+            r(normals[entry.row()]) -= entry.value() * to_foundation(j);
         for (unsigned int i = 0; i < normals.size(); ++i)
           r(normals[i]) += b_c(i);
         return r;
@@ -383,15 +436,15 @@ namespace Debond
         long double error = std::numeric_limits<long double>::infinity();
         while (true)
           {
-            ExtendedVector r = force(u);
+            ExtendedVector r = force();
             release_held(r);
-            ExtendedVector    z      = precondition(r);
-            long double       rho    = r.dot(z);
-            const long double energy = std::max(u.dot(product(u)), rho);
+            ExtendedVector    z   = precondition(r);
+            long double       rho = r.dot(z);
+            const long double all = std::max(energy(), rho);
             const long double target =
-              energy * (refinement_tolerance * refinement_tolerance);
+              all * (refinement_tolerance * refinement_tolerance);
             result.error =
-              energy == 0. ? 0. : static_cast<double>(std::sqrt(rho / energy));
+              all == 0. ? 0. : static_cast<double>(std::sqrt(rho / all));
             if (rho <= target)
               return true;
             // Residuals that are computed again do not fall for ever.
@@ -436,8 +489,10 @@ namespace Debond
 
       const std::vector<dealii::types::global_dof_index> &normals;
 
-      ExtendedVector u;
-      ExtendedVector f;
+      const ExtendedVector lifting;
+      ExtendedVector       u; ///< the displacements, lifting and all
+      const ExtendedVector f;
+      long double          least_energy = 0.;
 
       Eigen::SparseMatrix<double> E;
       Eigen::VectorXd             b_c;

@@ -39,9 +39,9 @@ namespace Debond
   void
   Record::line(const std::string &label, const std::string &text)
   {
-    constexpr int label_width = 22;
+    constexpr int label_width = 21;
     log << "  " << std::left << std::setw(label_width) << label << std::right
-        << text << '\n';
+        << ' ' << text << '\n';
   }
 
 

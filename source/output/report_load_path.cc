@@ -2,6 +2,7 @@
 #include <debond/base/text.h>
 #include <debond/output/report.h>
 
+#include <algorithm>
 #include <iomanip>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@ namespace Debond
     void
     report_change(const std::string               &name,
                   const std::string               &label,
+                  const bool                       has_bonds,
                   const std::optional<BondChange> &change,
                   Record                          &record)
     {
@@ -42,7 +44,7 @@ namespace Debond
                 words(" (of displacements ", change->displacement_factor, ")"),
               ", step ",
               change->step,
-              ", broken part ",
+              has_bonds ? ", broken part " : ", open part ",
               change->broken_before,
               " to ",
               change->broken_after) +
@@ -111,6 +113,7 @@ namespace Debond
     /// from the global branch.
     void
     report_totals(const LoadPathTotals        &path,
+                  const bool                   has_bonds,
                   const std::optional<double> &comes_off_at,
                   Record                      &record)
     {
@@ -130,11 +133,13 @@ namespace Debond
       if (comes_off_at)
         record.line("comes off", words("at factor ", *comes_off_at));
       report_change("largest_break",
-                    "most bonds break",
+                    has_bonds ? "most bonds break" : "most nodes open",
+                    has_bonds,
                     path.largest_break,
                     record);
       report_change("largest_closing",
-                    "most bonds close",
+                    has_bonds ? "most bonds close" : "most nodes close",
+                    has_bonds,
                     path.largest_closing,
                     record);
 
@@ -159,9 +164,15 @@ namespace Debond
                    const RunResult<dim>     &result,
                    Record                   &record)
   {
+    const std::vector<ContactNodeState> &nodes = result.verification.nodes;
     report_totals(load_path_totals(result.path,
                                    static_cast<unsigned int>(
                                      load_path.factors.size())),
+                  std::any_of(nodes.begin(),
+                              nodes.end(),
+                              [](const ContactNodeState &node) {
+                                return node.branch != BondState::free;
+                              }),
                   result.solve.comes_off_at,
                   record);
     report_arc(result.arc, load_path.arc, record);

@@ -43,15 +43,16 @@ namespace Debond
     EquilibriumProblem<dim>
     equilibrium_problem(const Scene<dim> &scene)
     {
-      const auto &dofs = scene.problem().unknowns().dof_handler();
-      return EquilibriumProblem<dim>(dofs.get_triangulation(),
+      const auto &triangulation =
+        scene.problem().unknowns().dof_handler().get_triangulation();
+      return EquilibriumProblem<dim>(triangulation,
                                      scene.conditions(),
                                      scene.supports(),
                                      scene.materials(),
                                      scene.loads(),
-                                     thermal_stresses(dofs,
-                                                      scene.materials(),
-                                                      scene.loads()));
+                                     mean_thermal_stresses(triangulation,
+                                                           scene.materials(),
+                                                           scene.loads()));
     }
 
 
@@ -610,6 +611,15 @@ namespace Debond
                              to_string(certificate.proof_status) + ")");
     if (earlier != nullptr)
       intersect(certificate, *earlier);
+    if (certificate.lower > certificate.upper)
+      {
+        std::ostringstream text;
+        text.precision(10);
+        text << std::scientific << "the lower bound " << certificate.lower
+             << " is above the upper one " << certificate.upper
+             << ", so that one of them is wrong";
+        throw EquilibriumError(text.str());
+      }
     certificate.seconds = timer.wall_time();
     return certificate;
   }

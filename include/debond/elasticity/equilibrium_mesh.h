@@ -109,10 +109,10 @@ namespace Debond
       std::array<unsigned int, dim> unknowns;
     };
 
-    /// @p thermal_stresses: of each active cell, see thermal_stresses(); none
-    /// if empty. Keeps a reference to the mesh. Throws EquilibriumError for
-    /// what is not done: displacements that are prescribed and not zero, gaps,
-    /// and contact sides that are supported as well.
+    /// @p thermal_stresses: of each active cell, see mean_thermal_stresses();
+    /// none if empty. Keeps a reference to the mesh. Throws EquilibriumError
+    /// for what is not done: displacements that are prescribed and not zero,
+    /// gaps, and contact sides that are supported as well.
     EquilibriumMesh(const dealii::Triangulation<dim> &mesh,
                     const BoundaryConditions         &conditions,
                     const Supports<dim>              &supports,

@@ -35,9 +35,10 @@ namespace Debond
     operator*(const ExtendedVector &u) const;
 
     /// How much the largest change of a stress is, relative to the largest
-    /// stress, if @p u is rounded to double precision.
+    /// stress, if @p u is rounded to @p rounded_u.
     double
-    stress_rounding(const ExtendedVector &u) const;
+    stress_rounding(const ExtendedVector &u,
+                    const ExtendedVector &rounded_u) const;
 
   private:
     /// sigma[d][e].

@@ -24,11 +24,18 @@ namespace Debond
 
 
 
-  /// The stress of each active cell that its change of temperature makes if the
-  /// body does not move, Material::thermal_stress() times the mean of the
-  /// change over the cell, of degree 2 the change at each point of
-  /// BernsteinSimplex, as a pressure; empty if there is none. Throws
-  /// TemperatureError with the place if the change is not finite somewhere.
+  /// The stress of each active cell that the mean of its change of temperature
+  /// makes if the body does not move, Material::thermal_stress() times that, as
+  /// a pressure; empty if there is none. Throws TemperatureError with the place
+  /// if the change is not finite somewhere.
+  template <int dim>
+  std::vector<double>
+  mean_thermal_stresses(const dealii::Triangulation<dim> &triangulation,
+                        const ByRegion<Material>         &materials,
+                        const Loads<dim>                 &loads);
+
+  /// The same as the displacements see it: of degree 1 the means, of degree 2
+  /// for each cell the values at the points of BernsteinSimplex.
   template <int dim>
   std::vector<double>
   thermal_stresses(const dealii::DoFHandler<dim> &dof_handler,
