@@ -6,6 +6,8 @@
 #include <debond/input/expression.h>
 #include <debond/program/check_result.h>
 
+#include <limits>
+
 namespace Debond
 {
   template <int dim>
@@ -76,6 +78,22 @@ namespace Debond
         result.status  = "not accurate enough";
         result.message = shortfall;
       }
+  }
+
+
+
+  /// Bonds that reach over a gap are one as well.
+  template <int dim>
+  bool
+  has_load(const Scene<dim> &scene, const double largest_displacement)
+  {
+    const ElasticProblem<dim> &problem = scene.problem();
+    return problem.unknowns().has_prescribed_displacements() ||
+           problem.fields().applied_nodal_forces().linfty_norm() > 0. ||
+           (problem.unknowns().has_gap() &&
+            largest_displacement >
+              std::numeric_limits<double>::epsilon() *
+                problem.unknowns().lifting().linfty_norm());
   }
 
 
@@ -188,14 +206,11 @@ namespace Debond
 
     result.largest =
       largest_values(scene.problem(), result.solve.u, result.solve.load_factor);
-    append(plausibility_notes(
-             scene.body().shape(),
-             dim,
-             scene.problem().unknowns().has_lifting() ||
-               scene.problem().fields().applied_nodal_forces().linfty_norm() >
-                 0.,
-             result.largest,
-             scene.parameters().degree),
+    append(plausibility_notes(scene.body().shape(),
+                              dim,
+                              has_load(scene, result.largest.displacement),
+                              result.largest,
+                              scene.parameters().degree),
            result.notes);
     result.displacement_error =
       error_of(verification.exact_displacement, scene, result.solve.u);
