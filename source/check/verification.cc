@@ -54,16 +54,24 @@ namespace Debond
   {
     std::ostringstream text;
     text.precision(3);
+    const std::string advice =
+      ". Are bonds, loads and gaps in the units of the Young modulus?";
     if (!(force_rounding <= largest_force_rounding))
       text << "verification: rounding of the displacements makes forces of "
            << force_rounding << " of the largest one, required is at most "
-           << largest_force_rounding
-           << ". Are bonds and loads in the units of the Young modulus?";
+           << largest_force_rounding << advice;
     else
-      text << "verification: the largest of residual, force imbalance and "
-              "contact law violation is "
-           << error() << ", required is at most " << tolerance
-           << ". Try a smaller stop tolerance.";
+      {
+        text << "verification: the largest of residual, force imbalance and "
+                "contact law violation is "
+             << error() << ", required is at most " << tolerance;
+        if (force_rounding <= 0.1 * tolerance)
+          text << ". Try a smaller stop tolerance.";
+        else
+          text << ", and rounding of the displacements alone makes forces of "
+                  "up to "
+               << force_rounding << " of the largest one" << advice;
+      }
     return text.str();
   }
 
@@ -105,6 +113,9 @@ namespace Debond
     /// Forces that are less than so many times their rounding are not resolved.
     constexpr double digits_above_rounding = 1e4;
 
+    /// Of the largest one: what rounding of gaps may make beside it.
+    constexpr double negligible_force = 1e-7;
+
 
 
     /// What the displacement and the force of a node are compared with, see
@@ -125,6 +136,7 @@ namespace Debond
                const ContactBoundary<dim>          &boundary,
                const std::vector<ContactNodeState> &nodes,
                const VectorView                    &rounding,
+               const double                         resolved_above_gaps,
                const double                         largest_reaction,
                const double                         largest_displacement)
     {
@@ -145,8 +157,9 @@ namespace Debond
           LawScale   scale     = {largest_displacement, largest_force};
           if (has_bonds)
             scale.force = std::min(scale.force, strength);
-          scale.force =
-            std::max(scale.force, digits_above_rounding * rounding(i));
+          scale.force = std::max({scale.force,
+                                  digits_above_rounding * rounding(i),
+                                  resolved_above_gaps});
           if (has_bonds)
             scale.length =
               std::min(scale.length,
@@ -549,11 +562,27 @@ namespace Debond
     const LargestResiduals largest =
       largest_residuals(problem, residual, piece);
     const DofVector rounding = problem.fields().residual_rounding(u, factors);
+    const double    largest_load =
+      largest_entry(problem.fields().applied_nodal_forces(factors));
+    const double largest_force = std::max(largest_load, largest.supported);
+    // Of w, where the body stays far from the foundation.
+    const double rounding_of_gaps =
+      problem.unknowns().has_gap() ?
+        largest_entry(
+          problem.fields().residual_rounding(DofVector(u.size()), factors)) :
+        0.;
+    // A body at rest has no other forces.
+    const double resolved_above_gaps =
+      largest_force < rounding_of_gaps ?
+        rounding_of_gaps :
+        digits_above_rounding *
+          std::min(rounding_of_gaps, negligible_force * largest_force);
     const std::vector<LawScale> scales = law_scales(law,
                                                     adhesion,
                                                     boundary,
                                                     result.nodes,
                                                     trace(rounding),
+                                                    resolved_above_gaps,
                                                     largest.supported,
                                                     largest_displacement);
     compute_violations(adhesion, s, scales, result.nodes);
@@ -574,7 +603,9 @@ namespace Debond
         result.law_violation = std::max(result.law_violation, node.violation);
       }
 
-    const double resolved = digits_above_rounding * largest_entry(rounding);
+    const double resolved =
+      std::max(digits_above_rounding * largest_entry(rounding),
+               resolved_above_gaps);
     result.equilibrium_residual =
       largest.free > 0. ?
         largest.free / std::max({largest.free, largest.supported, resolved}) :
@@ -587,11 +618,9 @@ namespace Debond
                           piece,
                           result);
 
-    const double largest_load =
-      largest_entry(problem.fields().applied_nodal_forces(factors));
     result.force_rounding =
       largest_load > 0. ?
-        largest_entry(rounding) / std::max(largest_load, largest.supported) :
+        std::max(largest_entry(rounding), rounding_of_gaps) / largest_force :
         0.;
 
     displacement = problem.unknowns().cartesian_displacement(u, factors);

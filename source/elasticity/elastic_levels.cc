@@ -485,11 +485,12 @@ namespace Debond
         index_of[normals[i]] = i;
     std::vector<unsigned int> places;
     std::vector<double>       values;
-    for (const auto &[unknown, i] : index_of)
+    // C++17 has no capture of a structured binding by reference.
+    for (const auto &[unknown, row] : index_of)
       if (levels[l].nodes->is_own(unknown / dim))
         visit_row(l,
                   unknown,
-                  [&](const unsigned int column, const double entry) {
+                  [&, i = row](const unsigned int column, const double entry) {
                     const auto found = index_of.find(column);
                     if (found == index_of.end())
                       return;

@@ -93,9 +93,6 @@ namespace Debond
                                         const LoadFactors factors) const
   {
     const DofVector displacement = unknowns.cartesian_displacement(u, factors);
-    // What w has undone of a lifting has left its rounding.
-    const DofVector lifting =
-      unknowns.cartesian_displacement(DofVector(u.size()), factors);
 
     DofVector rounding(unknowns.n_dofs());
     for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
@@ -111,8 +108,7 @@ namespace Debond
               {
                 double size = 0.;
                 for (unsigned int d = 0; d < dim; ++d)
-                  size += std::abs(displacement[nodes.dofs[n][d]]) +
-                          std::abs(lifting[nodes.dofs[n][d]]);
+                  size += std::abs(displacement[nodes.dofs[n][d]]);
                 size_gradient += size * simplex.gradient(n, point).norm();
               }
             for (unsigned int n = 0; n < nodes.size; ++n)

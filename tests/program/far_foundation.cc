@@ -32,10 +32,11 @@ namespace
   check_same(const std::string &name,
              const Json        &far,
              const double       distance,
-             const Json        &near)
+             const Json        &near,
+             const std::string &status = "success")
   {
     std::cout << "-- " << name << std::endl;
-    check("success", far["status"] == "success");
+    check(status, far["status"] == status);
     check("J", relative(far["functional"], near["functional"]), 1e-9);
     // The solution is w = u - gap in double precision.
     const double of_far  = far["largest_displacement"],
@@ -76,11 +77,17 @@ namespace
                     << std::endl;
           const Values scene = strip(dim, length);
           const Json   near  = solve_scene(scene);
-          for (const std::string distance : {"1e-3", "1", "100"})
+          for (const std::string distance : {"1e-3", "1", "10"})
             check_same("gap " + distance,
                        solve_scene(scene + gap(distance)),
                        std::stod(distance),
                        near);
+          // Rounding of w makes forces of more than 1e-6 of the reaction.
+          check_same("gap 1e4",
+                     solve_scene(scene + gap("1e4")),
+                     1e4,
+                     near,
+                     "not verified");
           check_same("energy bundle",
                      solve_scene(scene + gap("1") +
                                  Values{"Solver/Method=energy bundle"}),
@@ -109,26 +116,34 @@ namespace
   test_bar()
   {
     std::cout << "== Bar" << std::endl;
-    const Values scene = {"Mesh/Lengths=1, 0.25",
-                          "Mesh/Cells=16, 4",
-                          "Mesh/Rotation=30",
-                          "Material/Young modulus=210e9",
-                          "Material/Poisson ratio=0.3",
-                          "Boundary conditions/Clamped boundaries=left",
-                          "Boundary conditions/Contact boundary=bottom",
-                          "Contact law/Law=none",
-                          "Contact law/Tangential displacement=free"};
-    for (const std::string load : {"-0.3; 1", "-30; 100"})
+    const Values scene     = {"Mesh/Lengths=1, 0.25",
+                              "Mesh/Cells=16, 4",
+                              "Mesh/Rotation=30",
+                              "Material/Young modulus=210e9",
+                              "Material/Poisson ratio=0.3",
+                              "Boundary conditions/Clamped boundaries=left",
+                              "Boundary conditions/Contact boundary=bottom",
+                              "Contact law/Law=none",
+                              "Contact law/Tangential displacement=free"};
+    const Values multigrid = {"Solver/Method=majorise minimise",
+                              "Solver/Linear solver=multigrid"};
+    for (const auto &[load, status] :
+         {std::make_pair("-0.3; 1", "not verified"),
+          std::make_pair("-30; 100", "success")})
       {
-        const Values loaded = scene + Values{"Loads/Traction right=" + load};
-        const Json   near   = solve_scene(loaded + gap("1e-5"));
-        check_same("load " + load, solve_scene(loaded + gap("1")), 1., near);
-        check_same("multigrid",
-                   solve_scene(loaded + gap("1") +
-                               Values{"Solver/Method=majorise minimise",
-                                      "Solver/Linear solver=multigrid"}),
+        const Values loaded =
+          scene + Values{std::string("Loads/Traction right=") + load};
+        const Json near = solve_scene(loaded + gap("1e-5"));
+        check_same(std::string("load ") + load,
+                   solve_scene(loaded + gap("1")),
                    1.,
-                   near);
+                   near,
+                   status);
+        check_same("multigrid",
+                   solve_scene(loaded + gap("1") + multigrid),
+                   1.,
+                   near,
+                   status);
       }
   }
 

@@ -95,7 +95,9 @@ namespace Debond
      * What bonds bear can be less than the rounding of A u - f, for which no
      * displacement in double precision is to blame. So F_i is at least 1e4
      * times ElasticProblem::residual_rounding(): bonds weaker than that are
-     * not resolved, and rounding alone is a violation of 1e-4.
+     * not resolved, and rounding alone is a violation of 1e-4. The same holds
+     * of what rounding of w = u - gap makes, as long as that is below 1e-7 of
+     * the largest force, or all that there is.
      */
     double law_violation;
 

@@ -91,7 +91,7 @@ namespace Debond
     unsigned int
     slab(const std::size_t index, const unsigned int n_slabs) const
     {
-      const std::size_t n = 2 * box.cells[0];
+      const std::size_t n = std::size_t{2} * box.cells[0];
       return static_cast<unsigned int>(
         std::min<std::size_t>(index % (n + 1) * n_slabs / n, n_slabs - 1));
     }

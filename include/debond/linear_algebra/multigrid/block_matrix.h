@@ -13,7 +13,7 @@ namespace Debond
 {
   /// The entries of a block, row by row.
   template <int dim>
-  using Block = std::array<double, dim * dim>;
+  using Block = std::array<double, std::size_t{dim} * dim>;
 
 
 

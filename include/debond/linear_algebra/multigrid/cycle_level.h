@@ -99,7 +99,9 @@ namespace Debond
 
     /// What changed: rows, and blocks as they were.
     std::vector<unsigned int> changed_rows;
-    std::vector<std::pair<std::size_t, std::array<float, dim * dim>>> changed;
+    std::vector<
+      std::pair<std::size_t, std::array<float, std::size_t{dim} * dim>>>
+      changed;
   };
 } // namespace Debond
 
