@@ -82,19 +82,22 @@ namespace Debond
 
 
 
-  /// Bonds that reach over a gap are one as well.
-  template <int dim>
-  bool
-  has_load(const Scene<dim> &scene, const double largest_displacement)
+  namespace
   {
-    const ElasticProblem<dim> &problem = scene.problem();
-    return problem.unknowns().has_prescribed_displacements() ||
-           problem.fields().applied_nodal_forces().linfty_norm() > 0. ||
-           (problem.unknowns().has_gap() &&
-            largest_displacement >
-              std::numeric_limits<double>::epsilon() *
-                problem.unknowns().lifting().linfty_norm());
-  }
+    /// Bonds that reach over a gap are one as well.
+    template <int dim>
+    bool
+    has_load(const Scene<dim> &scene, const double largest_displacement)
+    {
+      const ElasticProblem<dim> &problem = scene.problem();
+      return problem.unknowns().has_prescribed_displacements() ||
+             problem.fields().applied_nodal_forces().linfty_norm() > 0. ||
+             (problem.unknowns().has_gap() &&
+              largest_displacement >
+                std::numeric_limits<double>::epsilon() *
+                  problem.unknowns().lifting().linfty_norm());
+    }
+  } // namespace
 
 
 
