@@ -179,6 +179,10 @@ namespace Debond
       record.add("/iterations/short", result.short_steps);
       record.add("/iterations/null", result.null_steps);
       record.add("/stop_criterion", result.criterion);
+      record.add("/relative_descent",
+                 result.relative_descent ?
+                   Record::Json(*result.relative_descent) :
+                   Record::Json());
       record.add("/refined", result.is_refined);
       record.add("/largest_qp_residual", result.largest_qp_residual);
       record.add("/linear_iterations", result.linear_iterations);
@@ -200,6 +204,10 @@ namespace Debond
                                                 ""));
       record.line(is_bundle ? "last v_k" : "optimality residual",
                   scientific(result.criterion, 3) +
+                    (result.relative_descent ?
+                       ", " + scientific(*result.relative_descent, 1) +
+                         " of the strain energy" :
+                       "") +
                     (result.is_refined ?
                        ", before the refinement in extended precision" :
                        ""));

@@ -7,6 +7,7 @@
 #include <debond/program/check_result.h>
 
 #include <limits>
+#include <sstream>
 
 namespace Debond
 {
@@ -35,6 +36,14 @@ namespace Debond
 
 
 
+  namespace
+  {
+    /// Energies are off by the square of what displacements are.
+    constexpr double largest_relative_descent = 1e-6;
+  } // namespace
+
+
+
   template <int dim>
   std::string
   verification_message(const double tolerance, const RunResult<dim> &result)
@@ -42,9 +51,19 @@ namespace Debond
     for (const LoadPathStep<dim> &step : result.path)
       if (!step.message.empty())
         return step.message;
-    return result.verification.error() <= tolerance ?
-             "" :
-             result.verification.failure(tolerance);
+    if (!(result.verification.error() <= tolerance))
+      return result.verification.failure(tolerance);
+    if (const std::optional<double> &descent = result.solve.relative_descent;
+        descent && !(*descent <= largest_relative_descent))
+      {
+        std::ostringstream text;
+        text.precision(3);
+        text << "verification: the predicted descent v_k is " << *descent
+             << " of the strain energy, required is at most "
+             << largest_relative_descent << ". Try a smaller stop tolerance.";
+        return text.str();
+      }
+    return "";
   }
 
 

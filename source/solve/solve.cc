@@ -10,6 +10,7 @@
 #include <debond/solve/solve.h>
 #include <debond/solve/watch.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -44,6 +45,10 @@ namespace Debond
         result);
       for (BundleIteration &iteration : result.bundle_history)
         iteration.functional += energy;
+      const double strain_energy =
+        scene.problem().fields().strain_energy(result.u);
+      if (result.criterion != 0.)
+        result.relative_descent = std::abs(result.criterion) / strain_energy;
     }
   } // namespace
 

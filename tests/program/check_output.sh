@@ -29,7 +29,7 @@ expected="applied_force assembly bond_states bonded broken build_type cells\
  largest_displacement_gradient largest_qp_residual largest_von_mises\
  law_violation linear_iterations linear_solver long memory_estimate_bytes mesh\
  message method minimum notes null output peak_memory_bytes penetration\
- reactions revision scene search_failures search_improvements search_nodes search_trials\
+ reactions relative_descent revision scene search_failures search_improvements search_nodes search_trials\
  short solve solve_parts state status stop_criterion tangential_reaction\
  timings_s total verification "
 for key in $expected; do

@@ -39,6 +39,10 @@ namespace Debond
     /// majorise-minimise. A refined result is better than that.
     double criterion = 0.;
 
+    /// Of the paper's method, whose stop tolerance is an energy: |v_k| over the
+    /// strain energy.
+    std::optional<double> relative_descent = {};
+
     /// u is a minimiser in extended precision, from where the method ended.
     bool is_refined = false;
 
