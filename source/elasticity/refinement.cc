@@ -260,9 +260,7 @@ namespace Debond
       bool
       majorise()
       {
-        Eigen::VectorXd s(normals.size());
-        for (unsigned int i = 0; i < s.size(); ++i)
-          s(i) = static_cast<double>(to_foundation(i));
+        const Eigen::VectorXd s = to_foundation().template cast<double>();
         const Eigen::SparseMatrix<double> previous_E   = E;
         const Eigen::VectorXd             previous_b_c = b_c;
         E                                              = phi.curvature(s);
@@ -291,27 +289,24 @@ namespace Debond
             if (!solve())
               return false;
 
-            Eigen::VectorXd      excess(normals.size()), mu(normals.size());
-            const ExtendedVector r        = force();
-            long double          residual = 0., largest = 0.;
+            const Eigen::VectorXd excess =
+              to_foundation().template cast<double>();
+            const ExtendedVector r  = force();
+            Eigen::VectorXd      mu = at_contact(r).template cast<double>();
+            long double          residual = 0.;
             std::vector<char>    held(static_cast<std::size_t>(u.size()), 0);
             for (unsigned int i = 0; i < normals.size(); ++i)
-              {
-                excess(i) = static_cast<double>(to_foundation(i));
-                mu(i)     = static_cast<double>(r(normals[i]));
-                largest   = std::max(largest, std::abs(to_foundation(i)));
-                if (active[i] != 0)
-                  held[normals[i]] = 1;
-                else
-                  mu(i) = 0.;
-              }
+              if (active[i] != 0)
+                held[normals[i]] = 1;
+              else
+                mu(i) = 0.;
             for (unsigned int i = 0; i < r.size(); ++i)
               if (held[i] == 0)
                 residual = std::max(residual, std::abs(r(i)));
             if (rule.update(excess,
                             mu,
                             0.01 * std::numeric_limits<double>::epsilon() *
-                              static_cast<double>(largest),
+                              excess.lpNorm<Eigen::Infinity>(),
                             static_cast<double>(residual),
                             active) == 0)
               return true;
@@ -357,11 +352,26 @@ namespace Debond
         return to_extended(load);
       }
 
-      /// s of a contact node.
-      long double
-      to_foundation(const Eigen::Index i) const
+      ExtendedVector
+      at_contact(const ExtendedVector &v) const
       {
-        return u(normals[i]) - lifting(normals[i]);
+        ExtendedVector v_nu(normals.size());
+        for (unsigned int i = 0; i < normals.size(); ++i)
+          v_nu(i) = v(normals[i]);
+        return v_nu;
+      }
+
+      /// s of the contact nodes.
+      ExtendedVector
+      to_foundation() const
+      {
+        return at_contact(u) - at_contact(lifting);
+      }
+
+      ExtendedVector
+      E_times(const ExtendedVector &s) const
+      {
+        return E.cast<long double>() * s;
       }
 
       /// Twice the energy of u and of the bonds' curvature, without what
@@ -373,24 +383,18 @@ namespace Debond
         for (unsigned int i = 0; i < v.size(); ++i)
           if (problem.unknowns().is_constrained(i))
             v(i) = 0.;
-        long double sum = v.dot(A * v);
-        for (int j = 0; j < E.outerSize(); ++j)
-          for (Eigen::SparseMatrix<double>::InnerIterator entry(E, j); entry;
-               ++entry)
-            sum +=
-              to_foundation(entry.row()) * entry.value() * to_foundation(j);
-        return std::max(sum, least_energy);
+        const ExtendedVector s = to_foundation();
+        return std::max(v.dot(A * v) + s.dot(E_times(s)), least_energy);
       }
 
       /// (A + E) v.
       ExtendedVector
       product(const ExtendedVector &v) const
       {
-        ExtendedVector A_v = A * v;
-        for (int j = 0; j < E.outerSize(); ++j)
-          for (Eigen::SparseMatrix<double>::InnerIterator entry(E, j); entry;
-               ++entry)
-            A_v(normals[entry.row()]) += entry.value() * v(normals[j]);
+        ExtendedVector       A_v = A * v;
+        const ExtendedVector E_v = E_times(at_contact(v));
+        for (unsigned int i = 0; i < normals.size(); ++i)
+          A_v(normals[i]) += E_v(i);
         return A_v;
       }
 
@@ -398,13 +402,10 @@ namespace Debond
       ExtendedVector
       force() const
       {
-        ExtendedVector r = f - A * u;
-        for (int j = 0; j < E.outerSize(); ++j)
-          for (Eigen::SparseMatrix<double>::InnerIterator entry(E, j); entry;
-               ++entry)
-            r(normals[entry.row()]) -= entry.value() * to_foundation(j);
+        ExtendedVector       r   = f - A * u;
+        const ExtendedVector E_s = E_times(to_foundation());
         for (unsigned int i = 0; i < normals.size(); ++i)
-          r(normals[i]) += b_c(i);
+          r(normals[i]) += b_c(i) - E_s(i);
         return r;
       }
 

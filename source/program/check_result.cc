@@ -214,23 +214,26 @@ namespace Debond
           shortfall,
           result);
 
+    result.largest =
+      largest_values(scene.problem(), result.solve.u, result.solve.load_factor);
+    const bool is_loaded = has_load(scene, result.largest.displacement);
+
     // A loop that was interrupted has the solution of the mesh before.
     const bool is_solution =
       result.is_success() || !shortfall.empty() ||
       (result.solve.status == SolverStatus::interrupted &&
        !result.levels.empty());
-    if (is_solution)
+    // At rest all of u is rounding, of which there is no error.
+    if (is_solution && is_loaded)
       {
         timer.restart();
         estimate(scene, bonds, result);
         result.times.emplace_back("error estimate", timer.wall_time());
       }
 
-    result.largest =
-      largest_values(scene.problem(), result.solve.u, result.solve.load_factor);
     append(plausibility_notes(scene.body().shape(),
                               dim,
-                              has_load(scene, result.largest.displacement),
+                              is_loaded,
                               result.largest,
                               scene.parameters().degree),
            result.notes);

@@ -209,7 +209,8 @@ namespace Debond
     judge(verification_message(parameters.verification.tolerance, result),
           "",
           result);
-    if (dealii::Utilities::MPI::broadcast(ranks, result.is_success()))
+    if (largest_force > 0. &&
+        dealii::Utilities::MPI::broadcast(ranks, result.is_success()))
       {
         timer.restart();
         estimate(scene, scene.adhesion(), result);
