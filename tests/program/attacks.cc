@@ -554,9 +554,15 @@ namespace
     const VectorX force = -body.normal_forces(residual);
     // Cells that are much longer than high make forces of what is rounded;
     // what is below ten times that is not resolved. The vertices of turned
-    // boxes are rounded as well.
-    const VectorX rounding = (attack.rotation == 0. ? 10 : 100) *
-                             body.normal_forces(body.rounding(u)).cwiseAbs();
+    // boxes are rounded as well. Results are kept as s in double, which is
+    // gaps where these are far larger than displacements: then forces far below
+    // the largest one are lost.
+    const VectorX of_gaps =
+      body.normal_forces(body.rounding_of_gaps()).cwiseAbs();
+    const VectorX rounding =
+      (attack.rotation == 0. ? 10 : 100) *
+      (body.normal_forces(body.rounding(u)).cwiseAbs() +
+       of_gaps.cwiseMin(VectorX::Constant(of_gaps.size(), 1e-7 * largest)));
     const Real strength = body.largest_strength();
     // Weak bonds are lost in the rounding of larger forces.
     const Real scale =
@@ -642,7 +648,9 @@ namespace
                   1.);
     const Real own_size =
       body.expand(body.descend(s)).template lpNorm<Eigen::Infinity>();
-    if (std::max(size, own_size) * bulk <= 1e-14 * largest)
+    if (std::max(size, own_size) * bulk <= 1e-14 * largest ||
+        (!body.has_loads() &&
+         std::max(size, own_size) <= 1e-14 * body.largest_gap()))
       return {"solved", "nothing moves"};
     if (const std::string reason =
           what_rounding_decides(attack, body, u, residual, J_of_own, energy);

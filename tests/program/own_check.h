@@ -199,6 +199,29 @@ namespace OwnCheck
       return std::numeric_limits<double>::epsilon() * sums;
     }
 
+    /// The same of what stays of gaps in s.
+    VectorX
+    rounding_of_gaps() const
+    {
+      VectorX closed = VectorX::Zero(n_dofs());
+      for (unsigned int i = 0; i < n_contact(); ++i)
+        closed(contact_dofs[i]) = gap(i);
+      return rounding(closed);
+    }
+
+    Real
+    largest_gap() const
+    {
+      return n_contact() > 0 ? gap.maxCoeff() : 0;
+    }
+
+    /// Forces or prescribed displacements.
+    bool
+    has_loads() const
+    {
+      return !f.isZero(0) || !fixed_values.isZero(0);
+    }
+
     VectorX
     normal_displacements(const VectorX &u) const
     {
