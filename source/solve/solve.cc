@@ -47,7 +47,9 @@ namespace Debond
         iteration.functional += energy;
       const double strain_energy =
         scene.problem().fields().strain_energy(result.u);
-      if (result.criterion != 0.)
+      // What foundation and supports bear without any displacement leaves a v_k
+      // of rounding.
+      if (strain_energy > 0.)
         result.relative_descent = std::abs(result.criterion) / strain_energy;
     }
   } // namespace

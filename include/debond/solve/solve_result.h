@@ -40,7 +40,7 @@ namespace Debond
     double criterion = 0.;
 
     /// Of the paper's method, whose stop tolerance is an energy: |v_k| over the
-    /// strain energy.
+    /// strain energy, if there is any.
     std::optional<double> relative_descent = {};
 
     /// u is a minimiser in extended precision, from where the method ended.
