@@ -392,8 +392,8 @@ namespace Debond
         is_normal[normal] = true;
 
       // What the supports and the foundation exert is the residual at their
-      // degrees of freedom; what supports do not bear at a vertex with a
-      // contact node comes from the foundation.
+      // degrees of freedom; what is held there and by no support is held by the
+      // foundation.
       const ElasticUnknowns<dim> &unknowns = problem.unknowns();
       std::vector<bool>           is_supported(unknowns.n_dofs(), false);
       for (const auto &[dof, unused] : unknowns.supported())
@@ -406,21 +406,15 @@ namespace Debond
         {
           const CellNodes<dim> nodes(cell);
           for (unsigned int n = 0; n < nodes.size; ++n)
-            {
-              bool has_contact_node = false;
-              for (const auto dof : nodes.dofs[n])
-                has_contact_node |= is_normal[dof];
-
-              for (unsigned int d = 0; d < dim; ++d)
-                {
-                  const auto dof = nodes.dofs[n][d];
-                  component[dof] = d;
-                  if (is_normal[dof] || problem.unknowns().is_constrained(dof))
-                    (has_contact_node && !is_supported[dof] ? contact :
-                                                              clamped)(dof) =
-                      residual(dof);
-                }
-            }
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const auto dof = nodes.dofs[n][d];
+                component[dof] = d;
+                if (is_supported[dof])
+                  clamped(dof) = residual(dof);
+                else if (is_normal[dof] || unknowns.is_constrained(dof))
+                  contact(dof) = residual(dof);
+              }
         }
 
       const auto resultant = [&](const DofVector &forces) {

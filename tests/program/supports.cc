@@ -440,6 +440,35 @@ namespace
 
 
 
+  /// At the corner of two sides the foundation alone holds the body.
+  void
+  test_corner_of_foundations()
+  {
+    std::cout << "== Corner of two contact sides" << std::endl;
+    const Json result =
+      solve_scene({"Mesh/Lengths=2, 1",
+                   "Mesh/Cells=2, 1",
+                   "Material/Young modulus=1",
+                   "Boundary conditions/Clamped boundaries=left",
+                   "Boundary conditions/Contact boundary=bottom, right",
+                   "Contact law/Bond stiffness=1",
+                   "Contact law/Bond threshold=1",
+                   "Loads/Traction top=0; 0.01"});
+    for (const unsigned int d : {0, 1})
+      {
+        const double left       = result["reactions"]["left"][d],
+                     supports   = result["clamped_reaction"][d],
+                     foundation = result["contact_reaction"][d],
+                     applied    = result["applied_force"][d];
+        check("force of supports", std::abs(supports - left) / 0.02, 1e-14);
+        check("force of the foundation",
+              std::abs(applied + left + foundation) / 0.02,
+              1e-14);
+      }
+  }
+
+
+
   void
   test_refusals()
   {
@@ -488,5 +517,6 @@ main(int argc, char *[])
       }
   test_half_of_symmetric_body();
   test_bonds();
+  test_corner_of_foundations();
   test_refusals();
 }
