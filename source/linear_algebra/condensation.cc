@@ -175,7 +175,9 @@ namespace Debond
       starts[n] = static_cast<int>(next);
 
       std::vector<int> group(n, 0), permutation(n);
-      std::fill(group.end() - n_kept, group.end(), 1);
+      // Numbers of groups are below n, which a single unknown has to heed.
+      if (n > static_cast<int>(n_kept))
+        std::fill(group.end() - n_kept, group.end(), 1);
       if (!cholmod_camd(matrix.get(),
                         nullptr,
                         0,

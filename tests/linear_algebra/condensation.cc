@@ -166,6 +166,49 @@ namespace
                          1e-8)
               << '\n';
   }
+
+
+
+  /// Where all unknowns are kept S is A.
+  void
+  test_without_others(const unsigned int n)
+  {
+    dealii::SparsityPattern pattern(n, n, 3);
+    for (unsigned int i = 0; i + 1 < n; ++i)
+      {
+        pattern.add(i, i + 1);
+        pattern.add(i + 1, i);
+      }
+    pattern.compress();
+    dealii::SparseMatrix<double> A(pattern);
+    DofVector                    f(n);
+    std::vector<unsigned int>    kept;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        f(i) = i + 1.;
+        kept.push_back(i);
+        A.set(i, i, 3.);
+        if (i > 0)
+          {
+            A.set(i, i - 1, -1.);
+            A.set(i - 1, i, -1.);
+          }
+      }
+    const Condensation condensed(A, f, kept, [](unsigned int) {
+      return false;
+    });
+    double             error = 0.;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        error = std::max(error, std::abs(condensed.load()(i) - f(i)));
+        for (unsigned int j = 0; j < n; ++j)
+          error =
+            std::max(error,
+                     std::abs(condensed.schur_complement()(i, j) - A.el(i, j)));
+      }
+    std::cout << "  S is A, g is f, to 1e-14: " << verdict(error, 1e-14)
+              << '\n';
+  }
 } // namespace
 
 
@@ -192,6 +235,11 @@ main()
   test<2>(box, 69., "top");
   std::cout << "3D, one cell through the thickness, clamped opposite\n";
   test<3>(box, 69., "top");
+
+  std::cout << "One contact normal and nothing else\n";
+  test_without_others(1);
+  std::cout << "Three contact normals and nothing else\n";
+  test_without_others(3);
 
   // A matrix that is not positive definite is refused.
   dealii::SparsityPattern pattern(3, 3, 2);
