@@ -1021,7 +1021,8 @@ def check_success(scene, body):
     largest = max(map(abs, residual))
     # Results are kept as u - g, which is the gap where that is far larger than
     # displacements: then forces far below the largest one are lost.
-    noise = [10 * (of_u + min(of_G, EXACT("1e-8") * largest)) for of_u, of_G in
+    # Gradients are of differences of places, which are rounded where they are.
+    noise = [100 * (of_u + min(of_G, EXACT("1e-8") * largest)) for of_u, of_G in
              zip(body.rounding(u), body.rounding(body.G))]
     size = max(map(abs, u))
     if not size:
@@ -1039,7 +1040,7 @@ def check_success(scene, body):
     strength = max(strengths)
     largest_contact = max(max(map(abs, force)), largest / 1000)
     scale = min(strength, largest_contact) if strength else largest_contact
-    if not largest > 1000 * max(noise) or not scale > 1000 * max(of_force):
+    if not largest > 100 * max(noise) or not scale > 100 * max(of_force):
         return "not judged: forces are rounding", word
 
     least = body.global_minimum()
