@@ -1175,6 +1175,9 @@ def main(debond, count=30, first=0, listed=None):
         is_failure = not kind.startswith(
             ("solved", "not judged", "rejected", "not solved"))
         failed |= is_failure
+        if kind == "solved, best known above the minimum":
+            print(f"{kind}, scene {number} ({scene.mesh.kind}): {detail}",
+                  flush=True)
         if is_failure or number == listed:
             print(f"{kind}, scene {number} ({scene.mesh.kind}): {detail}\n"
                   f"{scene.text()}", flush=True)
