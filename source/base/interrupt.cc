@@ -7,6 +7,8 @@ namespace Debond
   {
     volatile std::sig_atomic_t signal_arrived = 0;
 
+    unsigned int n_guards = 0;
+
     extern "C" void
     debond_record_signal(int /*number*/)
     {
@@ -18,6 +20,9 @@ namespace Debond
 
   InterruptGuard::InterruptGuard()
   {
+    // What arrived under an outer guard, between two solves, is not lost.
+    if (n_guards++ > 0)
+      return;
     signal_arrived = 0;
 
     struct sigaction action = {};
@@ -32,6 +37,8 @@ namespace Debond
 
   InterruptGuard::~InterruptGuard()
   {
+    if (--n_guards > 0)
+      return;
     sigaction(SIGINT, &previous_int, nullptr);
     sigaction(SIGTERM, &previous_term, nullptr);
   }

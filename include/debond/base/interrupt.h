@@ -9,7 +9,8 @@ namespace Debond
   /**
    * While an object of this class exists, the first SIGINT or SIGTERM is only
    * recorded, so that a solver can stop after its current iteration; a second
-   * one ends the program at once.
+   * one ends the program at once. Guards may be nested: a signal that arrived
+   * under an outer one has arrived for the inner ones as well.
    */
   class InterruptGuard
   {
