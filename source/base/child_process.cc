@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/child_process.h>
+#include <debond/base/interrupt.h>
 
 #include <fcntl.h>
 #include <sys/prctl.h>
@@ -123,8 +124,7 @@ namespace Debond
     if (process == 0)
       {
         // A signal to the child is not for what this process does with them.
-        std::signal(SIGINT, SIG_DFL);
-        std::signal(SIGTERM, SIG_DFL);
+        InterruptGuard::leave_to_parent();
         block.reset();
         const int code = set_up_child(log) ? work() : no_program;
         std::cout.flush();

@@ -50,4 +50,14 @@ namespace Debond
   {
     return signal_arrived != 0;
   }
+
+
+
+  void
+  InterruptGuard::leave_to_parent()
+  {
+    n_guards = 0;
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+  }
 } // namespace Debond

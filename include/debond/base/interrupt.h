@@ -25,6 +25,11 @@ namespace Debond
     bool
     requested() const;
 
+    /// In a process that was forked: the guards of its parent are none of its
+    /// own, and signals end it.
+    static void
+    leave_to_parent();
+
   private:
     struct sigaction previous_int;
     struct sigaction previous_term;
