@@ -1163,6 +1163,7 @@ def main(debond, count=30, first=0, listed=None):
     """Tries the scenes and prints what became of them."""
     kinds, reasons, shapes, bonds = (collections.Counter() for _ in range(4))
     failed = False
+    n_missed = 0
     for number in range(first, first + count):
         scene, body = make_scene(number)
         kind, detail = try_scene(debond, scene, body)
@@ -1176,8 +1177,10 @@ def main(debond, count=30, first=0, listed=None):
             ("solved", "not judged", "rejected", "not solved"))
         failed |= is_failure
         if kind == "solved, best known above the minimum":
-            print(f"{kind}, scene {number} ({scene.mesh.kind}): {detail}",
-                  flush=True)
+            search = scene.settings["Solver/Search"]
+            n_missed += search == "automatic"
+            print(f"{kind}, {search} search, scene {number} ({scene.mesh.kind}): "
+                  f"{detail}", flush=True)
         if is_failure or number == listed:
             print(f"{kind}, scene {number} ({scene.mesh.kind}): {detail}\n"
                   f"{scene.text()}", flush=True)
@@ -1191,6 +1194,12 @@ def main(debond, count=30, first=0, listed=None):
     n_solved = sum(n for kind, n in kinds.items() if kind.startswith("solved"))
     if 2 * n_solved < count:
         print("fewer than half of the scenes are solved")
+        failed = True
+    if 50 * kinds["not judged: forces are rounding"] > count + 50:
+        print("more than 2 of 100 scenes are not judged")
+        failed = True
+    if 100 * n_missed > count + 100:
+        print("automatic misses more than 1 minimum of 100 scenes")
         failed = True
     return 1 if failed else 0
 

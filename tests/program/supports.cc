@@ -440,21 +440,24 @@ namespace
 
 
 
-  /// At the corner of two sides the foundation alone holds the body.
+  /// At corners and edges of several sides the foundation alone holds the body.
   void
-  test_corner_of_foundations()
+  test_corner_of_foundations(const unsigned int dim)
   {
-    std::cout << "== Corner of two contact sides" << std::endl;
-    const Json result =
-      solve_scene({"Mesh/Lengths=2, 1",
-                   "Mesh/Cells=2, 1",
-                   "Material/Young modulus=1",
-                   "Boundary conditions/Clamped boundaries=left",
-                   "Boundary conditions/Contact boundary=bottom, right",
-                   "Contact law/Bond stiffness=1",
-                   "Contact law/Bond threshold=1",
-                   "Loads/Traction top=0; 0.01"});
-    for (const unsigned int d : {0, 1})
+    std::cout << "== Corner of contact sides, " << dim << "D" << std::endl;
+    const std::string depth  = dim == 3 ? ", 1" : "";
+    const Json        result = solve_scene(
+      {"Dimension=" + std::to_string(dim),
+              "Mesh/Lengths=2, 1" + depth,
+              "Mesh/Cells=2, 1" + depth,
+              "Material/Young modulus=1",
+              "Boundary conditions/Clamped boundaries=left",
+              std::string("Boundary conditions/Contact boundary=bottom, ") +
+                (dim == 3 ? "right, back" : "right"),
+              "Contact law/Bond stiffness=1",
+              "Contact law/Bond threshold=1",
+              std::string("Loads/Traction top=0; 0.01") + (dim == 3 ? "; 0" : "")});
+    for (unsigned int d = 0; d < dim; ++d)
       {
         const double left       = result["reactions"]["left"][d],
                      supports   = result["clamped_reaction"][d],
@@ -517,6 +520,7 @@ main(int argc, char *[])
       }
   test_half_of_symmetric_body();
   test_bonds();
-  test_corner_of_foundations();
+  for (const unsigned int dim : {2, 3})
+    test_corner_of_foundations(dim);
   test_refusals();
 }
