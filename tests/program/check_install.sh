@@ -18,3 +18,12 @@ grep -Eq "status +success" log || fail "no success: $(cat log)"
   fail "An installed study is not read: $(cat log)"
 "$tests/program/check_links.py" "$prefix/share/doc/debond"
 [ -s "$prefix/share/doc/debond/LICENSE" ] || fail "no licence"
+
+# What the scripts install removes nothing: apt-get is told so.
+mkdir stub
+printf '#!/bin/sh\necho "$@" >>"%s/apt"\n' "$PWD" >stub/apt-get
+chmod +x stub/apt-get
+PATH=$PWD/stub:$PATH "$tests/../scripts/install" debond-no-such-package 2>/dev/null ||
+  true
+grep "install.*debond-no-such-package" apt >asked || fail "no package was asked for"
+grep -q -- "--no-remove" asked || fail "packages may be removed: $(cat asked)"
