@@ -5,6 +5,7 @@
 #include <debond/elasticity/elastic_levels.h>
 #include <debond/elasticity/multigrid.h>
 
+#include <Eigen/Sparse>
 #include <cholmod.h>
 #include <petscksp.h>
 
@@ -63,6 +64,48 @@ namespace Debond
         }
       starts[n] = static_cast<int>(next);
       return result;
+    }
+
+
+
+    using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor, PetscInt>;
+
+
+
+    /// With the columns of each row in their order, as PETSc wants them.
+    Rows
+    rows(const dealii::SparseMatrix<double> &A)
+    {
+      std::vector<Eigen::Triplet<double, PetscInt>> entries;
+      entries.reserve(A.n_nonzero_elements());
+      for (const auto &entry : A)
+        entries.emplace_back(static_cast<PetscInt>(entry.row()),
+                             static_cast<PetscInt>(entry.column()),
+                             entry.value());
+      Rows result(A.m(), A.n());
+      result.setFromTriplets(entries.begin(), entries.end());
+      return result;
+    }
+
+
+
+    /// F in u = F x, x: the Cartesian components of the displacement.
+    template <int dim>
+    Rows
+    to_frames(const ElasticUnknowns<dim> &unknowns)
+    {
+      Rows F(unknowns.n_dofs(), unknowns.n_dofs());
+      F.setIdentity();
+      std::vector<Eigen::Triplet<double, PetscInt>> entries;
+      for (const DisplacementFrame<dim> &frame : unknowns.frames())
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            entries.emplace_back(static_cast<PetscInt>(frame.dofs[i]),
+                                 static_cast<PetscInt>(frame.dofs[j]),
+                                 frame.to_frame[i][j] - (i == j ? 1. : 0.));
+      Rows change(F.rows(), F.cols());
+      change.setFromTriplets(entries.begin(), entries.end());
+      return F + change;
     }
 
 
@@ -143,58 +186,38 @@ namespace Debond
   LinearSolve
   solve_by_hypre(const ElasticProblem<dim> &problem)
   {
-    const dealii::SparseMatrix<double> &A = problem.matrix();
-    const DofVector                    &f = problem.load();
+    // A of Cartesian components, F'A F and F'f, where u = F x: with the normal
+    // first at contact nodes hypre would take it for the component of the
+    // other nodes' first unknown.
+    const Rows F = to_frames(problem.unknowns());
+    const Rows A = F.transpose() * rows(problem.matrix()) * F;
+    const Eigen::Map<const Eigen::VectorXd> f(problem.load().begin(),
+                                              problem.load().size());
+    const PetscInt                          n = static_cast<PetscInt>(A.rows());
+    Eigen::VectorXd                         load = F.transpose() * f;
+    Eigen::VectorXd x_cartesian = Eigen::VectorXd::Zero(A.rows());
 
-    const PetscInt        n = static_cast<PetscInt>(A.m());
-    std::vector<PetscInt> starts(1, 0), columns;
-    std::vector<double>   values;
-    columns.reserve(A.n_nonzero_elements());
-    values.reserve(A.n_nonzero_elements());
-    for (PetscInt i = 0; i < n; ++i)
-      {
-        // deal.II has the diagonal first, PETSc wants it in its place.
-        bool       has_diagonal = false;
-        const auto add_diagonal = [&]() {
-          columns.push_back(i);
-          values.push_back(A.diag_element(i));
-          has_diagonal = true;
-        };
-        for (auto entry = ++A.begin(i); entry != A.end(i); ++entry)
-          {
-            const PetscInt column = static_cast<PetscInt>(entry->column());
-            if (!has_diagonal && column > i)
-              add_diagonal();
-            columns.push_back(column);
-            values.push_back(entry->value());
-          }
-        if (!has_diagonal)
-          add_diagonal();
-        starts.push_back(static_cast<PetscInt>(columns.size()));
-      }
-
-    LinearSolve result;
-    result.u.reinit(static_cast<unsigned int>(n));
-    std::vector<double> load(f.begin(), f.end());
-    Mat                 matrix = nullptr;
-    Vec                 b = nullptr, x = nullptr;
-    KSP                 solver         = nullptr;
-    PC                  preconditioner = nullptr;
-    KSPConvergedReason  reason         = KSP_CONVERGED_ITERATING;
-    PetscInt            iterations     = 0;
+    Mat                matrix = nullptr;
+    Vec                b = nullptr, x = nullptr;
+    KSP                solver         = nullptr;
+    PC                 preconditioner = nullptr;
+    KSPConvergedReason reason         = KSP_CONVERGED_ITERATING;
+    PetscInt           iterations     = 0;
 
     const auto solve = [&]() -> PetscErrorCode {
-      PetscCall(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF,
-                                          n,
-                                          n,
-                                          starts.data(),
-                                          columns.data(),
-                                          values.data(),
-                                          &matrix));
+      // PETSc only reads them, through pointers that are not const.
+      PetscCall(
+        MatCreateSeqAIJWithArrays(PETSC_COMM_SELF,
+                                  n,
+                                  n,
+                                  const_cast<PetscInt *>(A.outerIndexPtr()),
+                                  const_cast<PetscInt *>(A.innerIndexPtr()),
+                                  const_cast<double *>(A.valuePtr()),
+                                  &matrix));
       PetscCall(MatSetBlockSize(matrix, dim));
       PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, load.data(), &b));
       PetscCall(
-        VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, result.u.begin(), &x));
+        VecCreateSeqWithArray(PETSC_COMM_SELF, 1, n, x_cartesian.data(), &x));
       PetscCall(KSPCreate(PETSC_COMM_SELF, &solver));
       PetscCall(KSPSetOperators(solver, matrix, matrix));
       PetscCall(KSPSetType(solver, KSPCG));
@@ -226,6 +249,10 @@ namespace Debond
         "hypre by PETSc failed: error " + std::to_string(error) +
         ", reason of convergence " + std::to_string(reason) + " after " +
         std::to_string(iterations) + " steps");
+    const Eigen::VectorXd u = F * x_cartesian;
+    LinearSolve           result;
+    result.u.reinit(static_cast<unsigned int>(n));
+    std::copy(u.begin(), u.end(), result.u.begin());
     result.iterations = static_cast<unsigned int>(iterations);
     return result;
   }

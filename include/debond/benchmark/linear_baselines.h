@@ -30,10 +30,10 @@ namespace Debond
   solve_by_ml(const ElasticProblem<dim> &problem);
 
   /// The same with one V-cycle of hypre's BoomerAMG, by PETSc: PETSc's
-  /// defaults, each component of the displacement coarsened apart (the "unknown
-  /// approach"), and connections strong above 0.25 (in 3D 0.5) of the largest,
-  /// as hypre's manual has it. Throws std::runtime_error if PETSc fails or does
-  /// not converge.
+  /// defaults, each Cartesian component of the displacement coarsened apart
+  /// (the "unknown approach"), and connections strong above 0.25 (in 3D 0.5) of
+  /// the largest, as hypre's manual has it. Throws std::runtime_error if PETSc
+  /// fails or does not converge.
   template <int dim>
   LinearSolve
   solve_by_hypre(const ElasticProblem<dim> &problem);
