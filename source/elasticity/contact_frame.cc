@@ -1,52 +1,78 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/exceptions.h>
 #include <deal.II/base/numbers.h>
 
 #include <debond/elasticity/contact_frame.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
 #include <stdexcept>
 
 namespace Debond
 {
-  template <int dim>
-  unsigned int
-  VertexNormals<dim>::add_face(const dealii::Tensor<1, dim> &normal,
-                               const double                  measure)
+  namespace
   {
-    static const double cosine = std::cos(dealii::numbers::PI / 6.);
+    /// Of each face the number of a face that is the same for all that are
+    /// connected by pairs of faces whose normals differ by less than @p
+    /// degrees.
+    template <int dim>
+    std::vector<unsigned int>
+    join_faces(const std::vector<dealii::Tensor<1, dim>> &normals,
+               const double                               degrees)
+    {
+      const double cosine = std::cos(degrees * dealii::numbers::PI / 180.);
+      std::vector<unsigned int> groups(normals.size());
+      std::iota(groups.begin(), groups.end(), 0u);
+      for (unsigned int i = 0; i < normals.size(); ++i)
+        for (unsigned int j = 0; j < i; ++j)
+          if (const unsigned int mine = groups[i], other = groups[j];
+              mine != other && normals[i] * normals[j] > cosine)
+            std::replace(groups.begin(), groups.end(), mine, other);
+      return groups;
+    }
+  } // namespace
 
-    unsigned int group = 0;
-    while (group < n_groups() && normal * weighted_normals[group] <=
-                                   cosine * weighted_normals[group].norm())
-      ++group;
 
-    if (group == n_groups())
+
+  template <int dim>
+  VertexNormals<dim>::VertexNormals(
+    const std::vector<dealii::Tensor<1, dim>> &face_normals,
+    const std::vector<double>                 &face_measures)
+    : groups(join_faces(face_normals, 31.4))
+  {
+    const auto n_groups = [&](const double degrees) {
+      const auto joined = join_faces(face_normals, degrees);
+      return std::set<unsigned int>(joined.begin(), joined.end()).size();
+    };
+    is_near_limit = n_groups(30.4) != n_groups(32.4);
+
+    std::vector<dealii::Tensor<1, dim>> sums(groups.size());
+    for (unsigned int f = 0; f < groups.size(); ++f)
+      sums[groups[f]] += face_measures[f] * face_normals[f];
+    std::set<unsigned int> apart;
+    for (unsigned int f = 0; f < groups.size(); ++f)
+      if (face_normals[f] * sums[groups[f]] < 0.1 * sums[groups[f]].norm())
+        apart.insert(groups[f]);
+
+    std::map<unsigned int, unsigned int> numbers;
+    for (unsigned int f = 0; f < groups.size(); ++f)
       {
-        weighted_normals.emplace_back();
-        measures.push_back(0.);
+        const auto [entry, is_new] =
+          numbers.emplace(apart.count(groups[f]) > 0 ? f : groups[f],
+                          static_cast<unsigned int>(normals.size()));
+        groups[f] = entry->second;
+        if (is_new)
+          {
+            normals.emplace_back();
+            measures.push_back(0.);
+          }
+        normals[groups[f]] += face_measures[f] * face_normals[f];
+        measures[groups[f]] += face_measures[f] / dim;
       }
-    weighted_normals[group] += measure * normal;
-    measures[group] += measure / dim;
-    return group;
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  VertexNormals<dim>::n_groups() const
-  {
-    return static_cast<unsigned int>(measures.size());
-  }
-
-
-
-  template <int dim>
-  std::vector<dealii::Tensor<1, dim>>
-  VertexNormals<dim>::normals() const
-  {
-    std::vector<dealii::Tensor<1, dim>> result = weighted_normals;
-    for (auto &normal : result)
+    for (auto &normal : normals)
       {
         normal /= normal.norm();
         for (unsigned int d = 0; d < dim; ++d)
@@ -54,16 +80,6 @@ namespace Debond
             normal[d] = 0.;
         normal /= normal.norm();
       }
-    return result;
-  }
-
-
-
-  template <int dim>
-  double
-  VertexNormals<dim>::measure(const unsigned int group) const
-  {
-    return measures[group];
   }
 
 
@@ -72,11 +88,7 @@ namespace Debond
   dealii::Tensor<2, dim>
   contact_frame(const std::vector<dealii::Tensor<1, dim>> &normals)
   {
-    if (normals.empty() || normals.size() > dim)
-      throw std::invalid_argument("Contact sides of " +
-                                  std::to_string(normals.size()) +
-                                  " different normals meet at a vertex; 1 to " +
-                                  std::to_string(dim) + " are possible.");
+    AssertIndexRange(normals.size() - 1, dim);
 
     dealii::Tensor<2, dim> frame;
     for (unsigned int i = 0; i < normals.size(); ++i)
@@ -110,8 +122,9 @@ namespace Debond
           }
       }
 
-    // The normals are at least 30 degrees apart, so a small determinant means
-    // opposite ones (or three in one plane), not neighbours.
+    // Faces of two groups are at least 31.4 degrees apart, so a small
+    // determinant means opposite normals (or three in one plane), not
+    // neighbours.
     if (std::abs(dealii::determinant(frame)) < 1e-3)
       throw std::invalid_argument(
         "The normals of the contact sides that meet at a vertex are linearly "
@@ -121,8 +134,8 @@ namespace Debond
 
 
 
-  template class VertexNormals<2>;
-  template class VertexNormals<3>;
+  template struct VertexNormals<2>;
+  template struct VertexNormals<3>;
   template dealii::Tensor<2, 2>
   contact_frame(const std::vector<dealii::Tensor<1, 2>> &);
   template dealii::Tensor<2, 3>

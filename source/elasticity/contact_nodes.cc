@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <stdexcept>
@@ -19,14 +20,17 @@ namespace Debond
     {
       NodeDofs<dim>      dofs;
       dealii::Point<dim> position;
-      VertexNormals<dim> normals;
+
+      /// Of its faces.
+      std::vector<dealii::Tensor<1, dim>> normals;
+      std::vector<double>                 measures;
+      std::vector<double>                 gaps;
 
       /// On one of its faces.
       bool is_tangential_fixed = false;
 
-      /// For each group of normals the least gap, and the node or the held
-      /// vertex.
-      std::vector<double>       gaps;
+      /// Of its faces, and for each group the node or the held vertex.
+      std::vector<unsigned int> groups;
       std::vector<unsigned int> nodes;
       std::vector<unsigned int> held;
     };
@@ -99,7 +103,7 @@ namespace Debond
         , supports(supports)
         , node_supports(node_supports)
         , gap(gap)
-        , groups(faces.size())
+        , places(faces.size())
       {
         boundary.degree = degree;
         find_vertices(conditions);
@@ -141,18 +145,14 @@ namespace Debond
                 ContactVertex<dim> &vertex = vertices[faces[f].indices[v]];
                 vertex.dofs                = faces[f].dofs[v];
                 vertex.position            = faces[f].positions[v];
-                groups[f][v] =
-                  vertex.normals.add_face(faces[f].normal, faces[f].measure);
+                places[f][v] = static_cast<unsigned int>(vertex.normals.size());
+                vertex.normals.push_back(faces[f].normal);
+                vertex.measures.push_back(faces[f].measure);
+                vertex.gaps.push_back(
+                  gap_value(supports, faces[f].id, vertex.position));
                 vertex.is_tangential_fixed =
                   vertex.is_tangential_fixed ||
                   conditions.fixes_tangential(faces[f].id);
-                const double gap_here =
-                  gap_value(supports, faces[f].id, vertex.position);
-                if (groups[f][v] < vertex.gaps.size())
-                  vertex.gaps[groups[f][v]] =
-                    std::min(vertex.gaps[groups[f][v]], gap_here);
-                else
-                  vertex.gaps.push_back(gap_here);
               }
       }
 
@@ -161,8 +161,15 @@ namespace Debond
       void
       make_nodes(const unsigned int index, ContactVertex<dim> &vertex)
       {
-        const std::vector<dealii::Tensor<1, dim>> normals =
-          vertex.normals.normals();
+        const VertexNormals<dim> groups(vertex.normals, vertex.measures);
+        const std::vector<dealii::Tensor<1, dim>> &normals = groups.normals;
+        vertex.groups                                      = groups.groups;
+        boundary.n_near_limit += groups.is_near_limit;
+        std::vector<double> gaps(normals.size(),
+                                 std::numeric_limits<double>::infinity());
+        for (unsigned int k = 0; k < vertex.gaps.size(); ++k)
+          gaps[vertex.groups[k]] =
+            std::min(gaps[vertex.groups[k]], vertex.gaps[k]);
         PrescribedNode<dim> prescribed =
           node_supports.prescribed_at(index, vertex.dofs, vertex.position);
         const auto &rows = prescribed.rows;
@@ -187,6 +194,20 @@ namespace Debond
             node_supports.constrain(index, prescribed);
           }
 
+        if (unknown.size() > dim)
+          throw std::invalid_argument(
+            "Contact sides of " + std::to_string(unknown.size()) +
+            " different normals meet at " + point_text(vertex.position) +
+            ", where the body has " + std::to_string(dim) +
+            " displacements: Tangential displacement = fixed holds such "
+            "vertices.");
+        if (unknown.size() + rows.size() > dim)
+          throw SupportError(SupportError::Subject::displacement,
+                             node_supports.names()[rows[0].support],
+                             "too much is prescribed at " +
+                               point_text(vertex.position) +
+                               ", where contact sides meet");
+
         vertex.nodes.assign(normals.size(), no_node);
         vertex.held.assign(normals.size(), 0);
         std::vector<dealii::Tensor<1, dim>> directions;
@@ -197,31 +218,25 @@ namespace Debond
           {
             vertex.nodes[k] = static_cast<unsigned int>(nodes.size());
             normal_dofs.push_back(vertex.dofs[directions.size()]);
-            const double gap_here = vertex.gaps[k];
+            const double gap_here = gaps[k];
             if (gap_here > 0.)
               gap(normal_dofs.back()) = gap_here;
             directions.push_back(normals[k]);
             nodes.push_back({vertex.position,
                              normals[k],
-                             part_of_face * vertex.normals.measure(k),
+                             part_of_face * groups.measures[k],
                              gap_here});
           }
         for (unsigned int k = 0; k < normals.size(); ++k)
           if (vertex.nodes[k] == no_node)
             vertex.held[k] = hold({prescribed.displacement() * normals[k],
-                                   vertex.gaps[k],
+                                   gaps[k],
                                    rows.empty() ? no_node : rows[0].support,
                                    normals[k],
                                    vertex.position});
         if (unknown.empty())
           return;
 
-        if (directions.size() + rows.size() > dim)
-          throw SupportError(SupportError::Subject::displacement,
-                             node_supports.names()[rows[0].support],
-                             "too much is prescribed at " +
-                               point_text(vertex.position) +
-                               ", where contact sides meet");
         node_supports.add_frame(index,
                                 prescribed,
                                 directions,
@@ -276,9 +291,10 @@ namespace Debond
                     continue;
                   }
                 const ContactVertex<dim> &vertex = entry->second;
-                const unsigned int        node   = vertex.nodes[groups[f][v]];
+                const unsigned int        group  = vertex.groups[places[f][v]];
+                const unsigned int        node   = vertex.nodes[group];
                 face_node = node == no_node ? no_node : place[node];
-                face_held = vertex.held[groups[f][v]];
+                face_held = vertex.held[group];
               }
             boundary.faces.push_back(face);
           }
@@ -292,9 +308,8 @@ namespace Debond
       /// By node index; clamped vertices are left out.
       std::map<unsigned int, ContactVertex<dim>> vertices;
 
-      /// For each face the group of normals that it belongs to at each of its
-      /// vertices.
-      std::vector<std::array<unsigned int, BoundaryFace<dim>::maximum>> groups;
+      /// Of each face among those of each of its vertices.
+      std::vector<std::array<unsigned int, BoundaryFace<dim>::maximum>> places;
 
       std::vector<typename ContactBoundary<dim>::Node> nodes;
       std::vector<dealii::types::global_dof_index>     normal_dofs;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/text.h>
 #include <debond/check/error_estimate.h>
 #include <debond/elasticity/temperature_load.h>
 #include <debond/input/bad_input.h>
@@ -159,6 +160,7 @@ namespace Debond
       entry = "Solver/Euclidean bundle/Start";
       add_start(start);
     }));
+    add_notes();
     seconds_for_assembly = timer.wall_time() - seconds_for_mesh;
   }
 
@@ -225,6 +227,22 @@ namespace Debond
       }
     else
       first_iterate = read_start(file, *elastic_problem);
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::add_notes()
+  {
+    const ContactBoundary<dim> &boundary = contact_boundary();
+    if (boundary.n_near_limit > 0)
+      body_notes.push_back(
+        words("nodes of the contact boundary whose faces meet at 30.4 to 32.4 "
+              "degrees: ",
+              boundary.n_near_limit,
+              ". Below 31.4 they are one smooth side, above it a corner, so "
+              "that a mesh that is a little different may have another J"));
   }
 
 

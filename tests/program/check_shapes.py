@@ -517,7 +517,8 @@ class Body:
             normals.append((along[1] / length, -along[0] / length))
 
         # The normals of a vertex are those of its faces, or where they differ
-        # by less than 30 degrees their mean, weighted by their lengths.
+        # by less than 31.4 degrees their mean, weighted by their lengths.
+        smooth = EXACT(math.cos(math.radians(31.4)))
         at_vertex = collections.defaultdict(list)
         for f, face in enumerate(self.faces):
             for v in face:
@@ -526,12 +527,11 @@ class Body:
         self.normals = {}
         for v, faces in sorted(at_vertex.items()):
             cosine = (dot(normals[faces[0]], normals[faces[-1]]))
-            if abs(cosine - EXACT(math.cos(math.pi / 6))) < EXACT("0.01"):
+            if abs(cosine - smooth) < EXACT("0.01"):
                 self.is_usable = False  # rounding would say which it is
             if len(faces) > 2 or (len(faces) == 2 and cosine < EXACT("-0.999")):
                 self.is_usable = False
-            groups = ([faces] if cosine > EXACT(math.cos(math.pi / 6))
-                      else [[f] for f in faces])
+            groups = ([faces] if cosine > smooth else [[f] for f in faces])
             self.normals[v] = []
             for number, group in enumerate(groups):
                 mean = [sum((self.lengths[f] * normals[f][k] for f in group), ZERO)

@@ -9,34 +9,35 @@
 namespace Debond
 {
   /**
-   * The normals of one vertex of the contact boundary: the normals of the
-   * faces around it, where those that differ by less than 30 degrees are one,
-   * their mean weighted by the faces' measures.
+   * The normals of one vertex of the contact boundary, those of groups of the
+   * faces around it. Two faces are joined where their normals differ by less
+   * than 31.4 degrees, and so is all that such pairs connect, so that the order
+   * of the faces makes no difference. A regular polygon has 30 degrees at 12
+   * sides and 32.7 at 11, so that rounding decides on neither.
    */
   template <int dim>
-  class VertexNormals
+  struct VertexNormals
   {
-  public:
-    /// Adds a face by its outward unit normal and its length or area. Returns
-    /// the number of the group that it joins or founds.
-    unsigned int
-    add_face(const dealii::Tensor<1, dim> &normal, const double measure);
+    /// @p face_normals: outward unit normals; @p face_measures: lengths or
+    /// areas.
+    VertexNormals(const std::vector<dealii::Tensor<1, dim>> &face_normals,
+                  const std::vector<double>                 &face_measures);
 
-    unsigned int
-    n_groups() const;
+    /// Of each face the number of its group. Of a group with a face more than
+    /// 84 degrees off the mean, as at the tip of a needle, each face is one of
+    /// its own: nothing has the mean as its normal.
+    std::vector<unsigned int> groups;
 
-    /// Unit normal of each group. A component that is zero but for rounding is
-    /// zero, so that sides along the axes have exact normals.
-    std::vector<dealii::Tensor<1, dim>>
-    normals() const;
+    /// Of each group, the mean weighted by the faces' measures. A component
+    /// that is zero but for rounding is zero, so that sides along the axes have
+    /// exact normals.
+    std::vector<dealii::Tensor<1, dim>> normals;
 
-    /// Integral of the vertex' basis function over the faces of a group.
-    double
-    measure(const unsigned int group) const;
+    /// Integral of the vertex' basis function over the faces of each group.
+    std::vector<double> measures;
 
-  private:
-    std::vector<dealii::Tensor<1, dim>> weighted_normals;
-    std::vector<double>                 measures;
+    /// Whether a degree more or less would make other groups.
+    bool is_near_limit;
   };
 
 
@@ -44,9 +45,9 @@ namespace Debond
   /**
    * The matrix whose rows are the given unit normals followed by an
    * orthonormal basis of their complement: it takes Cartesian components to
-   * (u_nu of each normal, tangential components). Throws
-   * std::invalid_argument if the normals are more than dim or (nearly)
-   * dependent, as at the tip of a wedge of no thickness.
+   * (u_nu of each of the 1 to dim normals, tangential components). Throws
+   * std::invalid_argument if the normals are (nearly) dependent, as at the tip
+   * of a wedge of no thickness.
    */
   template <int dim>
   dealii::Tensor<2, dim>

@@ -29,11 +29,11 @@ namespace Debond
    * degree of freedom, so that the unilateral constraint is a simple bound),
    * then the tangential ones. A vertex where contact sides of different normals
    * meet has one u_nu for each of them; if tangential displacements are fixed
-   * there, it is clamped. Normals that differ by less than 30 degrees count as
-   * one (their mean), as on a polygonal approximation of a smooth side. What is
-   * said of vertices below is true of edges, of degree 2: they are in their
-   * middles, and as u_nu on a face is nowhere above its largest coefficient,
-   * u_nu <= 0 holds at every point.
+   * there, it is clamped. Faces that make one side of a polygon that stands for
+   * a smooth one (see VertexNormals) have one normal, their mean. What is said
+   * of vertices below is true of edges, of degree 2: they are in their middles,
+   * and as u_nu on a face is nowhere above its largest coefficient, u_nu <= 0
+   * holds at every point.
    *
    * All vectors have n_dofs() entries; the constrained ones are zero. So they
    * are w in u = w + G, where G, the lifting, has the prescribed displacements

@@ -146,6 +146,10 @@ namespace Debond
     void
     add_contact(const MatrixStorage storage);
 
+    /// What is unusual about the contact boundary and its unknowns.
+    void
+    add_notes();
+
     const ProblemParameters                  given;
     std::shared_ptr<const Body<dim>>         elastic_body;
     dealii::Triangulation<dim>               triangulation;
