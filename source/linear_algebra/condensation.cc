@@ -101,6 +101,8 @@ namespace Debond
     std::vector<double>
     solve(const int system, const std::vector<double> &right_side)
     {
+      if (n == 0)
+        return {};
       Dense b(cholmod_allocate_dense(n, 1, n, CHOLMOD_REAL, &common), common);
       std::copy(right_side.begin(),
                 right_side.end(),
@@ -115,12 +117,14 @@ namespace Debond
     trailing_block() const
     {
       dealii::FullMatrix<double> block(n_kept, n_kept);
-      const int                  first = n - n_kept;
-      const int                 *super = static_cast<const int *>(L->super);
-      const int                 *pi    = static_cast<const int *>(L->pi);
-      const int                 *px    = static_cast<const int *>(L->px);
-      const int                 *rows  = static_cast<const int *>(L->s);
-      const double              *x     = static_cast<const double *>(L->x);
+      if (n_kept == 0)
+        return block;
+      const int     first = n - n_kept;
+      const int    *super = static_cast<const int *>(L->super);
+      const int    *pi    = static_cast<const int *>(L->pi);
+      const int    *px    = static_cast<const int *>(L->px);
+      const int    *rows  = static_cast<const int *>(L->s);
+      const double *x     = static_cast<const double *>(L->x);
       for (int k = 0; k < static_cast<int>(L->nsuper); ++k)
         {
           const int n_rows = pi[k + 1] - pi[k];
@@ -141,6 +145,9 @@ namespace Debond
               const std::vector<unsigned int>    &unknowns,
               const double                        diagonal_factor)
     {
+      // CHOLMOD factorises nothing less.
+      if (n == 0)
+        return;
       std::vector<int> position(A.m(), -1);
       for (int i = 0; i < n; ++i)
         position[unknowns[i]] = i;

@@ -206,6 +206,7 @@ namespace Debond
     result.notes = result.solve.notes;
     append(result.solve.minimum.notes, result.notes);
     append(parameters.notes, result.notes);
+    append(scene.notes(), result.notes);
     judge(verification_message(parameters.verification.tolerance, result),
           "",
           result);

@@ -243,6 +243,15 @@ namespace Debond
               boundary.n_near_limit,
               ". Below 31.4 they are one smooth side, above it a corner, so "
               "that a mesh that is a little different may have another J"));
+    if (boundary.nodes.empty() && !boundary_conditions.contact.empty())
+      body_notes.push_back(
+        "the contact boundary has no contact node, and contact and bonds "
+        "decide nothing: all its vertices are held by supports, or as corners "
+        "by fixed tangential displacements. A finer mesh has others, and "
+        "Contact law/Tangential displacement = free does not hold corners");
+    if (n_unknowns() == 0)
+      body_notes.push_back("no vertex is free, so that there is nothing to "
+                           "solve: J is that of the prescribed displacements");
   }
 
 

@@ -4,7 +4,8 @@
 same to 1e-10 for all orders of a mesh's elements and for a body that is turned
 together with its loads, also where faces differ by the angles of regular
 polygons; a disc under a radial force has the J of a closed form in the limit of
-its polygons.
+its polygons. A boundary without a contact node, and a body without a free
+vertex, are told so and have the J that one can compute by hand.
 """
 
 import json
@@ -136,6 +137,10 @@ def main(debond):
         if not max(values) - min(values) <= 1e-10 * abs(values[0]):
             failures.append(f"{what}: J = {values}")
 
+    def close(what, value, expected, tolerance=1e-12):
+        if not abs(value - expected) <= tolerance * max(abs(expected), 1e-30):
+            failures.append(f"{what}: {value!r}, expected {expected!r}")
+
     pathlib.Path("scene.prm").write_text("")
     held = ["Material/Young modulus=70", "Material/Poisson ratio=0.25",
             "Boundary conditions/Clamped boundaries=",
@@ -158,7 +163,8 @@ def main(debond):
         expected = sides if sides > 11 else 0
         if any(f["contact_nodes"] != expected
                or any("at 30.4 to 32.4 degrees" in note for note in f["notes"])
-               for f in found):
+               or any("no contact node" in note for note in f["notes"])
+               == (sides > 11) for f in found):
             failures.append(f"{sides} sides: {found}")
 
     # A disc under the radial force -k r: u_r = A r + c r^3, with the stress
@@ -221,6 +227,46 @@ def main(debond):
     if found["contact_nodes"] != 1 or not any(
             "at 30.4 to 32.4 degrees: 1." in note for note in found["notes"]):
         failures.append(f"a flat corner: {found}")
+
+    # No free vertex: at rest, and stretched along x by e.
+    triangle = [(0., 0.), (1.5, 0.), (0., 2.)], [
+        (1, (0, 1)), (2, (1, 2)), (3, (2, 0))], [(0, 1, 2)]
+    tetrahedron = [(0., 0., 0.), (1.5, 0., 0.), (0., 2., 0.), (0., 0., 0.5)], [
+        (1, (0, 2, 1)), (2, (1, 2, 3)), (3, (0, 1, 3)), (3, (0, 3, 2))], [
+        (0, 1, 2, 3)]
+    e = 1e-3
+    energies = {2: 1.5 * (0.5 * plane * e ** 2 - 2. * e * 0.5),
+                3: 0.25 * (0.5 * E * (1. - nu) / ((1. + nu) * (1. - 2. * nu))
+                           * e ** 2 - 2. * e * 0.375)}
+    kinds = [["Solver/Method=" + m] for m in
+             ("automatic", "euclidean bundle", "energy bundle")]
+    kinds += [["Solver/Method=majorise minimise"] + extra for extra in
+              (["Solver/Linear solver=direct"], ["Solver/Linear solver=multigrid"],
+               ["Solver/Prove=true"], ["Solver/Search=full"],
+               ["Load path/Factors=0.5, 1"], ["Contact law/Law=none"],
+               ["Contact law/Quadrature=exact"])]
+    for dim, mesh in ((2, triangle), (3, tetrahedron)):
+        write_mesh("mesh.msh", *mesh)
+        force = "Loads/Body force=2; -1" + "; 0.5" * (dim == 3)
+        rest = "; 0" * (dim - 1)
+        for kind in kinds + [["Mesh/Degree=2", "Contact law/Quadrature=gauss 3"]
+                             ] * (dim == 3):
+            if dim == 3 and kind[-1] == "Contact law/Quadrature=exact":
+                continue
+            entries = held + kind + [f"Dimension={dim}", force]
+            found = solved(f"{dim}D at rest, {kind}", entries + [
+                "Boundary conditions/Clamped boundaries=base, cut"])
+            stretched = solved(f"{dim}D stretched, {kind}", entries + [
+                f"Boundary conditions/Displacement base={e} * x" + rest,
+                f"Boundary conditions/Displacement cut={e} * x" + rest])
+            close(f"{dim}D at rest, {kind}", found["functional"], 0.)
+            close(f"{dim}D stretched, {kind}", stretched["functional"],
+                  energies[dim])
+            for one in (found, stretched):
+                for text in ("nothing to solve", "no contact node"):
+                    if not any(text in note for note in one["notes"]):
+                        failures.append(f"{dim}D, {kind}: no note '{text}', "
+                                        f"{one['notes']}")
 
     for failure in failures:
         print(failure)
