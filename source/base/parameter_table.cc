@@ -301,7 +301,8 @@ namespace Debond
     catch (const dealii::ParameterHandler::ExcValueDoesNotMatchPattern &)
       {
         lines.push_back(location + ": " + path + " = " + shortened(value) +
-                        ": expected " + entries[path].expected);
+                        ": expected " + entries[path].expected +
+                        comma_hint(value));
         rejected.insert(path);
       }
     for (std::size_t i = 0; i < sections.size(); ++i)

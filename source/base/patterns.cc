@@ -56,6 +56,19 @@ namespace Debond
 
 
 
+  std::string
+  comma_hint(const std::string &text)
+  {
+    const std::string digits = "0123456789";
+    for (std::size_t i = 1; i + 1 < text.size(); ++i)
+      if (text[i] == ',' && digits.find(text[i - 1]) != std::string::npos &&
+          digits.find(text[i + 1]) != std::string::npos)
+        return "; " + decimal_comma;
+    return "";
+  }
+
+
+
   Pattern
   any_number()
   {

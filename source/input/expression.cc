@@ -2,11 +2,14 @@
 #include <deal.II/base/function_parser.h>
 #include <deal.II/base/utilities.h>
 
+#include <debond/base/patterns.h>
 #include <debond/input/expression.h>
 
+#include <cctype>
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
+#include <vector>
 
 namespace Debond
 {
@@ -32,6 +35,47 @@ namespace Debond
     private:
       std::streambuf *const buffer;
     };
+
+
+
+    /// Throws std::invalid_argument for what muParser takes in another sense
+    /// than its author: for it the value of "a, b" is b, "=" assigns to a
+    /// coordinate, and rand() has another value each time.
+    void
+    check_sense(const std::string &text)
+    {
+      std::vector<bool> has_arguments; // of each bracket that is open
+      std::string       name;          // that ends here
+      for (std::size_t i = 0; i <= text.size(); ++i)
+        {
+          const char c = text.c_str()[i];
+          if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_')
+            {
+              name += c;
+              continue;
+            }
+          if (name == "rand" || name == "rand_seed")
+            throw std::invalid_argument(name + " has no fixed value");
+          if (c == '(')
+            has_arguments.push_back(!name.empty());
+          else if (c == ')' && !has_arguments.empty())
+            has_arguments.pop_back();
+          else if (c == ',' && (has_arguments.empty() || !has_arguments.back()))
+            throw std::invalid_argument("the comma behind '" +
+                                        text.substr(0, i) +
+                                        "' separates no arguments of a "
+                                        "function; " +
+                                        decimal_comma);
+          else if (c == '=' && text.c_str()[i + 1] != '=' &&
+                   (i == 0 ||
+                    std::string("<>!=").find(text[i - 1]) == std::string::npos))
+            throw std::invalid_argument(
+              "\"=\" behind '" + dealii::Utilities::trim(text.substr(0, i)) +
+              "' assigns; \"==\" compares");
+          if (std::isspace(static_cast<unsigned char>(c)) == 0)
+            name.clear();
+        }
+    }
   } // namespace
 
 
@@ -42,12 +86,14 @@ namespace Debond
                 const std::map<std::string, double> &constants,
                 const unsigned int                   n_components)
   {
-    const std::size_t n_expressions =
-      dealii::Utilities::split_string_list(expressions, ';').size();
-    if (n_expressions != n_components)
+    const std::vector<std::string> components =
+      dealii::Utilities::split_string_list(expressions, ';');
+    for (const std::string &component : components)
+      check_sense(component);
+    if (components.size() != n_components)
       throw std::invalid_argument("expected " + std::to_string(n_components) +
                                   " components separated by ';', but found " +
-                                  std::to_string(n_expressions));
+                                  std::to_string(components.size()));
 
     std::map<std::string, double> all_constants = constants;
     all_constants.emplace("pi", dealii::numbers::PI);
@@ -68,9 +114,20 @@ namespace Debond
       }
     catch (const dealii::ExceptionBase &error)
       {
+        // Which component it is.
+        if (n_components > 1)
+          for (const std::string &component : components)
+            make_function<dim>(component, constants, 1);
+        // The column before muParser's words is the number of its error.
+        const std::string  start = "The parser said: ";
         std::ostringstream text;
         error.print_info(text);
-        throw std::invalid_argument(dealii::Utilities::trim(text.str()));
+        const std::size_t at = text.str().find(start);
+        throw std::invalid_argument(
+          "in '" + expressions + "': " +
+          dealii::Utilities::trim(text.str().substr(
+            at == std::string::npos ? 0 : at + start.size())) +
+          comma_hint(expressions));
       }
   }
 

@@ -60,7 +60,9 @@ namespace Debond
             dimension)
           table.reject(path,
                        "expected " + std::to_string(dimension) +
-                         " values for Dimension = " + std::to_string(dimension),
+                         " values for Dimension = " +
+                         std::to_string(dimension) +
+                         comma_hint(table.get(path)),
                        {"Dimension"});
     }
 

@@ -36,7 +36,8 @@ namespace Debond
       if (!is_point)
         throw std::invalid_argument(
           "it is neither a point (" + std::to_string(dim) +
-          " numbers, separated by commas) nor 'mean NAME' nor 'force NAME'");
+          " numbers, separated by commas) nor 'mean NAME' nor 'force NAME'" +
+          comma_hint(text));
       return probe;
     }
 

@@ -57,6 +57,14 @@ namespace Debond
   bool
   read_number(const std::string &text, double &number);
 
+  /// The question for one who may have written one.
+  inline const std::string decimal_comma =
+    "decimal comma? Numbers have a point, and nothing between thousands";
+
+  /// That behind "; " if the text has a comma between two digits, or nothing.
+  std::string
+  comma_hint(const std::string &text);
+
   /// A finite number.
   Pattern
   any_number();

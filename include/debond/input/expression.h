@@ -13,8 +13,8 @@ namespace Debond
   /**
    * The function with @p n_components given by muParser expressions in x, y[,
    * z], separated by ';', and the given constants and pi. Throws
-   * std::invalid_argument with muParser's words if one does not parse, or if
-   * there are not as many of them.
+   * std::invalid_argument, with muParser's words if one does not parse, if
+   * there are not as many of them, or if one is no single value that is fixed.
    */
   template <int dim>
   std::shared_ptr<const dealii::Function<dim>>

@@ -96,7 +96,11 @@ namespace Debond
             }
           catch (const std::invalid_argument &error)
             {
-              entries.reject(stiffnesses, error.what(), {thresholds});
+              entries.reject(stiffnesses,
+                             error.what() +
+                               comma_hint(entries.get(stiffnesses) + ", " +
+                                          entries.get(thresholds)),
+                             {thresholds});
               return ContactLawParameters();
             }
         };
