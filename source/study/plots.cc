@@ -508,8 +508,7 @@ namespace Debond
       double                    least_u = 0., largest_force = 0.;
       for (const StudyRow &row : view.rows)
         // Bonds that vary have no one graph.
-        if (row.result.has_results() && row.one->law.stiffness.empty() &&
-            row.one->law.threshold.empty())
+        if (row.result.has_results() && !row.one->law.has_field())
           {
             auto profile = read_profile(*row.one);
             cases.push_back(row.one);

@@ -191,6 +191,17 @@ namespace Debond
         }
       if (!plot_problem.empty())
         notes.push_back("Not all pictures were drawn: " + plot_problem + ".");
+      for (const std::string &kind : study.plots.kinds)
+        if (std::none_of(plots.begin(), plots.end(), [&](const Plot &plot) {
+              return plot.name == kind;
+            }))
+          {
+            notes.push_back("The plot " + kind + " has no points" +
+                            (kind == "law" ?
+                               "; of bonds that vary there is no one graph." :
+                               "."));
+            std::cerr << "debond: " << notes.back() << std::endl;
+          }
       write_index(study, table, best, plots, notes);
 
       out << '\n'

@@ -50,6 +50,19 @@ awk '/^# / { winkler = $0 == "# law of law = winkler" }
   winkler && /^[-0-9]/ && $2 < -0.1379 && $2 > -0.1381 { ++n }
   END { if (!n) exit 1 }' $plots/law.dat || fail "no force a M"
 
+# Bonds that vary, by a threshold or on a part, are on no one graph: said so.
+for bonds in "Contact law/Bond threshold=0.002 + y/1000" \
+  "Parts/low=left: y < 1 | Contact law/Bond stiffness low=7"; do
+  rm -rf output
+  expect_code 0 "$debond" --study study.prm \
+    --set "Sweep 1/Values=winkler" --set "Study/Settings=$bonds"
+  [ ! -e $plots/law.dat ] || fail "a law of bonds that vary"
+  for file in errors output/study/index.md; do
+    grep -q "plot law has no points; of bonds that vary there is no" $file ||
+      fail "no word in $file: $(cat errors)"
+  done
+done
+
 # Along an inclined side, and in 3D, where several nodes have the same place.
 expect_code 0 "$debond" --study study.prm --set "Study/Settings=Mesh/Rotation=30"
 grep -q "xlabel 'length along the contact boundary'" $plots/force.gp ||
