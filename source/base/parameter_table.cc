@@ -101,7 +101,7 @@ namespace Debond
                           const AtRestart    restart)
   {
     const std::string expected = pattern.description();
-    entries[path]              = {expected, restart};
+    entries[path]              = {expected, default_value, restart};
     if (reader)
       readers.emplace_back(path, reader);
 
@@ -595,6 +595,44 @@ namespace Debond
               path + " = " + shortened(get(path)) +
                 (is_default ? " (default): " : ": ") + reason,
               others);
+  }
+
+
+
+  void
+  ParameterTable::without_effect(const std::string &entries,
+                                 const std::string &reason,
+                                 const std::string &rejected_for)
+  {
+    const auto is_default = [this](const std::string &path) {
+      const std::string &value = this->entries.at(path).default_value;
+      double             a, b;
+      return get(path) == value ||
+             (read_number(get(path), a) && read_number(value, b) && a == b);
+    };
+    std::set<std::string> names;
+    for (const std::string &start :
+         dealii::Utilities::split_string_list(entries, ','))
+      for (const auto &[path, unused] : set_at)
+        if ((path == start || starts_with(path, prefix_of(start))) &&
+            !is_default(path))
+          {
+            names.insert(path);
+            if (!rejected_for.empty())
+              reject(path, reason, {rejected_for});
+          }
+    if (!names.empty() && rejected_for.empty())
+      note_lines.push_back("no effect of " +
+                           join({names.begin(), names.end()}, ", ") + ": " +
+                           reason);
+  }
+
+
+
+  const std::vector<std::string> &
+  ParameterTable::notes() const
+  {
+    return note_lines;
   }
 
 

@@ -258,6 +258,16 @@ namespace Debond
   ContactLawParameters
   LawSection::make_law(ParameterTable &table) const
   {
+    // Without adhesion on purpose.
+    for (const LawKind &kind : kinds())
+      if (kind.name != name)
+        table.without_effect(kind.entries,
+                             "it belongs to Contact law/Law = " + kind.name +
+                               ", the law is " + name +
+                               (name == "stepped" ?
+                                  "; bonds by place: Stepped/Factor" :
+                                  ""),
+                             name == "none" ? "" : "Contact law/Law");
     return makers.at(name)(table);
   }
 } // namespace Debond

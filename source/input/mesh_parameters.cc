@@ -181,25 +181,21 @@ namespace Debond
           }
       }
 
-    const auto belongs_to = [&](const std::string &path,
-                                const bool         is_given,
-                                const Source       source,
-                                const std::string &name) {
-      if (is_given && body.source != source)
-        table.reject(path, "this belongs to Source = " + name, {"Mesh/Source"});
+    const auto belong_to = [&](const Source       source,
+                               const std::string &name,
+                               const std::string &entries) {
+      if (body.source != source)
+        table.without_effect(entries,
+                             "this belongs to Source = " + name,
+                             "Mesh/Source");
     };
-    belongs_to("Mesh/File", !body.file.empty(), Source::file, "file");
-    belongs_to("Mesh/Scale", body.scale != 1., Source::file, "file");
-    belongs_to("Mesh/Generator",
-               !body.generator.empty(),
-               Source::generator,
-               "generator");
-    belongs_to("Mesh/Arguments",
-               !body.arguments.empty(),
-               Source::generator,
-               "generator");
-    if (body.n_refinements > 0 && body.source == Source::box)
-      table.reject("Mesh/Refinements", "a box has its Cells", {"Mesh/Source"});
+    belong_to(Source::box, "box", "Mesh/Rotation");
+    belong_to(Source::file, "file", "Mesh/File, Mesh/Scale");
+    belong_to(Source::generator, "generator", "Mesh/Generator, Mesh/Arguments");
+    if (body.source == Source::box)
+      table.without_effect("Mesh/Refinements",
+                           "a box has its Cells",
+                           "Mesh/Source");
 
     try
       {

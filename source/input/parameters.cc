@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <tuple>
 
 namespace Debond
 {
@@ -183,11 +184,6 @@ namespace Debond
                             {path.substr(prefix.size())},
                             boundaries,
                             table);
-              if (p.law.name != "winkler" && name != "Tangential displacement")
-                table.reject(path,
-                             "the law " + p.law.name +
-                               " is the same on all contact boundaries",
-                             {"Contact law/Law"});
             }
     }
 
@@ -197,7 +193,7 @@ namespace Debond
     void
     check_bonds(const Parameters &p, ParameterTable &table)
     {
-      const std::string stiffness = "Contact law/Bond stiffness";
+      const std::string stiffness = p.law.stiffness_entry;
       const std::string threshold = "Contact law/Bond threshold";
       const auto        check     = [&](const std::string &path,
                              const std::string &expression) {
@@ -233,10 +229,9 @@ namespace Debond
     {
       if (p.certificate.kind == CertificateKind::none)
         {
-          if (p.accuracy.certified_width > 0.)
-            table.reject("Certificate/Target",
-                         "is for a certificate",
-                         {"Certificate/Kind"});
+          table.without_effect("Certificate/Target",
+                               "is for a certificate",
+                               "Certificate/Kind");
           return;
         }
       if (p.dimension != 2 && p.certificate.kind == CertificateKind::global)
@@ -291,6 +286,70 @@ namespace Debond
       if (p.body->regions().size() > 1 || !parts.empty())
         add(p.body->regions());
       return names;
+    }
+
+
+
+    /// Entries that the run does not look at.
+    void
+    note_entries_without_effect(const Parameters     &p,
+                                const BodyParameters &body,
+                                ParameterTable       &table)
+    {
+      const BondSearchChoice search = p.solver.search;
+      const std::string      method = "Solver/Method is " + p.solver.method;
+      const bool is_euclidean       = p.solver.method == "euclidean bundle";
+      const bool is_energy          = p.solver.method == "energy bundle";
+      const bool has_path           = !p.load_path.factors.empty();
+      const bool has_branches = has_path && p.load_path.has_global_branch() &&
+                                p.load_path.global_branch != GlobalBranch::none;
+      const bool searches = has_path ? has_branches :
+                            search == BondSearchChoice::automatic ?
+                                       p.solver.method == "automatic" :
+                                       search != BondSearchChoice::none;
+      const bool is_cold  = p.materials.everywhere.thermal_expansion == 0. &&
+                           p.materials.thermal_expansions.empty();
+      for (const auto &[is_idle, reason, entries] :
+           std::vector<std::tuple<bool, std::string, std::string>>{
+             {body.source != BodyParameters::Source::box,
+              "Mesh/Source is not box",
+              "Mesh/Lengths, Mesh/Cells"},
+             {p.dimension == 3, "Dimension is 3", "Material/Hypothesis"},
+             {p.loads.temperature_change.empty(),
+              "there is no Loads/Temperature change",
+              "Material/Thermal expansion"},
+             {is_cold,
+              "there is no Material/Thermal expansion",
+              "Loads/Temperature change"},
+             {p.contact_boundaries.empty(),
+              "there is no Contact boundary",
+              "Contact law/"},
+             {!has_path,
+              "there is no load path",
+              "Load path/, Output/Load path"},
+             {has_path && !has_branches,
+              "the load path has no global branch",
+              "Solver/Search"},
+             {search != BondSearchChoice::full && !has_branches,
+              "the search is not full",
+              "Solver/Search moves"},
+             {!searches && !p.solver.prove &&
+                p.certificate.kind == CertificateKind::none,
+              "nothing is proved",
+              "Solver/Proof/"},
+             {!is_euclidean, method, "Solver/Euclidean bundle/"},
+             {!is_energy, method, "Solver/Energy bundle/"},
+             {is_euclidean,
+              method,
+              "Solver/Linear solver, Solver/Majorise minimise/"},
+             {is_energy && !searches && !p.solver.prove,
+              method,
+              "Solver/Majorise minimise/"},
+             {!is_euclidean && !is_energy,
+              method,
+              "Solver/Checkpoint interval"}})
+        if (is_idle)
+          table.without_effect(entries, reason);
     }
 
 
@@ -418,9 +477,11 @@ namespace Debond
     check_degree(p, *this);
     check_exact_displacement(p, *this);
     check_accuracy(p, *this);
+    note_entries_without_effect(p, body, *this);
     if (!errors().empty())
       throw BadInput(errors());
 
+    p.notes                               = notes();
     const std::vector<std::string> unused = unused_names(p, body, parts);
     if (!unused.empty())
       p.notes.push_back("no entry of the scene uses " + join(unused, ", "));

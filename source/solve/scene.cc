@@ -129,7 +129,7 @@ namespace Debond
             {
               const std::string everywhere = bonds->is_threshold ?
                                                "Contact law/Bond threshold" :
-                                               "Contact law/Bond stiffness";
+                                               given.law.stiffness_entry;
               entry                        = everywhere + ' ' + bonds->boundary;
               if (given.locations.count(entry) == 0)
                 entry = everywhere;

@@ -4,6 +4,7 @@
 #include <debond/input/parameters.h>
 
 #include <iostream>
+#include <sstream>
 
 #include "../check.h"
 
@@ -104,6 +105,96 @@ namespace
 
 
 
+  /// What is said of entries that a scene has no use for.
+  void
+  test_entries_without_effect()
+  {
+    const auto print_notes = [](const std::string              &text,
+                                const std::vector<std::string> &assignments) {
+      SceneTable         table;
+      std::istringstream scene(text);
+      table.read(scene, "scene.prm");
+      for (const std::string &assignment : assignments)
+        table.assign(assignment);
+      try
+        {
+          const Parameters parameters = table.parameters("scene.prm");
+          for (const std::string &note : parameters.notes)
+            std::cout << "  " << note << std::endl;
+          return parameters.effective_scene;
+        }
+      catch (const BadInput &error)
+        {
+          for (const std::string &line : error.lines)
+            std::cout << "  " << line << std::endl;
+          return std::string();
+        }
+    };
+    std::cout << "All defaults, and what a run of them writes" << std::endl;
+    std::ostringstream all;
+    SceneTable().print(all, false);
+    print_notes(print_notes(all.str(), {}), {});
+    for (const std::vector<std::string> &assignments :
+         std::vector<std::vector<std::string>>{
+           {"Contact law/Law=stepped",
+            "Contact law/Stepped/Factor=2*x",
+            "Contact law/Bond stiffness=69"},
+           {"Contact law/Law=stepped", "Contact law/Bond stiffness=x"},
+           {"Contact law/Law=stepped", "Contact law/Bond threshold top=1"},
+           {"Contact law/Law=stepped", "Contact law/Bond strength=1"},
+           {"Contact law/Law=stepped", "Contact law/Fracture energy=1"},
+           {"Contact law/Law=none", "Contact law/Bond stiffness=70"},
+           {"Contact law/Law=none", "Contact law/Stepped/Factor=x"},
+           {"Contact law/Stepped/Stiffnesses=7, 3"},
+           {"Contact law/Stepped/Factor=1"},
+           {"Boundary conditions/Contact boundary=",
+            "Contact law/Initial gap=0.1",
+            "Contact law/Bond stiffness=7"},
+           {"Dimension=3",
+            "Mesh/Lengths=1, 1, 1",
+            "Mesh/Cells=1, 1, 1",
+            "Material/Hypothesis=plane strain"},
+           {"Mesh/Source=generator",
+            "Mesh/Generator=hyper_cube",
+            "Mesh/Arguments=0 : 1 : true",
+            "Boundary conditions/Clamped boundaries=0",
+            "Boundary conditions/Contact boundary=1",
+            "Mesh/Cells=5, 7"},
+           {"Mesh/Source=generator",
+            "Mesh/Generator=hyper_cube",
+            "Mesh/Rotation=7",
+            "Mesh/Scale=3"},
+           {"Material/Thermal expansion=1e-6"},
+           {"Loads/Temperature change=5"},
+           {"Load path/Bonds heal=false", "Output/Load path plots=false"},
+           {"Load path/Factors=0:0.1:1",
+            "Load path/Global branch=none",
+            "Solver/Search=full"},
+           {"Solver/Method=energy bundle",
+            "Solver/Euclidean bundle/Bundle size=9",
+            "Solver/Majorise minimise/Stop tolerance=1e-7",
+            "Solver/Proof/Maximum nodes=5"},
+           {"Solver/Method=energy bundle",
+            "Solver/Prove=true",
+            "Solver/Majorise minimise/Stop tolerance=1e-7",
+            "Solver/Proof/Maximum nodes=5",
+            "Solver/Checkpoint interval=5"},
+           {"Solver/Method=euclidean bundle",
+            "Solver/Linear solver=direct",
+            "Solver/Energy bundle/Bundle size=9"},
+           {"Solver/Checkpoint interval=5", "Solver/Search moves=flips"},
+           {"Solver/Search=full", "Solver/Search moves=flips"},
+           {"Certificate/Target=0.1"}})
+      {
+        for (const std::string &assignment : assignments)
+          std::cout << assignment
+                    << (&assignment == &assignments.back() ? "\n" : " | ");
+        print_notes("", assignments);
+      }
+  }
+
+
+
   void
   test_restart()
   {
@@ -141,6 +232,8 @@ main()
                "Fruit=pear",
                "Members=1",
                "Even=3"});
+  std::cout << "== Entries without effect" << std::endl;
+  test_entries_without_effect();
   std::cout << "== What a restart may change" << std::endl;
   test_restart();
 }

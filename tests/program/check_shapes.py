@@ -372,6 +372,10 @@ class Scene:
                      ", ".join(map(repr, thresholds)))
             self.steps = [(EXACT(k) / EXACT(a), EXACT(m) / EXACT(M))
                           for k, m in zip(stiffnesses, thresholds)]
+            if draw.chance(0.4):
+                self.stiffness = self.field(draw, a * draw.uniform(0.1, 1.), a)
+                self.set("Contact law/Stepped/Factor",
+                         f"({self.stiffness})/{a!r}")
         else:
             self.steps = []
         if law != "stepped":

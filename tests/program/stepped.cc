@@ -9,6 +9,7 @@
 #include <debond/solve/load_path.h>
 
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <sstream>
 
@@ -34,10 +35,24 @@ namespace
 
 
 
-  /// The least J of a scene with nodal quadrature.
-  template <int dim>
+  using Place = std::function<double(const dealii::Point<2> &)>;
+
+
+
   double
-  least_functional(const Scene<dim> &scene, const double factor)
+  as_it_is(const dealii::Point<2> & /*point*/)
+  {
+    return 1.;
+  }
+
+
+
+  /// The least J of a scene with nodal quadrature, whose stiffnesses @p times
+  /// multiplies.
+  double
+  least_functional(const Scene<2> &scene,
+                   const double    factor,
+                   const Place    &times = as_it_is)
   {
     Condensation condensed =
       condense_to_contact(scene.problem(), scene.adhesion());
@@ -52,8 +67,9 @@ namespace
         for (unsigned int j = 0; j < n; ++j)
           S(i, j) = condensed.schur_complement()(i, j);
         branches[i] = stepped_law({690., 100.}, {0.001, 0.003}).branches;
-        const double measure =
-          scene.problem().unknowns().contact().boundary().nodes[i].measure;
+        const auto &node =
+          scene.problem().unknowns().contact().boundary().nodes[i];
+        const double measure = node.measure * times(node.position);
         for (ConvexBranch &branch : branches[i])
           {
             branch.curvature *= measure;
@@ -144,6 +160,90 @@ namespace
 
 
 
+  /// Bonds by place: a crack, and bonds that get stiffer.
+  void
+  test_places()
+  {
+    const auto crack = [](const dealii::Point<2> &point) {
+      return point[0] < 0.13 ? 0. : 1.;
+    };
+    const auto rising = [](const dealii::Point<2> &point) {
+      return 0.3 + 6. * point[0];
+    };
+    for (const auto &[text, place] :
+         {std::pair<std::string, Place>("if(x < 0.13, 0, 1)", crack),
+          std::pair<std::string, Place>("0.3 + 6*x", rising)})
+      {
+        const Values scene =
+          small + Values{"Contact law/Stepped/Factor=" + text};
+        const Scene<2> nodal(parameters_of(scene), MatrixStorage::serial);
+        const double   least = least_functional(nodal, 1., place);
+        std::cout << "times " << text << ":";
+        for (const std::vector<std::string> &settings :
+             std::vector<std::vector<std::string>>{
+               {"Solver/Method=automatic"},
+               {"Solver/Method=energy bundle", "Solver/Prove=true"},
+               {"Solver/Method=majorise minimise", "Solver/Search=full"}})
+          {
+            const SolveResult result = run(scene, settings);
+            std::cout << ' '
+                      << verdict(std::abs(result.functional / least - 1.),
+                                 tolerance);
+          }
+        std::cout << '\n';
+      }
+
+    // A crack that is no part of the contact boundary, and does not close. Its
+    // end is between faces, and so are the points of the rules.
+    const Values cracked = {"Mesh/Cells=16, 2",
+                            "Loads/Traction top=0; 0.35",
+                            "Contact law/Law=stepped",
+                            "Contact law/Tangential displacement=free",
+                            "Contact law/Stepped/Stiffnesses=210, 40",
+                            "Contact law/Stepped/Thresholds=0.001, 0.004"};
+    for (const std::string rule : {"midpoint", "gauss 3", "exact"})
+      {
+        const Values with_rule =
+          cracked + Values{"Contact law/Quadrature=" + rule};
+        const SolveResult one =
+          run(with_rule, {"Contact law/Stepped/Factor=if(x < 0.15, 0, 1)"});
+        const SolveResult other = run(with_rule,
+                                      {"Parts/glued=bottom: x > 0.15",
+                                       "Boundary conditions/Contact "
+                                       "boundary=glued"});
+        std::cout << rule << ", a crack beside a boundary without contact: "
+                  << verdict(std::abs(one.functional / other.functional - 1.),
+                             tolerance)
+                  << '\n';
+      }
+
+    // A body that hardly deforms, moved off by d: J is the integral of factor
+    // times j_1, whose energies are e_2 = 150/2 0.001^2 and more.
+    for (const auto &[d, energy] :
+         {std::make_pair(0.0008, 200. / 2. * 0.0008 * 0.0008),
+          std::make_pair(0.002,
+                         150. / 2. * 0.001 * 0.001 + 50. / 2. * 0.002 * 0.002),
+          std::make_pair(0.005,
+                         150. / 2. * 0.001 * 0.001 + 50. / 2. * 0.003 * 0.003)})
+      {
+        const SolveResult result =
+          run({"Mesh/Cells=8, 1",
+               "Material/Young modulus=1e7",
+               "Boundary conditions/Clamped boundaries=",
+               "Boundary conditions/Displacement top=0; " + std::to_string(d),
+               "Contact law/Law=stepped",
+               "Contact law/Stepped/Stiffnesses=200, 50",
+               "Contact law/Stepped/Thresholds=0.001, 0.003"},
+              {"Contact law/Stepped/Factor=5*x"});
+        // The mean of 5 x over 0.4 is 1.
+        check("moved off, the integral of the law",
+              std::abs(result.functional / (0.4 * energy) - 1.),
+              1e-5);
+      }
+  }
+
+
+
   void
   test_load_path()
   {
@@ -213,5 +313,6 @@ main(int argc, char *argv[])
   test_methods();
   test_quadratures();
   test_one_step();
+  test_places();
   test_load_path();
 }

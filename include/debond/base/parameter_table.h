@@ -178,9 +178,21 @@ namespace Debond
            const std::string              &reason,
            const std::vector<std::string> &others = {});
 
+    /// For @p entries, separated by commas, that the run does not look at for
+    /// this @p reason, with their families and sections ("Section/"). What has
+    /// another value than the default is named in notes(), or rejected if an
+    /// entry is given because of whose value the run does not.
+    void
+    without_effect(const std::string &entries,
+                   const std::string &reason,
+                   const std::string &rejected_for = "");
+
     /// One line each, in the order of their detection.
     const std::vector<std::string> &
     errors() const;
+
+    const std::vector<std::string> &
+    notes() const;
 
     /// Whether a file had this section, which is not declared.
     bool
@@ -195,6 +207,7 @@ namespace Debond
     struct Entry
     {
       std::string expected; ///< in words
+      std::string default_value;
       AtRestart   restart;
     };
 
@@ -233,6 +246,7 @@ namespace Debond
     std::set<std::string>              rejected;
     std::set<std::string>              unknown_sections;
     std::vector<std::string>           lines;
+    std::vector<std::string>           note_lines;
     std::string                        file_name;
     std::vector<std::string>           reading; ///< files that include others
 

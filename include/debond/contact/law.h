@@ -119,6 +119,10 @@ namespace Debond
     /// does not: `branches` have 1 in their place.
     std::string stiffness = {}, threshold = {};
 
+    /// Where `stiffness` is from. Of laws that are not winkler_law() it is a
+    /// factor of all their branches.
+    std::string stiffness_entry = "Contact law/Bond stiffness";
+
     /// Of the bonds of one boundary, numbers or expressions.
     struct Bonds
     {
@@ -148,6 +152,8 @@ namespace Debond
 
     /// Binds its own entries to variables of the maker.
     LawMaker (*bind)(ParameterTable &table);
+
+    std::string entries = {}; ///< these, as without_effect() takes them
   };
 
   /// The names of all kinds, for messages.

@@ -74,10 +74,12 @@ namespace Debond
         {
           std::vector<double> stiffnesses = {69., 23.};
           std::vector<double> thresholds  = {0.001, 0.003};
+          std::string         factor;
         };
         const auto        law         = std::make_shared<Entries>();
         const std::string stiffnesses = "Contact law/Stepped/Stiffnesses";
         const std::string thresholds  = "Contact law/Stepped/Thresholds";
+        const std::string factor      = "Contact law/Stepped/Factor";
         table.bind(stiffnesses,
                    law->stiffnesses,
                    list_of(quantity()),
@@ -89,10 +91,23 @@ namespace Debond
                    "M_1, M_2, ..., the displacement at which each step ends, "
                    "which rise",
                    "length");
+        table.bind(
+          factor,
+          law->factor,
+          Pattern("nothing, or an expression",
+                  [](const std::string & /*value*/) { return true; }),
+          "What multiplies all stiffnesses, an expression in x, y (and z) as in Loads: 0 where there are no bonds, such as on a crack; 1 if empty",
+          "none");
         return [=](ParameterTable &entries) {
           try
             {
-              return stepped_law(law->stiffnesses, law->thresholds);
+              ContactLawParameters result =
+                stepped_law(law->stiffnesses, law->thresholds);
+              result.stiffness       = law->factor;
+              result.stiffness_entry = factor;
+              if (!law->factor.empty())
+                result.data += ", times " + law->factor;
+              return result;
             }
           catch (const std::invalid_argument &error)
             {
@@ -104,6 +119,7 @@ namespace Debond
               return ContactLawParameters();
             }
         };
-      }};
+      },
+      "Contact law/Stepped/"};
   }
 } // namespace Debond

@@ -340,6 +340,7 @@ namespace Debond
           const auto boundaries = bonds_of_boundaries(*entries, all);
           return law_of(entries->everywhere, boundaries);
         };
-      }};
+      },
+      "Contact law/Bond stiffness, Contact law/Bond threshold, Contact law/Bond strength, Contact law/Fracture energy"};
   }
 } // namespace Debond
