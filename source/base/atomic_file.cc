@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/atomic_file.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
+#include <filesystem>
 #include <stdexcept>
 
 namespace Debond
@@ -18,22 +21,31 @@ namespace Debond
         errno != 0 ? std::strerror(errno) : "the output failed";
       throw std::runtime_error("Cannot write " + file_name + ": " + reason);
     }
-
-
-
-    /// Removes a file at the end of its life, unless told to keep it.
-    struct Remover
-    {
-      std::string file_name;
-      bool        keep = false;
-
-      ~Remover()
-      {
-        if (!keep)
-          std::remove(file_name.c_str());
-      }
-    };
   } // namespace
+
+
+
+  int
+  create_file(const std::string &file_name)
+  {
+    unlink(file_name.c_str());
+    const int descriptor =
+      open(file_name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor < 0)
+      fail(file_name);
+    return descriptor;
+  }
+
+
+
+  std::ifstream
+  open_plain_file(const std::string &file_name)
+  {
+    std::error_code unreadable;
+    return std::ifstream(
+      std::filesystem::is_regular_file(file_name, unreadable) ? file_name : "",
+      std::ios::binary);
+  }
 
 
 
@@ -43,29 +55,29 @@ namespace Debond
   {
     const std::string partial = file_name + ".partial";
 
+    close(create_file(partial));
     errno = 0;
     std::ofstream out(partial, std::ios::binary);
-    if (!out)
-      fail(file_name);
 
-    Remover remover = {partial};
     try
       {
         write(out);
+        out.close();
+        if (out && std::rename(partial.c_str(), file_name.c_str()) == 0)
+          return;
       }
     catch (...)
       {
         // deal.II throws on its own if its stream fails, and knows no reason.
-        if (!out)
-          fail(file_name);
-        throw;
+        if (out)
+          {
+            unlink(partial.c_str());
+            throw;
+          }
       }
-    out.close();
-    if (!out)
-      fail(file_name);
-
-    if (std::rename(partial.c_str(), file_name.c_str()) != 0)
-      fail(file_name);
-    remover.keep = true;
+    const int reason = errno;
+    unlink(partial.c_str());
+    errno = reason;
+    fail(file_name);
   }
 } // namespace Debond

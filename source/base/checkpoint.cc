@@ -186,7 +186,7 @@ namespace Debond
 
 
   CheckpointReader::CheckpointReader(const std::string &file_name)
-    : file(file_name, std::ios::binary)
+    : file(open_plain_file(file_name))
   {
     if (!file)
       refuse(file_name, std::string("cannot be read: ") + std::strerror(errno));

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/atomic_file.h>
 #include <debond/base/child_process.h>
 #include <debond/base/interrupt.h>
 
@@ -47,19 +48,6 @@ namespace Debond
 
 
 
-    int
-    open_log(const std::string &file)
-    {
-      const int log =
-        open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-      if (log < 0)
-        throw std::runtime_error("Cannot write " + file + ": " +
-                                 std::strerror(errno));
-      return log;
-    }
-
-
-
     /// Signals that come while an object of this class exists wait for its end.
     class SignalBlock
     {
@@ -99,7 +87,7 @@ namespace Debond
     const std::string directory =
       working_directory.empty() ? "." : working_directory;
 
-    const int log = open_log(log_file);
+    const int log = create_file(log_file);
     process       = fork();
     if (process == 0)
       become(argv.data(), log, directory.c_str());
@@ -115,7 +103,7 @@ namespace Debond
   ChildProcess::ChildProcess(const std::function<int()> &work,
                              const std::string          &log_file)
   {
-    const int log = open_log(log_file);
+    const int log = create_file(log_file);
     // What is not written yet would be written twice.
     std::cout.flush();
     std::cerr.flush();

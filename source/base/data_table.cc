@@ -229,7 +229,7 @@ namespace Debond
   CsvFile
   read_csv(const std::string &file_name)
   {
-    std::ifstream file(file_name);
+    std::ifstream file = open_plain_file(file_name);
     if (!file)
       throw std::runtime_error(file_name + ": cannot be read");
     CsvFile result;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/atomic_file.h>
 #include <debond/base/directory_lock.h>
 
 #include <fcntl.h>
@@ -7,6 +8,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -57,15 +59,25 @@ namespace Debond
     while (descriptor < 0)
       {
         descriptor =
-          open(file_name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-        if (descriptor < 0)
-          throw std::runtime_error("Cannot write " + file_name + ": " +
-                                   std::strerror(errno));
+          open(file_name.c_str(),
+               O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
+               0666);
+        struct stat status = {};
+        if (descriptor < 0 || fstat(descriptor, &status) != 0 ||
+            !S_ISREG(status.st_mode) || status.st_nlink > 1)
+          {
+            const std::string reason =
+              descriptor < 0 ? std::strerror(errno) :
+                               "it is no plain file, or has another name";
+            close(descriptor);
+            throw std::runtime_error("Cannot write " + file_name + ": " +
+                                     reason);
+          }
         const bool locked = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
         if (!locked && errno == EWOULDBLOCK)
           {
             close(descriptor);
-            std::ifstream file(file_name);
+            std::ifstream file = open_plain_file(file_name);
             std::string   holder;
             std::getline(file, holder);
             throw std::runtime_error(
@@ -81,10 +93,12 @@ namespace Debond
           }
       }
 
-    const std::string holder =
-      "process " + std::to_string(getpid()) + " on " + host_name() + "\n";
     // What the file says is only for the message of another process.
-    std::ofstream(file_name) << holder;
+    if (ftruncate(descriptor, 0) == 0)
+      dprintf(descriptor,
+              "process %d on %s\n",
+              static_cast<int>(getpid()),
+              host_name().c_str());
   }
 
 

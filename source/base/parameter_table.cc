@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
+#include <debond/base/atomic_file.h>
 #include <debond/base/nearest_name.h>
 #include <debond/base/number_text.h>
 #include <debond/base/parameter_table.h>
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
 namespace Debond
@@ -267,7 +267,7 @@ namespace Debond
   ParameterTable::declare_member(const std::string &path)
   {
     for (const auto &[start, family] : families)
-      if (starts_with(path, prefix_of(start)))
+      if (starts_with(path, prefix_of(start)) && printable(path) == path)
         {
           declare(path, "", family.pattern, family.documentation, family.units);
           return true;
@@ -284,8 +284,8 @@ namespace Debond
   {
     if (entries.count(path) == 0 && !declare_member(path))
       {
-        lines.push_back(location + ": unknown parameter " + path +
-                        suggestion(path, known_entries()));
+        lines.push_back(location + ": unknown parameter " + shortened(path) +
+                        suggestion(shortened(path), known_entries()));
         return;
       }
     set_at[path] = location;
@@ -376,8 +376,9 @@ namespace Debond
             else
               {
                 unknown_sections.insert(path);
-                lines.push_back(location + ": unknown subsection " + path +
-                                suggestion(path, known_sections));
+                lines.push_back(location + ": unknown subsection " +
+                                shortened(path) +
+                                suggestion(shortened(path), known_sections));
               }
           }
         else if (keyword == "end" && rest.empty())
@@ -440,14 +441,20 @@ namespace Debond
       return std::filesystem::equivalent(path, other, unreadable);
     };
 
-    std::error_code error;
-    std::ifstream   input(path);
-    if (!std::filesystem::is_regular_file(path, error) || !input)
+    // Files that each include others twice have no end.
+    constexpr unsigned int most_included = 100;
+    std::ifstream          input         = open_plain_file(path);
+    if (n_included == most_included)
+      return;
+    if (!input)
       lines.push_back(location + ": include " + name +
                       ": there is no such file, or it cannot be read");
     else if (std::any_of(reading.begin(), reading.end(), is_this_file))
       lines.push_back(location + ": include " + name +
                       ": the file includes itself");
+    else if (++n_included == most_included)
+      lines.push_back(location + ": include " + name +
+                      ": it is one of more than 100 files");
     else
       read(input, path.string());
     file_name = file;

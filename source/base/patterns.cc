@@ -21,7 +21,7 @@ namespace Debond
   bool
   Pattern::match(const std::string &value) const
   {
-    return predicate(value);
+    return printable(value) == value && predicate(value);
   }
 
 

@@ -2,6 +2,7 @@
 #include <debond/base/text.h>
 
 #include <iomanip>
+#include <iostream>
 
 namespace Debond
 {
@@ -12,6 +13,34 @@ namespace Debond
     for (const std::string &word : words)
       text += (&word == &words.front() ? "" : separator) + word;
     return text;
+  }
+
+
+
+  std::string
+  printable(const std::string &text)
+  {
+    std::string result;
+    for (const char c : text)
+      {
+        const auto code = static_cast<unsigned char>(c);
+        // UTF-8 has more of them behind this letter.
+        const bool is_second = !result.empty() && result.back() == '\xc2';
+        if ((code < 0x20 && c != '\t') || code == 0x7f ||
+            (is_second && code >= 0x80 && code < 0xa0))
+          result += words("\\x", std::hex, code / 16, code % 16);
+        else
+          result += c;
+      }
+    return result;
+  }
+
+
+
+  void
+  print_error(const std::string &message, const std::string &program)
+  {
+    std::cerr << program << ": " << printable(message) << std::endl;
   }
 
 

@@ -125,11 +125,16 @@ namespace Debond
   void
   read_scene(const std::string &scene, ParameterTable &table)
   {
+    // Output goes into folders of this name.
+    const std::string name = std::filesystem::path(scene).stem().string();
+    if (printable(scene) != scene || name == "." || name == "..")
+      throw BadInput({scene + ": no scene may have this name"});
     std::error_code error;
     if (!std::filesystem::exists(scene, error))
       throw BadInput({scene + ": there is no such file"});
     std::ifstream input(scene);
-    if (!input || std::filesystem::is_directory(scene))
+    if (!input || std::filesystem::is_directory(scene) ||
+        std::filesystem::is_character_file(scene))
       throw BadInput({scene + ": cannot be read as a scene file"});
     table.read(input, scene);
   }

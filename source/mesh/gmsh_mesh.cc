@@ -5,12 +5,12 @@
 #include <deal.II/lac/vector.h>
 #include <deal.II/numerics/rtree.h>
 
+#include <debond/base/atomic_file.h>
 #include <debond/mesh/msh_file.h>
 #include <debond/mesh/source_mesh.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <numeric>
 #include <sstream>
@@ -82,7 +82,7 @@ namespace Debond
       GmshMesh(const std::string &file_name, const double scale)
         : file_name(file_name)
       {
-        std::ifstream input(file_name);
+        std::ifstream input = open_plain_file(file_name);
         if (!input)
           throw std::invalid_argument(file_name + " cannot be read");
         file = read_msh(input, file_name);

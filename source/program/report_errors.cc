@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/text.h>
 #include <debond/input/bad_input.h>
 #include <debond/program/report_errors.h>
 
@@ -19,15 +20,14 @@ namespace Debond
     catch (const BadInput &error)
       {
         for (const std::string &line : error.lines)
-          std::cerr << name << ": " << line << '\n';
+          print_error(line, name);
         return ExitCode::bad_input;
       }
     catch (const std::bad_alloc &)
       {
-        std::cerr << name
-                  << ": there is not enough memory for this scene; try fewer "
-                     "cells or a smaller bundle"
-                  << std::endl;
+        print_error("there is not enough memory for this scene; try fewer "
+                    "cells or a smaller bundle",
+                    name);
         return ExitCode::bad_input;
       }
     catch (const std::exception &error)

@@ -4,6 +4,7 @@
 
 #include <debond/base/append.h>
 #include <debond/base/directory_lock.h>
+#include <debond/base/text.h>
 #include <debond/output/load_path_output.h>
 #include <debond/output/output_files.h>
 #include <debond/output/report.h>
@@ -15,7 +16,6 @@
 #include <debond/solve/scene_size.h>
 
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 
@@ -89,7 +89,7 @@ namespace Debond
       }
     catch (const std::runtime_error &error)
       {
-        std::cerr << "debond: " << error.what() << std::endl;
+        print_error(error.what());
         return ExitCode::output_not_saved;
       }
 

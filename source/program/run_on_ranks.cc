@@ -4,6 +4,7 @@
 
 #include <debond/base/append.h>
 #include <debond/base/directory_lock.h>
+#include <debond/base/text.h>
 #include <debond/check/plausibility.h>
 #include <debond/mesh/box_piece.h>
 #include <debond/mesh/mesh_piece.h>
@@ -14,7 +15,6 @@
 #include <debond/program/run_on_ranks.h>
 #include <debond/program/session.h>
 
-#include <iostream>
 #include <memory>
 
 namespace Debond
@@ -164,7 +164,7 @@ namespace Debond
     if (!failure.empty())
       {
         if (is_first)
-          std::cerr << "debond: " << failure << std::endl;
+          print_error(failure);
         return ExitCode::output_not_saved;
       }
 

@@ -2,10 +2,10 @@
 #include <deal.II/base/utilities.h>
 
 #include <debond/base/atomic_file.h>
+#include <debond/base/text.h>
 #include <debond/program/session.h>
 
 #include <filesystem>
-#include <iostream>
 
 namespace Debond
 {
@@ -64,16 +64,13 @@ namespace Debond
   {
     const bool interrupted = result.solve.minimum.interrupted;
     if (!result.is_answer())
-      std::cerr << "debond: NOT CONVERGED (" << result.status
-                << "): " << result.message << std::endl;
+      print_error("NOT CONVERGED (" + result.status + "): " + result.message);
     else if (interrupted)
-      std::cerr
-        << "debond: the search or the proof was interrupted; the result "
-           "is what it had found"
-        << std::endl;
+      print_error("the search or the proof was interrupted; the result is "
+                  "what it had found");
     if (!output_error.empty())
       {
-        std::cerr << "debond: " << output_error << std::endl;
+        print_error(output_error);
         return ExitCode::output_not_saved;
       }
     if (result.solve.status == SolverStatus::interrupted ||

@@ -2,7 +2,6 @@
 #include <debond/base/atomic_file.h>
 #include <debond/solve/displacement.h>
 
-#include <fstream>
 #include <limits>
 #include <stdexcept>
 
@@ -23,7 +22,7 @@ namespace Debond
   DofVector
   read_displacement(const std::string &file_name, const unsigned int n_dofs)
   {
-    std::ifstream file(file_name);
+    std::ifstream file = open_plain_file(file_name);
     DofVector     u(n_dofs);
     for (double &value : u)
       file >> value;

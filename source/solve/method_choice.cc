@@ -107,10 +107,11 @@ namespace Debond
                 const SolverParameters   &solver,
                 const AccuracyParameters &accuracy)
   {
-    const SceneSize    size          = scene_size(problem);
-    const unsigned int dim           = problem.dimension;
-    const double       limit         = memory_limit(solver);
-    const double       direct_memory = memory_with_factorisation(size, dim);
+    const SceneSize    size = scene_size(problem);
+    const unsigned int dim  = problem.dimension;
+    // What fits in a TB is numbered in 31 bits.
+    const double limit         = std::min(1e12, memory_limit(solver));
+    const double direct_memory = memory_with_factorisation(size, dim);
 
     MethodChoice choice = {solver.method, solver.linear_solver, "", 0., false};
     if (choice.method == SolverMethod::euclidean_bundle)

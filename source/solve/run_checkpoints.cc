@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/text.h>
 #include <debond/base/version.h>
 #include <debond/input/bad_input.h>
 #include <debond/solve/run_checkpoints.h>
 
 #include <filesystem>
-#include <iostream>
 
 namespace Debond
 {
@@ -112,8 +112,8 @@ namespace Debond
     catch (const std::runtime_error &error)
       {
         if (last_error != error.what())
-          std::cerr << "debond: " << error.what()
-                    << (last ? "" : "; the run goes on") << std::endl;
+          print_error(std::string(error.what()) +
+                      (last ? "" : "; the run goes on"));
         last_error = error.what();
       }
     since_last.restart();

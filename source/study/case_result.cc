@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/atomic_file.h>
 #include <debond/base/data_table.h>
 #include <debond/study/case_result.h>
 
@@ -6,7 +7,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
@@ -26,7 +26,7 @@ namespace Debond
     nlohmann::json
     read_summary(const std::string &file_name)
     {
-      std::ifstream file(file_name);
+      std::ifstream file = open_plain_file(file_name);
       try
         {
           return nlohmann::json::parse(file);
@@ -43,7 +43,7 @@ namespace Debond
     bool
     has_parameters_of(const Case &one)
     {
-      std::ifstream      file(one.directory + "/parameters.prm");
+      std::ifstream file = open_plain_file(one.directory + "/parameters.prm");
       std::ostringstream text;
       text << file.rdbuf();
       return text.str() == one.effective_scene;

@@ -2,13 +2,13 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/base/directory_lock.h>
+#include <debond/base/text.h>
 #include <debond/study/case_runner.h>
 #include <debond/study/run_study.h>
 #include <debond/study/study_report.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
 
 namespace Debond
 {
@@ -208,11 +208,11 @@ namespace Debond
           << table.markdown() << "\nWritten: " << study.directory
           << "/index.md, with its tables and plots" << std::endl;
       for (const std::string &line : failed)
-        std::cerr << "debond: case " << line << std::endl;
+        print_error("case " + line);
       if (!plot_problem.empty())
-        std::cerr << "debond: no pictures: " << plot_problem
-                  << "; their data and scripts are in " << study.directory
-                  << "/plots" << std::endl;
+        print_error("no pictures: " + plot_problem +
+                    "; their data and scripts are in " + study.directory +
+                    "/plots");
       if (!failed.empty())
         return ExitCode::not_converged;
       return plot_problem.empty() ? ExitCode::success :
@@ -243,9 +243,8 @@ namespace Debond
         CaseRunner          runner(jobs, out, terminal);
         if (!run_cases(study, cases, runner))
           {
-            std::cerr << "debond: interrupted; the same command goes on where "
-                         "the study stopped"
-                      << std::endl;
+            print_error("interrupted; the same command goes on where the study "
+                        "stopped");
             return ExitCode::interrupted;
           }
         const ExitCode code =
@@ -256,7 +255,7 @@ namespace Debond
       }
     catch (const std::runtime_error &error)
       {
-        std::cerr << "debond: " << error.what() << std::endl;
+        print_error(error.what());
         return ExitCode::output_not_saved;
       }
   }

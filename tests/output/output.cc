@@ -17,9 +17,11 @@
 #include <debond/solve/progress.h>
 
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -90,9 +92,25 @@ namespace
     std::filesystem::create_directory("directory");
     print_error([&] { write_atomically("directory", write_text("x")); });
 
-    // A device without space in the place of the file in the making.
-    std::filesystem::create_symlink("/dev/full", "full.txt.partial");
-    print_error([&] { write_atomically("full.txt", write_text("x")); });
+    // No space, by a limit of the process.
+    rlimit limit;
+    getrlimit(RLIMIT_FSIZE, &limit);
+    const rlimit few = {2, limit.rlim_max};
+    const auto   old = std::signal(SIGXFSZ, SIG_IGN);
+    setrlimit(RLIMIT_FSIZE, &few);
+    print_error([&] { write_atomically("full.txt", write_text("three")); });
+    setrlimit(RLIMIT_FSIZE, &limit);
+    std::signal(SIGXFSZ, old);
+
+    // A link in the place of the file in the making, and one of the file.
+    write_atomically("victim.txt", write_text("kept"));
+    std::filesystem::create_symlink("victim.txt", "link.txt");
+    std::filesystem::create_symlink("victim.txt", "link.txt.partial");
+    write_atomically("link.txt", write_text("new"));
+    check("links are replaced, not followed",
+          contents("victim.txt") == "kept" && contents("link.txt") == "new" &&
+            !std::filesystem::is_symlink("link.txt"));
+    std::filesystem::remove("link.txt");
 
     bool partial_files = std::filesystem::exists("full.txt");
     for (const auto &entry : std::filesystem::directory_iterator("."))

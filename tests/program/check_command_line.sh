@@ -84,7 +84,58 @@ grep -qE '^set Dimension += 3 ' log ||
 } >long.prm
 expect_code 2 "$debond" long.prm
 [ "$(wc -c <errors)" -lt 300 ] || fail "a message of $(wc -c <errors) letters"
-rm -r log errors study.prm mark.prm long.prm parts including.prm included.prm
+rm -r study.prm mark.prm long.prm parts including.prm included.prm
+
+# refused TEXT ARGUMENTS: soon, with little memory, and with a message in which
+# there are no control characters.
+refused() {
+  local text=$1
+  shift
+  expect_code 2 prlimit --as=$((2000 * 1024 * 1024)) timeout 120 "$debond" "$@"
+  grep -qF "$text" errors || fail "$text: $(cat errors)"
+  ! grep -qP '[\x00-\x09\x0b-\x1f\x7f]|\xc2[\x80-\x9f]' errors ||
+    fail "control characters: $(cat -v errors)"
+}
+
+# Names that are none of a folder, or that a terminal obeys.
+for name in ...prm ..prm $'a\nb.prm' $'a\x1b[31m.prm' $'a\xc2\x9b31m.prm'; do
+  : >"$name"
+  refused "no scene may have this name" "$name"
+  refused "no scene may have this name" --study "$name"
+  rm -- "$name"
+done
+: >plain.prm
+for value in $'Output/Directory=a\nb' $'Output/Directory=\x1b]0;title' \
+  $'Probes/na\x7fme=0, 0' $'Boundary conditions/Contact boundary=\x1b[2J' \
+  $'\x1b[2J=1'; do
+  refused "--set: " plain.prm --set "$value"
+done
+
+# Files that do not end, or never begin.
+mkfifo pipe
+refused "/dev/zero: cannot be read as a scene file" /dev/zero
+for file in /dev/zero pipe .; do
+  refused "cannot be read" plain.prm --set Mesh/Source=file \
+    --set "Mesh/File=$file"
+  refused "is not the displacement" plain.prm \
+    --set "Solver/Euclidean bundle/Start=$file" --set "Solver/Method=euclidean bundle"
+done
+for i in $(seq 40); do
+  printf 'include %d.prm\ninclude %d.prm\n' $((i + 1)) $((i + 1)) >$i.prm
+done
+: >41.prm
+refused "it is one of more than 100 files" 1.prm
+[ "$(wc -l <errors)" -eq 1 ] || fail "includes: $(cat errors)"
+rm pipe {1..41}.prm
+
+# Numbers of cells beyond all memory, of which a product has no 32 bits.
+refused "make about 2.1e+11 cells" plain.prm --set Mesh/Source=generator \
+  --set "Mesh/Generator=subdivided_hyper_rectangle" \
+  --set "Mesh/Arguments=700000, 300000 : 0, 0 : 2, 1 : true"
+refused "unknowns need about" plain.prm --set "Mesh/Cells=300000, 200000" \
+  --set "Solver/Memory limit=1e30"
+
+rm log errors plain.prm
 
 [ "$(ls)" = "$(printf '%s\n' again.prm defaults.prm help set.prm version)" ] ||
   fail "Files were written."

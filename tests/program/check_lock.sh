@@ -47,6 +47,19 @@ wait $process || true
 expect_code 0 "$debond" "$scene" --set "Output/Directory=out"
 [ ! -e out/.lock ] || fail "The lock is still there."
 
+# What is no plain file of its own is no lock: nothing else is written.
+echo precious >victim
+for plant in "ln -s ../victim" "ln -s ../missing" "ln ../victim" mkfifo mkdir; do
+  rm -rf planted
+  mkdir planted
+  (cd planted && $plant .lock)
+  expect_code 5 timeout 120 "$debond" "$scene" --set "Output/Directory=planted"
+  grep -q "^debond: Cannot write planted/.lock: " errors ||
+    fail "$plant: $(cat errors)"
+  [ "$(cat victim)" = precious ] && [ ! -e missing ] || fail "$plant: followed"
+  [ "$(ls -A planted)" = .lock ] || fail "$plant: $(ls -A planted)"
+done
+
 # A study.
 cp "$scene" scene.prm
 cat >study.prm <<'STUDY'

@@ -90,6 +90,26 @@ notes --set "Mesh/Cells=40, 4" --set "Loads/Traction top=0; 6.9" |
 [ ! -e output/bar/body.vtu ] && [ ! -e output/bar/history.csv ] ||
   fail "Old files stayed: $(ls output/bar)"
 
+# What lies under the names of files, or of files in the making, is replaced and
+# not followed: links, also to nothing, hard links, pipes.
+echo precious >victim
+mkdir planted
+cd planted
+ln -s ../victim body.vtu
+ln -s ../victim body.vtu.partial
+ln -s ../missing contact.vtu.partial
+ln ../victim contact_profile.csv.partial
+mkfifo history.csv.partial parameters.prm.partial
+ln -s /dev/zero summary.json.partial
+cd ..
+expect_code 0 timeout 120 "$debond" bar.prm --set "Output/Directory=planted"
+[ "$(cat victim)" = precious ] && [ ! -e missing ] || fail "links were followed"
+[ "$(ls planted)" = "$(printf '%s\n' "${files[@]}")" ] ||
+  fail "planted has $(ls planted)"
+for file in "${files[@]}"; do
+  [ ! -L "planted/$file" ] && [ -s "planted/$file" ] || fail "$file: $(ls -l planted)"
+done
+
 # A file that cannot be written is named, and the exit code is 5.
 mkdir -p blocked/contact_profile.csv
 expect_code 5 "$debond" bar.prm --set "Output/Directory=blocked"

@@ -2,12 +2,24 @@
 #ifndef debond_base_atomic_file_h
 #define debond_base_atomic_file_h
 
+#include <fstream>
 #include <functional>
 #include <ostream>
 #include <string>
 
 namespace Debond
 {
+  /// Creates a file and opens its descriptor for writing, in place of what has
+  /// the name, such as a link or a pipe: what is written goes nowhere else.
+  /// Throws std::runtime_error.
+  int
+  create_file(const std::string &file_name);
+
+  /// Opens a file for reading; a stream that has failed if there is none, or
+  /// if it is a device, a pipe or a folder, which need not end.
+  std::ifstream
+  open_plain_file(const std::string &file_name);
+
   /**
    * Writes a file in one piece: @p write fills "<file_name>.partial", which is
    * renamed only when all of it is on the disk, so that neither an error nor

@@ -249,6 +249,7 @@ namespace Debond
     std::vector<std::string>           note_lines;
     std::string                        file_name;
     std::vector<std::string>           reading; ///< files that include others
+    unsigned int                       n_included = 0; ///< files in all
 
     /// By path, in the order of their declaration.
     std::vector<std::pair<std::string, Reader>> readers;

@@ -23,6 +23,16 @@ namespace Debond
     return text.str();
   }
 
+  /// The text with its control characters, which can make a terminal show what
+  /// is not so, as in "\x1b".
+  std::string
+  printable(const std::string &text);
+
+  /// A line on the standard error, printable.
+  void
+  print_error(const std::string &message,
+              const std::string &program = "debond");
+
   /// The number with this many digits behind the point, such as "1.23e-04".
   std::string
   scientific(const double value, const int digits);
