@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <regex>
 #include <stdexcept>
 
 namespace Debond
@@ -39,10 +40,24 @@ namespace Debond
 
 
 
-    /// "; did you mean ...?", or what there is in the same section.
+    /// "; did you mean ...?", or what there is in the same section, or that
+    /// there is no such thing.
     std::string
     suggestion(const std::string &path, const std::vector<std::string> &known)
     {
+      static const std::map<std::string, std::string> absent = {
+        {"friction|coulomb", "friction"},
+        {"plastic|yield|hardening", "plasticity"},
+        {"visc|creep|damping", "viscosity"},
+        {"density|\\bmass|veloc|accelerat|time step", "inertia"},
+        {"(large|finite) (displ|strain|rot|def)", "large displacements"},
+        {"orthotrop|anisotrop", "directions of the material"},
+        {"soften|damage|fatigue", "damage"}};
+      for (const auto &[words, what] : absent)
+        if (std::regex_search(path, std::regex(words, std::regex::icase)))
+          return "; Debond has no " + what +
+                 ", see 'What the model does not contain' in "
+                 "doc/guide/manual.md";
       const std::vector<std::string> near = nearest_names(path, known);
       if (!near.empty())
         return "; did you mean " + join(near, " or ") + "?";

@@ -126,15 +126,24 @@ namespace Debond
   void
   check_names(const std::string           &path,
               const std::set<std::string> &names,
-              const std::set<std::string> &boundaries,
+              const BodyDescription       &body,
               ParameterTable              &table)
   {
+    const std::set<std::string>    boundaries = body.boundaries();
     const std::vector<std::string> known(boundaries.begin(), boundaries.end());
     for (const std::string &name : names)
       if (boundaries.count(name) == 0)
-        table.reject(path,
-                     "the body has no boundary " + name + ", but " +
-                       join(known, ", "));
+        table.reject(
+          path,
+          "the body has no boundary " + name +
+            (known.empty() ?
+               "; physical groups of curves, in 3D of surfaces, are the boundaries, and its file has none: make them in Gmsh, such as Physical Curve(\"left\") = {4}" :
+               ", but " + join(known, ", ")) +
+            (body.inner_groups.count(name) > 0 ?
+               "; the group of this name lies inside the body" :
+             body.regions().count(name) > 0 ?
+               "; the region of this name is a piece of the body, where Parts has pieces of a boundary, such as bottom: x < 1" :
+               ""));
   }
 
 

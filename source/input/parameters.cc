@@ -151,11 +151,10 @@ namespace Debond
       // Without a body there is an error already.
       if (p.body)
         {
-          const std::set<std::string> boundaries = p.body->boundaries();
-          check_names(clamped, p.clamped_boundaries, boundaries, table);
-          check_names(contact, p.contact_boundaries, boundaries, table);
+          check_names(clamped, p.clamped_boundaries, *p.body, table);
+          check_names(contact, p.contact_boundaries, *p.body, table);
           for (const auto &[name, unused] : p.loads.tractions)
-            check_names("Loads/Traction " + name, {name}, boundaries, table);
+            check_names("Loads/Traction " + name, {name}, *p.body, table);
         }
 
       for (const std::string &side : p.contact_boundaries)
@@ -172,8 +171,6 @@ namespace Debond
     void
     check_contact_boundaries(const Parameters &p, ParameterTable &table)
     {
-      const std::set<std::string> boundaries =
-        p.body ? p.body->boundaries() : std::set<std::string>();
       for (const auto &[path, unused] : table.locations())
         for (const std::string name : {"Bond stiffness",
                                        "Bond threshold",
@@ -185,10 +182,7 @@ namespace Debond
               !table.get(path).empty())
             {
               if (p.body)
-                check_names(path,
-                            {path.substr(prefix.size())},
-                            boundaries,
-                            table);
+                check_names(path, {path.substr(prefix.size())}, *p.body, table);
             }
     }
 
@@ -464,11 +458,8 @@ namespace Debond
     // Without a body there is an error already.
     if (p.body)
       {
-        check_supports(p.supports,
-                       p.body->boundaries(),
-                       p.dimension,
-                       p.loads.constants,
-                       *this);
+        check_supports(
+          p.supports, *p.body, p.dimension, p.loads.constants, *this);
         check_material(p.dimension, p.materials, p.body->regions(), *this);
         check_probes(p.probes,
                      p.dimension,

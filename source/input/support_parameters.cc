@@ -68,23 +68,23 @@ namespace Debond
 
   void
   check_supports(const SupportParameters             &supports,
-                 const std::set<std::string>         &boundaries,
+                 const BodyDescription               &body,
                  const unsigned int                   dimension,
                  const std::map<std::string, double> &constants,
                  ParameterTable                      &table)
   {
     check_names("Boundary conditions/Roller boundaries",
                 supports.rollers,
-                boundaries,
+                body,
                 table);
     check_names("Boundary conditions/Symmetry boundaries",
                 supports.symmetry_planes,
-                boundaries,
+                body,
                 table);
     for (const auto &[name, text] : supports.displacements)
       {
         const std::string path = "Boundary conditions/Displacement " + name;
-        check_names(path, {name}, boundaries, table);
+        check_names(path, {name}, body, table);
         const DisplacementText components(text);
         check_expression(
           path, components.expressions, dimension, dimension, constants, table);
@@ -100,7 +100,7 @@ namespace Debond
     for (const auto &[name, gap] : supports.gaps)
       {
         const std::string path = "Contact law/Initial gap " + name;
-        check_names(path, {name}, boundaries, table);
+        check_names(path, {name}, body, table);
         check_expression(path, gap, dimension, 1, constants, table);
       }
   }

@@ -6,6 +6,7 @@
 #include <deal.II/numerics/rtree.h>
 
 #include <debond/base/atomic_file.h>
+#include <debond/base/text.h>
 #include <debond/mesh/msh_file.h>
 #include <debond/mesh/source_mesh.h>
 
@@ -85,6 +86,17 @@ namespace Debond
         std::ifstream input = open_plain_file(file_name);
         if (!input)
           throw std::invalid_argument(file_name + " cannot be read");
+        // Some editors begin a file with the mark of UTF-8.
+        std::string begin(7, ' ');
+        input.read(begin.data(), 7);
+        const std::size_t mark =
+          begin.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0;
+        if (begin.compare(mark, 4, "$NOD") == 0)
+          throw std::invalid_argument(
+            file_name + " is of Gmsh's version 1; this makes one that is read: "
+                        "gmsh old.msh -0 -o new.msh -format msh41");
+        input.clear();
+        input.seekg(static_cast<std::streamoff>(mark));
         file = read_msh(input, file_name);
         take_vertices(scale);
         take_cells();
@@ -127,6 +139,11 @@ namespace Debond
           }
         take_names(boundary_ids, dim - 1, source->names.boundaries);
         take_names(region_ids, dim, source->names.regions);
+        for (const int group : inner_groups)
+          source->inner_groups.insert(name_of(dim - 1, group));
+        if (!twins.empty())
+          source->names.notes.push_back(
+            words("there are ", twins.size(), " nodes", on_one_place));
 
         if (is_hypercube)
           dealii::GridTools::consistently_order_cells(cell_data);
@@ -192,7 +209,9 @@ namespace Debond
         Vertices index(file.vertices.size(),
                        dealii::numbers::invalid_unsigned_int);
         for (const MshFile::Element &element : file.elements)
-          if (dimension_of(element.type) == dim)
+          if (dimension_of(element.type) > dim)
+            fail(element.line, "a cell in 3D, but the scene has Dimension = 2");
+          else if (dimension_of(element.type) == dim)
             for (const unsigned int v : element.vertices)
               index[v] = 0;
         double least_z = std::numeric_limits<double>::max();
@@ -216,7 +235,8 @@ namespace Debond
             file_name +
             ": z must be the same at all nodes of a plane mesh, "
             "but it goes from " +
-            std::to_string(least_z) + " to " + std::to_string(most_z));
+            std::to_string(least_z) + " to " + std::to_string(most_z) +
+            "; a body in 3D has cells in 3D, and needs Dimension = 3");
         for (MshFile::Element &element : file.elements)
           for (unsigned int &v : element.vertices)
             v = index[v];
@@ -228,9 +248,6 @@ namespace Debond
         std::map<Vertices, std::size_t> known;
         for (MshFile::Element &element : file.elements)
           {
-            if (dimension_of(element.type) > dim)
-              fail(element.line,
-                   "a cell in 3D, but the scene has Dimension = 2");
             if (dimension_of(element.type) != dim)
               continue;
             if (element.type == MshFile::prism ||
@@ -261,7 +278,12 @@ namespace Debond
             file_name + ": the mesh has no " +
             (dim == 2 ?
                "triangles or quadrilaterals" :
-               "tetrahedra or hexahedra; is it one for Dimension = 2?"));
+               "tetrahedra or hexahedra; is it one for Dimension = 2?") +
+            (file.elements.empty() ?
+               "" :
+               std::string(
+                 "; where there are physical groups, Gmsh saves nothing else: add a Physical ") +
+                 (dim == 2 ? "Surface" : "Volume")));
         cell_faces   = &faces_of(cells.front().element->type);
         is_hypercube = cells.front().element->type == MshFile::quadrilateral ||
                        cells.front().element->type == MshFile::hexahedron;
@@ -404,9 +426,8 @@ namespace Debond
               if (face == is_outside.end())
                 fail(element.line,
                      "an element of the boundary that is the face of no cell");
-              if (face->second)
-                face_groups[sorted].insert(element.groups.begin(),
-                                           element.groups.end());
+              (face->second ? face_groups[sorted] : inner_groups)
+                .insert(element.groups.begin(), element.groups.end());
             }
       }
 
@@ -442,10 +463,14 @@ namespace Debond
             fail(cells[c].element->line,
                  "a cell that is not connected through faces with that of "
                  "line " +
-                   std::to_string(cells[0].element->line));
+                   std::to_string(cells[0].element->line) +
+                   (twins.empty() ?
+                      "" :
+                      words(
+                        "; there are ", twins.size(), " nodes", on_one_place)));
       }
 
-      /// Whether a point lies on a face's part, but not at its corners.
+      /// Whether a point lies on a face's part.
       static bool
       touches(const dealii::Point<dim>                  &point,
               const std::array<dealii::Point<dim>, dim> &part)
@@ -473,16 +498,13 @@ namespace Debond
             rest -= xi(i);
             inside = inside && xi(i) > -tolerance;
           }
-        inside =
-          inside && rest > -tolerance && distance.norm() < tolerance * size;
-        for (const auto &corner : part)
-          inside = inside && point.distance(corner) > tolerance * size;
-        return inside;
+        return inside && rest > -tolerance &&
+               distance.norm() < tolerance * size;
       }
 
       /// Two vertices at one place are no hanging node, but a crack.
       void
-      check_hanging_nodes() const
+      check_hanging_nodes()
       {
         std::set<unsigned int> on_boundary;
         for (const Face &face : boundary)
@@ -498,17 +520,25 @@ namespace Debond
             {
               dealii::BoundingBox<dim> box(
                 std::vector<dealii::Point<dim>>(part.begin(), part.end()));
-              const auto &ends = box.get_boundary_points();
-              box.extend(tolerance * ends.first.distance(ends.second));
+              const auto  &ends = box.get_boundary_points();
+              const double near_by =
+                tolerance * ends.first.distance(ends.second);
+              box.extend(near_by);
               std::vector<std::size_t> near;
               tree.query(boost::geometry::index::intersects(box),
                          std::back_inserter(near));
               for (const std::size_t i : near)
-                if (const unsigned int v = candidates[i];
-                    !std::binary_search(face.sorted.begin(),
-                                        face.sorted.end(),
-                                        v) &&
-                    touches(vertices[v], part))
+                if (const unsigned int v = candidates[i]; std::binary_search(
+                      face.sorted.begin(), face.sorted.end(), v))
+                  continue;
+                else if (std::any_of(face.corners.begin(),
+                                     face.corners.end(),
+                                     [&](const unsigned int corner) {
+                                       return vertices[v].distance(
+                                                vertices[corner]) <= near_by;
+                                     }))
+                  twins.insert(v);
+                else if (touches(vertices[v], part))
                   {
                     std::ostringstream place;
                     place << vertices[v];
@@ -519,6 +549,14 @@ namespace Debond
             }
       }
 
+      std::string
+      name_of(const int dimension, const int group) const
+      {
+        const auto name = file.names.find({dimension, group});
+        return name != file.names.end() ? printable(name->second) :
+                                          std::to_string(group);
+      }
+
       /// The names of the groups of a dimension that ids were given for.
       template <typename Names>
       void
@@ -526,13 +564,13 @@ namespace Debond
       {
         for (const auto &[groups, id] : ids.ids)
           for (const int group : groups)
-            {
-              const auto name = file.names.find({dimension, group});
-              names[name != file.names.end() ? name->second :
-                                               std::to_string(group)]
-                .insert(id);
-            }
+            names[name_of(dimension, group)].insert(id);
       }
+
+      /// Nodes at the place of another one: cracks, or forgotten.
+      static constexpr const char *on_one_place =
+        " at the same place as others, which "
+        "are not connected with them; Coherence Mesh in Gmsh joins them";
 
       /// Relative to a face's size.
       static constexpr double tolerance = 1e-8;
@@ -545,7 +583,9 @@ namespace Debond
       bool                                             is_hypercube = false;
       std::vector<Face>                                boundary;
       std::vector<std::pair<std::size_t, std::size_t>> neighbours;
-      std::map<Vertices, Groups> face_groups; ///< by sorted corners
+      std::map<Vertices, Groups> face_groups;  ///< by sorted corners
+      Groups                     inner_groups; ///< those of faces inside
+      std::set<unsigned int>     twins;
     };
   } // namespace
 

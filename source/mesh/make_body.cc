@@ -20,7 +20,8 @@ namespace Debond
                 [coarse](const unsigned int n_refinements) {
                   auto source = std::make_unique<SourceMesh<dim>>();
                   source->mesh.copy_triangulation(coarse->mesh);
-                  source->names = coarse->names;
+                  source->names        = coarse->names;
+                  source->inner_groups = coarse->inner_groups;
                   source->refine(n_refinements);
                   return source;
                 },

@@ -89,6 +89,7 @@ namespace Debond
                              static_cast<double>(found.edges.size()),
                              static_cast<double>(found.squares.size()),
                              0.};
+    this->inner_groups = coarsest->inner_groups;
     source = unit_level == 0 ? std::move(coarsest) : make(unit_level);
   }
 

@@ -152,8 +152,8 @@ namespace Debond
                      "Mesh.Binary = 0");
         if (version != "2.2" && version != "4.1")
           lines.fail("the version " + version +
-                     " of the format is not read, but 2.2 and 4.1, with "
-                     "Mesh.MshFileVersion");
+                     " of the format is not read, but 2.2 and 4.1; this makes "
+                     "one: gmsh old.msh -0 -o new.msh -format msh41");
         is_version_4 = version == "4.1";
         skip_to_end("$MeshFormat");
       }
@@ -161,11 +161,17 @@ namespace Debond
       void
       skip_to_end(const std::string &section)
       {
-        const std::string end = "$End" + section.substr(1);
-        do
+        const std::string end    = "$End" + section.substr(1);
+        std::size_t       n_more = 0;
+        for (; lines.text != end; ++n_more)
           if (!lines.next())
             lines.fail("the file ends within " + section);
-        while (lines.text != end);
+        if (n_more > 1 && (section == "$Nodes" || section == "$Elements"))
+          lines.fail(
+            section + " says that it has " +
+            std::to_string(section == "$Nodes" ? file.vertices.size() :
+                                                 file.elements.size()) +
+            ", but " + std::to_string(n_more - 1) + " more lines follow");
       }
 
       void

@@ -160,7 +160,9 @@ namespace Debond
                               const std::vector<Part<dim>>           &parts)
     : whole(whole)
     , parts(parts)
-  {}
+  {
+    this->inner_groups = whole->inner_groups;
+  }
 
 
 

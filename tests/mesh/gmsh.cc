@@ -206,9 +206,136 @@ test_errors()
   error(with("2 2 2 1 1 1 2 3\n3 2 2 1 1 1 3 4",
              "2 3 2 1 1 1 2 3 4\n3 15 2 1 1 1",
              with("3 1 1 0", "3 0.2 0.2 0")));
+  // Other formats and dimensions, and counts that do not fit.
+  error("$NOD\n3\n1 0 0 0\n");
+  error(with("$Elements\n3", "$Elements\n2"));
+  error(with("$Nodes\n5", "$Nodes\n4"));
+  error(with("5 0.5 0 0", "5 0.5 0 1", with("1 3 4", "1 5 4")));
+  error(with("3\n1 1 2 1 1 1 2\n2 2 2 1 1 1 2 3\n3 2 2 1 1 1 3 4",
+             "1\n1 1 2 1 1 1 2"));
+  // Two triangles that each have nodes of their own.
+  const std::string apart = with("$Nodes\n5", "$Nodes\n7\n6 0 0 0\n7 1 1 0");
+  error(with("1 3 4", "6 7 4", apart));
   print_error([&] { read<3>(square); });
   print_error(
     [&] { read<3>(with("3 2 2 1 1 1 3 4", "3 6 2 1 1 1 3 4 2 5 5")); });
+}
+
+
+
+void
+test_odd_files()
+{
+  std::cout << "Files that are odd" << std::endl;
+  check("the mark of UTF-8 is skipped",
+        read<2>("\xef\xbb\xbf" + square)->n_cells() == 2.);
+  const std::string crossed =
+    with("3\n1 1 2 1 1 1 2", "4\n1 1 2 1 1 1 2\n9 1 2 4 1 3 1");
+  const auto body = read<2>(crossed);
+  check("a group inside is none of the boundary",
+        body->boundaries() == std::set<std::string>{"1"} &&
+          body->inner_groups == std::set<std::string>{"4"});
+  check("names have no control characters",
+        read<2>(with("$Nodes",
+                     "$PhysicalNames\n1\n1 1 \"a\x1b[31mb\"\n"
+                     "$EndPhysicalNames\n$Nodes"))
+            ->boundaries() == std::set<std::string>{"a\\x1b[31mb"});
+  // A square cut from its corner to its centre, where two nodes lie.
+  const auto notes = [](const std::string &text) {
+    Triangulation<2> mesh;
+    return read<2>(text)->make_mesh(mesh).notes;
+  };
+  const std::string four =
+    "5\n1 1 2 1 1 1 2\n2 2 2 1 1 1 2 5\n3 2 2 1 1 2 3 5\n"
+    "4 2 2 1 1 3 4 5\n5 2 2 1 1 4 6 5";
+  const std::string fan =
+    with("3\n1 1 2 1 1 1 2\n2 2 2 1 1 1 2 3\n3 2 2 1 1 1 3 4",
+         four,
+         with("$Nodes\n5",
+              "$Nodes\n6\n6 1e-12 0 0",
+              with("5 0.5 0 0", "5 0.5 0.5 0")));
+  check("a crack is noted",
+        notes(fan).size() == 1 &&
+          notes(fan)[0].find("2 nodes at the same place") != std::string::npos);
+  check("nothing else is", notes(with("4 6 5", "4 1 5", fan)).empty());
+}
+
+
+
+/// Refused before there is anything of them.
+void
+test_huge_generators()
+{
+  std::cout << "Generators with too many cells" << std::endl;
+  const auto words_of = [](const unsigned int dim,
+                           const std::string &name,
+                           const std::string &arguments) -> std::string {
+    BodyParameters parameters;
+    parameters.source    = BodyParameters::Source::generator;
+    parameters.generator = name;
+    parameters.arguments = arguments;
+    try
+      {
+        make_body(dim, parameters);
+        return "makes it";
+      }
+    catch (const std::invalid_argument &error)
+      {
+        return error.what();
+      }
+  };
+  const auto refused = [&](const std::string &count,
+                           const unsigned int dim,
+                           const std::string &name,
+                           const std::string &arguments) {
+    check("  " + name,
+          words_of(dim, name, arguments).find("about " + count + " cells") !=
+            std::string::npos);
+  };
+  refused("1.6e+11", 2, "subdivided_hyper_cube", "400000 : 0 : 1 : true");
+  refused("8e+15", 3, "subdivided_hyper_cube", "200000 : 0 : 1 : true");
+  refused("2.1e+11",
+          2,
+          "subdivided_hyper_rectangle",
+          "700000, 300000 : 0, 0 : 2, 1 : true");
+  refused("9e+10", 2, "cheese", "300000, 300000");
+  refused("3e+08",
+          2,
+          "hyper_cross",
+          "100000000, 100000000, 100000000, 1 : true");
+  refused("2e+09", 2, "hyper_shell", "0, 0 : 1 : 2 : 2000000000 : true");
+  refused("2e+07", 2, "half_hyper_shell", "0, 0 : 1 : 2 : 20000000 : true");
+  refused("2e+09",
+          2,
+          "quarter_hyper_shell",
+          "0, 0 : 1 : 2 : 2000000000 : true");
+  refused("3e+08", 2, "channel_with_cylinder", "0.03 : 300000000 : 2 : true");
+  refused("6e+11",
+          2,
+          "concentric_hyper_shells",
+          "0, 0 : 1 : 2 : 200000 : 0.1 : 3000000 : true");
+  refused("1.2e+12", 3, "cylinder_shell", "1 : 0.5 : 1 : 1200000 : 1000000");
+  refused(
+    "2e+09",
+    3,
+    "plate_with_a_hole",
+    "0.2 : 0.4 : 1 : 1 : 1 : 1 : 0, 0, 0 : 0 : 1 : 1 : 2000000000 : true");
+  refused("7e+08",
+          3,
+          "hyper_cube_with_cylindrical_hole",
+          "0.2 : 0.5 : 1 : 700000000 : true");
+  refused("4e+09", 3, "moebius", "4000000000 : 1 : 4 : 1");
+  refused("4e+09", 3, "torus", "2 : 1 : 4000000000 : 6");
+  // Lengths are no numbers of cells.
+  check("  lengths",
+        words_of(2, "hyper_rectangle", "0, 0 : 50000, 30000 : true") ==
+            "makes it" &&
+          words_of(2, "hyper_cube", "20000000 : 30000000 : true") ==
+            "makes it" &&
+          words_of(2,
+                   "subdivided_hyper_rectangle",
+                   "300, 300; 200, 200, 200 : 0, 0 : 600, 600 : true") ==
+            "makes it");
 }
 
 
@@ -313,6 +440,8 @@ main(int argc, char **argv)
   test_box<2>({{{3., 1., 1.}}, {{5, 3, 1}}, 0.});
   test_box<3>({{{3., 1., 0.5}}, {{3, 2, 2}}, 0.});
   test_errors();
+  test_odd_files();
+  test_huge_generators();
   test_mutations(argc > 1 ? static_cast<unsigned int>(std::stoul(argv[1])) :
                             300);
 }

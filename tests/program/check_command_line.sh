@@ -135,7 +135,25 @@ refused "make about 2.1e+11 cells" plain.prm --set Mesh/Source=generator \
 refused "unknowns need about" plain.prm --set "Mesh/Cells=300000, 200000" \
   --set "Solver/Memory limit=1e30"
 
-rm log errors plain.prm
+# What is wrong with the groups of a mesh, and with what scenes name.
+# mesh NAMES ELEMENTS: two triangles, 2 x 1, between six nodes, as mesh.msh.
+mesh() {
+  {
+    printf '%s\n' '$MeshFormat' '2.2 0 8' '$EndMeshFormat' '$PhysicalNames' \
+      "$1" '$EndPhysicalNames' '$Nodes' 4 '1 0 0 0' '2 2 0 0' '3 2 1 0' '4 0 1 0' \
+      '$EndNodes' '$Elements' "$2" '$EndElements'
+  } >mesh.msh
+}
+file=(plain.prm --set Mesh/Source=file --set Mesh/File=mesh.msh)
+mesh 0 $'2\n1 2 2 0 1 1 2 3\n2 2 2 0 1 1 3 4'
+refused "physical groups of curves" "${file[@]}"
+mesh $'2\n1 7 "seam"\n2 8 "half"' \
+  $'4\n1 1 2 7 1 1 3\n2 2 2 8 1 1 2 3\n3 2 2 9 1 1 3 4\n4 1 2 5 1 1 2'
+refused "no boundary seam, but 5; the group of this name lies inside" \
+  "${file[@]}" --set "Boundary conditions/Contact boundary=seam"
+refused "no boundary half, but 5; the region of this name" \
+  "${file[@]}" --set "Boundary conditions/Clamped boundaries=half"
+rm log errors plain.prm mesh.msh
 
 [ "$(ls)" = "$(printf '%s\n' again.prm defaults.prm help set.prm version)" ] ||
   fail "Files were written."

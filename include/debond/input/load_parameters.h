@@ -4,6 +4,7 @@
 
 #include <debond/base/parameter_table.h>
 #include <debond/elasticity/material.h>
+#include <debond/mesh/body.h>
 
 #include <map>
 #include <set>
@@ -47,7 +48,7 @@ namespace Debond
   void
   check_names(const std::string           &path,
               const std::set<std::string> &names,
-              const std::set<std::string> &boundaries,
+              const BodyDescription       &body,
               ParameterTable              &table);
 
   /// Rejects the entry @p path if the @p expression that it has is not one of

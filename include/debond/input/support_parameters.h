@@ -3,6 +3,7 @@
 #define debond_input_support_parameters_h
 
 #include <debond/base/parameter_table.h>
+#include <debond/mesh/body.h>
 
 #include <map>
 #include <set>
@@ -41,7 +42,7 @@ namespace Debond
   /// What is wrong is left in the table as an error.
   void
   check_supports(const SupportParameters             &supports,
-                 const std::set<std::string>         &boundaries,
+                 const BodyDescription               &body,
                  const unsigned int                   dimension,
                  const std::map<std::string, double> &constants,
                  ParameterTable                      &table);

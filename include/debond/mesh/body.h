@@ -84,6 +84,9 @@ namespace Debond
   public:
     virtual ~BodyDescription() = default;
 
+    /// Groups of faces in its file that lie inside: no boundaries.
+    std::set<std::string> inner_groups;
+
     /// The pieces of the boundary that a scene can name.
     virtual std::set<std::string>
     boundaries() const = 0;

@@ -15,6 +15,7 @@ namespace Debond
   {
     dealii::Triangulation<dim> mesh;
     PieceNames                 names;
+    std::set<std::string>      inner_groups; ///< of faces inside the body
 
     /// Halves the cells in each direction @p n_refinements times. Throws
     /// std::invalid_argument if they are triangles or tetrahedra.
@@ -26,7 +27,7 @@ namespace Debond
    * The mesh of a Gmsh file, see read_msh(), with its lengths multiplied by
    * @p scale. In 2D z must be the same everywhere. Physical groups of faces
    * are boundaries, those of cells regions, by their names or, without one, by
-   * their numbers. Groups that lie inside of the body are left out.
+   * their numbers. Groups that lie inside of the body are no boundaries.
    *
    * Throws std::invalid_argument with file and line if the mesh has cells of
    * several kinds or none, if a cell is flat or so distorted that its centre
