@@ -97,10 +97,20 @@ namespace
     getrlimit(RLIMIT_FSIZE, &limit);
     const rlimit few = {2, limit.rlim_max};
     const auto   old = std::signal(SIGXFSZ, SIG_IGN);
+    std::string  said;
     setrlimit(RLIMIT_FSIZE, &few);
-    print_error([&] { write_atomically("full.txt", write_text("three")); });
+    try
+      {
+        write_atomically("full.txt", write_text("three"));
+      }
+    catch (const std::runtime_error &error)
+      {
+        said = error.what();
+      }
     setrlimit(RLIMIT_FSIZE, &limit);
     std::signal(SIGXFSZ, old);
+    // Only now, as the log is a file as well.
+    std::cout << said << std::endl;
 
     // A link in the place of the file in the making, and one of the file.
     write_atomically("victim.txt", write_text("kept"));
