@@ -53,8 +53,8 @@ namespace Debond
         record.line(
           "J from start",
           scientific(*solve.functional_from_start, 10) +
-            ", of the state that loading leads to; the lower one above was found"
-            " beside it");
+            ", of the state where the method ended; the lower one above was "
+            "found beside it");
     }
 
 

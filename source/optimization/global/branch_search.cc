@@ -312,12 +312,15 @@ namespace Debond
             return false;
           }
         known.push_back(majorant(next, minimum.functional));
-        // What led to another known state leads nowhere new.
-        const BranchState end    = state_of(next);
-        const bool        is_new = end == start || tried.insert(end).second;
-        if (trial.move == BranchMove::start ?
-              !is_new :
-              minimum.functional >= functional - rounding)
+        // Starts go on from wherever they lead to, but not from a state that
+        // was tried, unless it is lower: nodes do not tell on which branches
+        // the quadrature points between them are.
+        const bool        is_start = trial.move == BranchMove::start;
+        const BranchState end      = state_of(next);
+        const bool        is_new   = end == start || tried.insert(end).second;
+        const double known_best    = is_start ? result.functional : functional;
+        if (minimum.functional >= known_best - rounding &&
+            !(is_start && is_new))
           return false;
         point      = next;
         functional = minimum.functional;
