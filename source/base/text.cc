@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/text.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <iomanip>
 #include <iostream>
 
@@ -49,6 +51,27 @@ namespace Debond
   scientific(const double value, const int digits)
   {
     return words(std::scientific, std::setprecision(digits), value);
+  }
+
+
+
+  std::string
+  scientific_below(const double value, const int digits)
+  {
+    const std::string text = scientific(value, digits);
+    if (!(std::strtod(text.c_str(), nullptr) > value))
+      return text;
+    const double place = std::floor(std::log10(std::abs(value))) - digits;
+    return scientific(value - 0.6 * std::pow(10., place), digits);
+  }
+
+
+
+  std::string
+  scientific_above(const double value, const int digits)
+  {
+    const std::string text = scientific_below(-value, digits);
+    return text[0] == '-' ? text.substr(1) : "-" + text;
   }
 
 

@@ -176,46 +176,25 @@ namespace Debond
 
   template <int dim>
   double
-  energy_rounding(const ElasticProblem<dim> &problem,
-                  const PiecewiseQuadratic  &phi,
-                  const LoadFactors          factors,
-                  const DofVector           &u)
+  rounding_of_energy(const ElasticProblem<dim> &problem,
+                     const LoadFactors          factors,
+                     const DofVector           &u)
   {
-    // <A u, u> = <f, u> - <xi, s> at a minimum: contact forces do no work.
+    // Of u itself, and of a lifting that w undoes, as a gap is undone where the
+    // body stays at rest.
+    const ElasticUnknowns<dim> &unknowns    = problem.unknowns();
+    const bool                  has_lifting = unknowns.has_lifting();
+    const DofVector             lifting =
+      has_lifting ? unknowns.lifting(factors) : DofVector(u.size());
     double terms = 0.;
     for (unsigned int i = 0; i < u.size(); ++i)
-      if (!problem.unknowns().is_constrained(i))
-        terms += problem.diagonal_entry(i) * u(i) * u(i);
-    if (terms == 0.)
-      return 0.;
-    const ElasticUnknowns<dim> &unknowns = problem.unknowns();
-    if (unknowns.has_lifting())
-      {
-        // Of u itself, and of a lifting that w undoes, as a gap is undone where
-        // the body stays at rest.
-        const DofVector lifting = unknowns.lifting(factors);
-        terms                   = 0.;
-        for (unsigned int i = 0; i < u.size(); ++i)
-          {
-            const double size =
-              std::abs(u(i) + lifting(i)) + std::abs(lifting(i));
-            terms += problem.diagonal_entry(i) * size * size;
-          }
-        const double energy = 2. * problem.fields().strain_energy(u, factors);
-        return energy > 0. ?
-                 std::numeric_limits<double>::epsilon() * terms / energy :
-                 std::numeric_limits<double>::infinity();
-      }
-    double energy = problem.load_at(factors) * u;
-
-    const Eigen::VectorXd s  = problem.unknowns().contact().trace(u);
-    const Eigen::VectorXd xi = phi.subgradient(s);
-    for (unsigned int i = 0; i < s.size(); ++i)
-      energy -= xi(i) * s(i);
-    // Where nothing of the energy is known there is every reason to refine.
-    return energy > 0. ?
-             std::numeric_limits<double>::epsilon() * terms / energy :
-             std::numeric_limits<double>::infinity();
+      if (has_lifting || !unknowns.is_constrained(i))
+        {
+          const double size =
+            std::abs(u(i) + lifting(i)) + std::abs(lifting(i));
+          terms += problem.diagonal_entry(i) * size * size;
+        }
+    return std::numeric_limits<double>::epsilon() * terms;
   }
 
 
@@ -536,7 +515,21 @@ namespace Debond
                       const std::function<bool()> &may_go_on,
                       DofVector                   &u)
   {
-    const double rounding = energy_rounding(problem, phi, factors, u);
+    if (u.all_zero())
+      return {};
+    double energy = 0.;
+    if (problem.unknowns().has_lifting())
+      energy = 2. * problem.fields().strain_energy(u, factors);
+    else
+      {
+        // <A u, u> = <f, u> - <xi, s> at a minimum: contact forces do no work.
+        const Eigen::VectorXd s = problem.unknowns().contact().trace(u);
+        energy = problem.load_at(factors) * u - phi.subgradient(s).dot(s);
+      }
+    // Where nothing of the energy is known there is every reason to refine.
+    const double rounding = energy > 0. ?
+                              rounding_of_energy(problem, factors, u) / energy :
+                              std::numeric_limits<double>::infinity();
     if (rounding <= allowed_energy_rounding(problem.unknowns().n_free_dofs()))
       return {};
 
@@ -561,8 +554,8 @@ namespace Debond
 
 
 
-  template decltype(energy_rounding<2>)     energy_rounding<2>;
-  template decltype(energy_rounding<3>)     energy_rounding<3>;
+  template decltype(rounding_of_energy<2>)  rounding_of_energy<2>;
+  template decltype(rounding_of_energy<3>)  rounding_of_energy<3>;
   template decltype(refine_where_needed<2>) refine_where_needed<2>;
   template decltype(refine_where_needed<3>) refine_where_needed<3>;
   template decltype(refine<2>)              refine<2>;

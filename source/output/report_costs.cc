@@ -23,19 +23,18 @@ namespace Debond
                 {"estimated_error", level.estimated_error},
                 {"gap", level.gap},
                 {"seconds", level.seconds}});
-    record.line(words("mesh ", number),
-                words(level.unknowns,
-                      " unknowns, ",
-                      level.contact_nodes,
-                      " contact nodes, J ",
-                      scientific(level.functional, 10),
-                      ", error about ",
-                      scientific(level.estimated_error, 1),
-                      level.gap > 0. ? ", gap " + scientific(level.gap, 1) :
-                                       "") +
-                  (record.has_details() ?
-                     ", " + fixed_point(level.seconds, 2) + " s" :
-                     ""));
+    record.line(
+      words("mesh ", number),
+      words(level.unknowns,
+            " unknowns, ",
+            level.contact_nodes,
+            " contact nodes, J ",
+            scientific(level.functional, 10),
+            ", error about ",
+            scientific(level.estimated_error, 1),
+            level.gap > 0. ? ", gap " + scientific_above(level.gap, 1) : "") +
+        (record.has_details() ? ", " + fixed_point(level.seconds, 2) + " s" :
+                                ""));
   }
 
 

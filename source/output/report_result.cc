@@ -160,9 +160,9 @@ namespace Debond
                               words(" after ",
                                     minimum.proof_nodes,
                                     " nodes, gap ",
-                                    scientific(minimum.relative_gap, 1),
+                                    scientific_above(minimum.relative_gap, 1),
                                     " of what the bonds can change in J, J >= ",
-                                    scientific(minimum.lower_bound, 10)) :
+                                    scientific_below(minimum.lower_bound, 10)) :
                               ""));
     }
 
@@ -311,18 +311,18 @@ namespace Debond
       record.add("/certificate/lower", certificate.lower);
       record.add("/certificate/upper", certificate.upper);
       record.line("interval",
-                  scientific(certificate.lower, 10) + " to " +
-                    scientific(certificate.upper, 10));
+                  scientific_below(certificate.lower, 10) + " to " +
+                    scientific_above(certificate.upper, 10));
       record.add("/certificate/relative_width", certificate.width());
       record.line("certified to",
-                  scientific(certificate.width(), 1) + " of |J|");
+                  scientific_above(certificate.width(), 1) + " of |J|");
       for (const CertifiedLength &length : certificate.lengths)
         {
           record.add("/certificate/lengths/" + length.state,
                      {{"least", length.least}, {"largest", length.largest}});
           record.line(length.state + " in all minima",
-                      scientific(length.least, 3) + " to " +
-                        scientific(length.largest, 3));
+                      scientific_below(length.least, 3) + " to " +
+                        scientific_above(length.largest, 3));
         }
       record.add("/certificate/unknowns", certificate.n_unknowns);
       record.add("/certificate/contact_sides", certificate.n_sides);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/elasticity/refinement.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/solve/global_branch.h>
@@ -87,7 +88,7 @@ namespace Debond
               BranchPoint            &point)
       {
         scale_load(factor);
-        const WhichMinimum which =
+        WhichMinimum which =
           find_better_minimum(what,
                               scene.problem().unknowns().contact().boundary(),
                               scene.law(),
@@ -96,6 +97,12 @@ namespace Debond
                               may_go_on,
                               point.s);
         point.functional = condensed_functional(condensed, adhesion, point.s);
+        if (which.proof_attempted)
+          round_outwards(point.functional + condensed.energy_at_zero(),
+                         rounding_of_energy(scene.problem(),
+                                            factor,
+                                            condensed.expand(point.s)),
+                         which);
         return which;
       }
 

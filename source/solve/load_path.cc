@@ -2,6 +2,7 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/base/interrupt.h>
+#include <debond/base/text.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/elasticity/refinement.h>
 #include <debond/optimization/majorise/condensed_problem.h>
@@ -111,7 +112,9 @@ namespace Debond
             scale_load(factor);
             print(factor,
                   point.functional + condensed.energy_at_zero(),
-                  proves ? point.which.relative_gap : point.which.search_trials,
+                  proves ?
+                    std::stod(scientific_above(point.which.relative_gap, 2)) :
+                    point.which.search_trials,
                   to_string(point.which.kind));
           },
           adhesion,

@@ -3,6 +3,7 @@
 
 #include <debond/base/interrupt.h>
 #include <debond/base/text.h>
+#include <debond/elasticity/refinement.h>
 #include <debond/input/bad_input.h>
 #include <debond/solve/condensed_methods.h>
 #include <debond/solve/levels_method.h>
@@ -149,6 +150,10 @@ namespace Debond
     result.functional = result.status == SolverStatus::comes_off ?
                           std::numeric_limits<double>::quiet_NaN() :
                           functional_of(scene, result.u);
+    if (result.minimum.proof_attempted)
+      round_outwards(result.functional,
+                     rounding_of_energy(scene.problem(), 1., result.u),
+                     result.minimum);
     // Where nothing lower was found one integral over the cells does.
     if (choice.linear_solver == LinearSolver::direct && !result.is_replaced &&
         (result.minimum.search_trials > 0 || result.minimum.proof_attempted))

@@ -11,6 +11,7 @@
 #include <debond/solve/which_minimum.h>
 
 #include <cmath>
+#include <limits>
 
 namespace Debond
 {
@@ -88,9 +89,9 @@ namespace Debond
       result.proof_status    = proof.status;
       result.proof_nodes     = proof.nodes;
       result.lower_bound     = proof.lower + condensed.energy_at_zero();
-      const double scale     = energy_of_bonds(condensed, lumped);
+      result.energy_of_bonds = energy_of_bonds(condensed, lumped);
       const double gap       = proof.upper - proof.lower;
-      result.relative_gap    = gap > 0. ? gap / scale : 0.;
+      result.relative_gap    = gap > 0. ? gap / result.energy_of_bonds : 0.;
       if (proof.status == ProofStatus::proved)
         result.kind = MinimumKind::global;
     }
@@ -520,8 +521,40 @@ namespace Debond
       }
     if (parameters.prove)
       prove(parameters, law, adhesion, condensed, may_go_on, s, result);
+    if (result.proof_attempted)
+      result.functional = condensed_functional(condensed, adhesion, s) +
+                          condensed.energy_at_zero();
     result.interrupted = !may_go_on();
     return result;
+  }
+
+
+
+  void
+  round_outwards(const double  functional,
+                 const double  energy_rounding,
+                 WhichMinimum &minimum)
+  {
+    // At other points the condensed problem is wrong by as much as here.
+    const double rounding = 2. * std::abs(functional - minimum.functional) +
+                            8. * energy_rounding +
+                            16. * std::numeric_limits<double>::epsilon() *
+                              (std::abs(functional) + minimum.energy_of_bonds);
+    minimum.lower_bound -= rounding;
+    for (ProofProgress &progress : minimum.proof_history)
+      {
+        progress.lower -= rounding;
+        progress.upper += rounding;
+      }
+    if (functional < minimum.lower_bound)
+      {
+        minimum.kind         = MinimumKind::stationary;
+        minimum.proof_status = ProofStatus::no_bound;
+        minimum.lower_bound  = -std::numeric_limits<double>::infinity();
+      }
+    if (minimum.energy_of_bonds > 0.)
+      minimum.relative_gap =
+        (functional - minimum.lower_bound) / minimum.energy_of_bonds;
   }
 
 

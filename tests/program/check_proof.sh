@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # check_proof.sh DEBOND SCENE.prm: a proof that is interrupted, or out of
 # nodes, leaves a solution and a valid gap; threads change nothing; pictures
-# only with gnuplot.
+# only with gnuplot; what is printed as a bound is one.
 . "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 scene=$2
 
@@ -76,3 +76,67 @@ below "$(value nodes lower_bound)" $best || fail "bound above the minimum"
 below "$(value signal lower_bound)" -4.8228930051e-05 ||
   fail "bound above the minimum"
 
+
+# Bounds are bounds of the result as it is, in the summary and rounded in the log:
+# of slender strips that are refined in extended precision, with a gap, lifted and
+# loaded, in other units.
+cat >strip.prm <<'SCENE'
+subsection Mesh
+  set Lengths = 150, 2
+  set Cells   = 75, 1
+end
+subsection Material
+  set Young modulus = 70000
+  set Poisson ratio = 0.3
+end
+subsection Boundary conditions
+  set Clamped boundaries = right
+  set Contact boundary   = bottom
+  set Displacement left  = free; 0.4
+end
+subsection Contact law
+  set Tangential displacement = free
+  set Bond stiffness = 25
+  set Bond threshold = 0.006
+end
+subsection Solver
+  set Method = majorise minimise
+  set Prove  = true
+end
+SCENE
+# not_above LOWER UPPER WHAT
+not_above() {
+  awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && b != "" && a + 0 <= b + 0) }' ||
+    fail "$3: $1 above $2"
+}
+sed 's/Lengths = 150, 2/Lengths = 0.15, 0.002/; s/70000/7e10/; s/0.4$/4e-4/
+  s/stiffness = 25/stiffness = 25e9/; s/0.006/6e-6/' strip.prm >pascal.prm
+bounded() {
+  local name=$1
+  shift
+  "$debond" $name.prm "$@" --set Output/Directory=bounds >bounds.log
+  local J=$(value bounds functional) lower=$(value bounds lower_bound)
+  local printed=$(sed -n 's/.*J >= //p' bounds.log)
+  not_above "$lower" "$J" "$name $*: bound"
+  not_above "$printed" "$lower" "$name $*: bound in the log"
+  not_above "$printed" "$(sed -nE 's/^  J  +([-0-9])/\1/p' bounds.log)" "$name $*: log"
+  not_above "$(value bounds relative_gap)" \
+    "$(sed -nE 's/.* gap ([^ ]*) of what.*/\1/p' bounds.log)" "$name $*: gap"
+  awk -F, 'NR > 1 && $3 > $4 { exit 1 }' bounds/proof.csv || fail "$(cat bounds/proof.csv)"
+}
+bounded strip
+bounded strip --set "Material/Poisson ratio=0"
+bounded strip --set "Mesh/Cells=60, 1"
+bounded strip --set "Contact law/Initial gap=0.00002*x"
+bounded pascal --set "Material/Poisson ratio=0"
+bounded strip --set "Boundary conditions/Displacement left=" \
+  --set "Loads/Traction top=0; if(x < 30, 0.02, -0.01)"
+
+# So is an interval.
+"$debond" "$scene" --set Certificate/Kind=global --set Output/Directory=interval \
+  >interval.log
+read -r lower upper < <(sed -nE 's/^  interval +([^ ]*) to ([^ ]*)$/\1 \2/p' interval.log)
+not_above "$lower" "$(value interval lower)" "interval, lower end"
+not_above "$(value interval upper)" "$upper" "interval, upper end"
+not_above "$(value interval relative_width)" \
+  "$(sed -nE 's/^  certified to +([^ ]*) of.*/\1/p' interval.log)" "width"

@@ -1091,8 +1091,8 @@ def check_success(scene, body):
     rounding = EXACT("1e-12") * terms
     require(J - least >= -rounding, "the check's minimum is too high", detail)
     bound = (summary.get("proof") or {}).get("lower_bound")
-    # Bounds are of the condensed problem, in double precision.
-    require(bound is None or EXACT(bound) <= least + EXACT("2e-9") * terms,
+    # Bounds are of J as it is, whatever the precision of the condensed problem.
+    require(bound is None or EXACT(bound) <= least + EXACT("1e-15") * terms,
             "wrong success: lower bound",
             f"{bound!r}, but the minimum is {least:.16e}; {detail}")
     of_energy = EXACT("1e-6") if is_bundle else better

@@ -37,7 +37,13 @@ namespace Debond
   std::string
   scientific(const double value, const int digits);
 
-  /// The same without an exponent.
+  /// For bounds: the same, but not above the number, and not below it.
+  std::string
+  scientific_below(const double value, const int digits);
+  std::string
+  scientific_above(const double value, const int digits);
+
+  /// As scientific() without an exponent.
   std::string
   fixed_point(const double value, const int digits);
 } // namespace Debond

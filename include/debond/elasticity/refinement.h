@@ -127,17 +127,15 @@ namespace Debond
 
 
   /**
-   * The part of the strain energy of @p u that rounding of the terms in the
-   * rows of A u can change: epsilon <u, D u> / <u, A u>, D the diagonal of A.
-   * It grows with the fourth power of length over thickness. @p phi has the
-   * bonds, whose energy is not the body's.
+   * What rounding of the terms in the rows of A u can change of the energy of
+   * @p u: epsilon <u, D u>, D the diagonal of A. As a part of <u, A u> it grows
+   * with the fourth power of length over thickness.
    */
   template <int dim>
   double
-  energy_rounding(const ElasticProblem<dim> &problem,
-                  const PiecewiseQuadratic  &phi,
-                  const LoadFactors          factors,
-                  const DofVector           &u);
+  rounding_of_energy(const ElasticProblem<dim> &problem,
+                     const LoadFactors          factors,
+                     const DofVector           &u);
 
 
 

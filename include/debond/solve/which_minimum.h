@@ -51,8 +51,12 @@ namespace Debond
     bool         proof_attempted = false;
     ProofStatus  proof_status    = ProofStatus::no_bound;
     double       lower_bound     = 0.; ///< of J
-    double       relative_gap = 0.; ///< J - lower bound, by what bonds change
-    unsigned int proof_nodes  = 0;
+    double       relative_gap    = 0.; ///< J - lower bound, by energy_of_bonds
+    double       energy_of_bonds = 0.; ///< what they can change in J
+    unsigned int proof_nodes     = 0;
+
+    /// J of the result as the condensed problem has it, if there is a proof.
+    double functional = 0.;
 
     /// With J in place of the condensed functional; of Solver/Prove only.
     std::vector<ProofProgress> proof_history;
@@ -93,6 +97,15 @@ namespace Debond
                       const Condensation          &condensed,
                       const std::function<bool()> &may_go_on,
                       Eigen::VectorXd             &s);
+
+  /// Moves the bounds, which are those of the condensed problem in double
+  /// precision, to where they hold for J as it is: @p functional for the
+  /// result, with rounding_of_energy() @p energy_rounding. Where J is below the
+  /// bound all the same there is no proof.
+  void
+  round_outwards(const double  functional,
+                 const double  energy_rounding,
+                 WhichMinimum &minimum);
 } // namespace Debond
 
 #endif
