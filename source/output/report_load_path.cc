@@ -114,6 +114,7 @@ namespace Debond
     void
     report_totals(const LoadPathTotals        &path,
                   const bool                   has_bonds,
+                  const bool                   bonds_heal,
                   const std::optional<double> &comes_off_at,
                   Record                      &record)
     {
@@ -137,9 +138,11 @@ namespace Debond
                     has_bonds,
                     path.largest_break,
                     record);
+      // Of bonds that are broken for good only the gap closes.
+      const bool bonds_close = has_bonds && bonds_heal;
       report_change("largest_closing",
-                    has_bonds ? "most bonds close" : "most nodes close",
-                    has_bonds,
+                    bonds_close ? "most bonds close" : "most nodes close",
+                    bonds_close,
                     path.largest_closing,
                     record);
 
@@ -173,6 +176,7 @@ namespace Debond
                               [](const ContactNodeState &node) {
                                 return node.branch != BondState::free;
                               }),
+                  load_path.bonds_heal,
                   result.solve.comes_off_at,
                   record);
     report_arc(result.arc, load_path.arc, record);

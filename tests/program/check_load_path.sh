@@ -42,6 +42,17 @@ for entry in '"steps": 7' '"last_factor": 0.0' '"status": "success"'; do
   grep -q "$entry" output/bar/summary.json || fail "summary.json has no $entry"
 done
 
+# Broken bonds close where they heal, else only the nodes do.
+for heal in true false; do
+  "$debond" bar.prm --set "Load path/Bonds heal=$heal" \
+    --set "Contact law/Bond stiffness=690" --set "Output/Directory=closing" \
+    --set "Output/Load path plots=false" >log
+  closing=$(sed -n 's/^ *most \(.*\) close .* \(.* part\) .* to .*/\1, \2/p' log)
+  [ "$heal $closing" = "true bonds, broken part" ] ||
+    [ "$heal $closing" = "false nodes, open part" ] ||
+    fail "Bonds heal = $heal: $closing close"
+done
+
 # A single run in the same directory leaves nothing of the path.
 "$debond" bar.prm --set "Load path/Factors=" >/dev/null
 [ -z "$(ls output/bar | grep load_path || true)" ] ||
