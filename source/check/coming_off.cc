@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/check/coming_off.h>
-#include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/optimization/polar_cone.h>
 
@@ -12,10 +11,6 @@ namespace Debond
 {
   namespace
   {
-    /// The part of the work that forces could do, had they all the same sign,
-    /// below which what they do is rounding.
-    constexpr double rounding_of_work = 1e-12;
-
     /// Of the displacements of contact nodes, in parts of the largest normal
     /// one.
     constexpr double rounding_of_motion = 1e-9;
@@ -39,53 +34,6 @@ namespace Debond
         }
       return result;
     }
-
-
-
-    struct Work
-    {
-      /// Of the nodal forces along each of the motions.
-      Eigen::VectorXd along;
-
-      /// If no two of the terms had different signs.
-      Eigen::VectorXd largest;
-    };
-
-
-
-    template <int dim>
-    Work
-    work_of_loads(const ElasticProblem<dim>           &problem,
-                  const LoadFactors                    factors,
-                  const std::vector<RigidMotion<dim>> &motions)
-    {
-      const DofVector forces = problem.fields().applied_nodal_forces(factors);
-      const Eigen::Index n   = static_cast<Eigen::Index>(motions.size());
-      Work work{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
-      std::vector<bool> is_done(forces.size(), false);
-      for (const auto &cell :
-           problem.unknowns().dof_handler().active_cell_iterators())
-        {
-          const CellNodes<dim> nodes(cell);
-          for (unsigned int i = 0; i < nodes.size; ++i)
-            {
-              if (is_done[nodes.dofs[i][0]])
-                continue;
-              is_done[nodes.dofs[i][0]]         = true;
-              const dealii::Point<dim> position = node_position<dim>(cell, i);
-              dealii::Tensor<1, dim>   force;
-              for (unsigned int d = 0; d < dim; ++d)
-                force[d] = forces(nodes.dofs[i][d]);
-              for (Eigen::Index k = 0; k < n; ++k)
-                {
-                  const dealii::Tensor<1, dim> way = motions[k](position);
-                  work.along[k] += force * way;
-                  work.largest[k] += force.norm() * way.norm();
-                }
-            }
-        }
-      return work;
-    }
   } // namespace
 
 
@@ -104,7 +52,7 @@ namespace Debond
 
     const Eigen::MatrixXd towards =
       free_motions_of_contact(problem.unknowns()).transpose();
-    const Work work = work_of_loads(problem, factors, motions);
+    const WorkOfLoads work = work_of_loads(problem, factors, motions);
     // Twice, as its errors are relative to what it projects.
     std::optional<Eigen::VectorXd> projection =
       project_on_polar_cone(towards, work.along);

@@ -379,6 +379,7 @@ namespace Debond
                           const std::vector<double> &held_forces,
                           const LoadFactors          factors,
                           const double               smallest_force,
+                          const DofVector           &rounding,
                           const ProblemPiece<dim>   *piece,
                           Verification<dim>         &result)
     {
@@ -482,8 +483,14 @@ namespace Debond
       const double imbalance = (result.applied_force + result.clamped_reaction +
                                 result.contact_reaction)
                                  .norm();
+      // The rounding of a sum is that of all its terms.
+      const DofVector of_all = whole(rounding);
+      const double    resolved =
+        of_all.size() == 0 ?
+             smallest_force :
+             std::max(smallest_force, digits_above_rounding * of_all.l1_norm());
       result.force_imbalance =
-        imbalance > 0. ? imbalance / std::max(scale, smallest_force) : 0.;
+        imbalance > 0. ? imbalance / std::max(scale, resolved) : 0.;
     }
   } // namespace
 
@@ -555,8 +562,8 @@ namespace Debond
     const double           largest_displacement = largest_entry(displacement);
     const LargestResiduals largest =
       largest_residuals(problem, residual, piece);
-    const DofVector rounding = problem.fields().residual_rounding(u, factors);
-    const double    largest_load =
+    DofVector    rounding = problem.fields().residual_rounding(u, factors);
+    const double largest_load =
       largest_entry(problem.fields().applied_nodal_forces(factors));
     const double largest_force = std::max(largest_load, largest.supported);
     // Of w, where the body stays far from the foundation.
@@ -565,12 +572,12 @@ namespace Debond
         largest_entry(
           problem.fields().residual_rounding(DofVector(u.size()), factors)) :
         0.;
-    // A body at rest has no other forces.
+    // A body at rest, or off, has no other forces.
+    if (largest_force_rounding * largest_force < rounding_of_gaps)
+      rounding.add(rounding_of_gaps);
     const double resolved_above_gaps =
-      largest_force < rounding_of_gaps ?
-        rounding_of_gaps :
-        digits_above_rounding *
-          std::min(rounding_of_gaps, negligible_force * largest_force);
+      digits_above_rounding *
+      std::min(rounding_of_gaps, negligible_force * largest_force);
     const std::vector<LawScale> scales = law_scales(law,
                                                     adhesion,
                                                     boundary,
@@ -609,6 +616,7 @@ namespace Debond
                           adhesion.held_forces(s),
                           factors,
                           resolved,
+                          rounding,
                           piece,
                           result);
 

@@ -85,8 +85,10 @@ namespace Debond
       const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
       const bool                  is_loose =
         unknowns.has_gap() || !unknowns.held_by_contact().motions.empty();
-      const MatrixView S = condensed.schur_complement();
-      const VectorView g = condensed.load();
+      const MatrixView      S            = condensed.schur_complement();
+      const Eigen::MatrixXd free_motions = free_motions_of_contact(unknowns);
+      const Eigen::VectorXd g =
+        load_at_contact(scene.problem(), condensed, 1., free_motions);
       if (!has_start && is_loose)
         s = unknowns.contact().at_rest();
       else if (!has_start)
@@ -104,7 +106,7 @@ namespace Debond
                                g,
                                scene.adhesion(),
                                s,
-                               free_motions_of_contact(unknowns),
+                               free_motions,
                                stiffness_at_contact(scene.problem()));
       add_majorise_result(method.minimize(problem, std::ref(watch)),
                           condensed.energy_at_zero(),

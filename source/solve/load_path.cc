@@ -272,8 +272,10 @@ namespace Debond
         const double          factor = factors.loads;
 
         scale_load(factors);
+        const Eigen::VectorXd load =
+          load_at_contact(scene.problem(), condensed, factors, free_motions);
         CondensedProblem             problem(condensed.schur_complement(),
-                                 condensed.load(),
+                                 load,
                                  adhesion,
                                  s,
                                  free_motions,

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <sstream>
 
@@ -294,6 +295,128 @@ namespace
     check("  error of J", energy_error / scale, 1e-12);
     check("  error of the dissipated energy", dissipated_error / scale, 1e-12);
     check("  error of the broken zone", zone_error / area, 1e-12);
+  }
+
+
+
+  /// A tack test: the column is lifted by its top until all bonds have broken,
+  /// then it has no force, is pressed on the foundation, where bonds hold
+  /// again, and is lifted once more. In 2D the mesh is fine: rounding
+  /// adds up in the sum of all forces.
+  template <int dim>
+  void
+  test_tack()
+  {
+    const double E = 10., H = 0.2, a = 150., M = 0.01, k = E / H;
+    const double area = dim == 2 ? 0.3 : 0.3 * 0.1, off = M * (1. + a / k);
+    const Values body =
+      dim == 2 ? Values{"Mesh/Lengths=0.3, 0.2",
+                        "Mesh/Cells=24, 16",
+                        "Boundary conditions/Roller boundaries=left",
+                        "Boundary conditions/Displacement top=free; 1"} :
+                 Values{"Dimension=3",
+                        "Mesh/Lengths=0.3, 0.2, 0.1",
+                        "Mesh/Cells=3, 3, 2",
+                        "Boundary conditions/Roller boundaries=left, back",
+                        "Boundary conditions/Displacement top=free; 1; free"};
+    const Path<dim> path = follow<dim>(
+      body +
+      Values{"Material/Young modulus=10",
+             "Material/Poisson ratio=0",
+             "Boundary conditions/Clamped boundaries=",
+             "Boundary conditions/Contact boundary=bottom",
+             "Contact law/Bond stiffness=150",
+             "Contact law/Bond threshold=0.01",
+             "Contact law/Tangential displacement=free",
+             "Load path/Displacement factors=0:0.011:0.099, -0.01, 0.03, 0.05, "
+             "0.2, 0, 0.1"});
+    double error = 0., force_error = 0.;
+    bool   broken = false, verified = true;
+    for (const auto &step : path.steps)
+      {
+        const double d         = step.displacement_factor;
+        broken                 = d > off || (broken && d > M);
+        const double stiffness = d < 0. ? k : (broken ? 0. : k * a / (k + a));
+        const double energy =
+          0.5 * stiffness * d * d + (broken ? 0.5 * a * M * M : 0.);
+        error =
+          std::max(error, std::abs(step.state.functional - area * energy));
+        force_error = std::max(force_error,
+                               std::abs(step.state.unit_displacement_work -
+                                        area * stiffness * d));
+        verified    = verified && step.status == "success";
+      }
+    std::cout << "Tack test in " << dim << "D\n";
+    check("  all steps", path.steps.size() == 16 && verified);
+    check("  error of J", error / (area * a * M * M), 1e-12);
+    check("  error of the force", force_error / (area * a * M), 1e-11);
+  }
+
+
+
+  /// Nothing but the foundation holds the block, and without a pressure on it
+  /// there are many minima with one J. Pressed by q times the factor t over a
+  /// gap g: J = -A (t q g + (t q)^2 H/(2 E)), stretched by t e: E (t e)^2 / 2
+  /// for each volume, cooled so that it shrinks by t e: -E (t e)^2 / (1 - nu),
+  /// in 3D -3/2 E (t e)^2 / (1 - 2 nu).
+  template <int dim>
+  void
+  test_without_pressure()
+  {
+    const double E = 10., nu = 0.3, L = 0.3, H = 0.2, g = 0.02, q = 0.4,
+                 e    = 0.005;
+    const double area = dim == 2 ? L : L * 0.1;
+    const Values block =
+      Values{"Material/Young modulus=10",
+             "Material/Poisson ratio=0.3",
+             "Material/Thermal expansion=1e-3",
+             "Boundary conditions/Clamped boundaries=",
+             "Boundary conditions/Contact boundary=bottom",
+             "Contact law/Law=none",
+             "Contact law/Tangential displacement=free",
+             "Load path/Global branch=none"} +
+      (dim == 2 ? Values{"Mesh/Lengths=0.3, 0.2",
+                         "Mesh/Cells=6, 4",
+                         "Boundary conditions/Roller boundaries=left"} :
+                  Values{"Dimension=3",
+                         "Mesh/Lengths=0.3, 0.2, 0.1",
+                         "Mesh/Cells=3, 3, 2",
+                         "Boundary conditions/Roller boundaries=left, back"});
+    const auto test = [&](const std::string                         &name,
+                          const Values                              &others,
+                          const std::function<double(const double)> &energy) {
+      const Path<dim> path  = follow<dim>(block + others);
+      double          error = 0., largest = 0.;
+      bool            verified = true;
+      for (const auto &step : path.steps)
+        {
+          const double expected = energy(step.displacement_factor);
+          largest               = std::max(largest, std::abs(expected));
+          error = std::max(error, std::abs(step.state.functional - expected));
+          verified = verified && step.status == "success";
+        }
+      check("  " + name + ", all steps", path.steps.size() == 5 && verified);
+      check("  " + name + ", error of J", error / largest, 1e-11);
+    };
+    const std::string others = dim == 3 ? "; free" : "";
+    std::cout << "Without pressure on the foundation in " << dim << "D\n";
+    test("over a gap",
+         {"Contact law/Initial gap=0.02",
+          std::string("Loads/Traction top=0; -0.4") + (dim == 3 ? "; 0" : ""),
+          "Load path/Factors=0, 0.5, 0, 2, 0"},
+         [&](const double t) {
+           return -area * (t * q * g + t * q * t * q * H / (2. * E));
+         });
+    test("stretched and squeezed",
+         {"Boundary conditions/Displacement right=0.0015; free" + others,
+          "Load path/Displacement factors=0, 1, -1, 2, 0"},
+         [&](const double t) { return 0.5 * E * t * e * t * e * area * H; });
+    test("cooled and heated",
+         {"Loads/Temperature change=-5", "Load path/Factors=0, 1, -1, 2, 0"},
+         [&](const double t) {
+           return -E * t * e * t * e * area * H *
+                  (dim == 2 ? 1. / (1. - nu) : 1.5 / (1. - 2. * nu));
+         });
   }
 
 
@@ -984,6 +1107,10 @@ main(int argc, char *[])
   test_moved_column<2>("gauss 3");
   test_moved_column<2>("exact");
   test_moved_column<3>("gauss 2");
+  test_tack<2>();
+  test_tack<3>();
+  test_without_pressure<2>();
+  test_without_pressure<3>();
   test_column_arc<2>(false);
   test_column_arc<3>(false);
   test_column_arc<2>(true);

@@ -3,10 +3,14 @@
 #define debond_elasticity_contact_condensation_h
 
 #include <debond/contact/adhesion_integral.h>
+#include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/condensation.h>
 
-#include <Eigen/Core>
+#include <Eigen/QR>
+
+#include <cmath>
+#include <vector>
 
 namespace Debond
 {
@@ -81,6 +85,86 @@ namespace Debond
     for (const dealii::types::global_dof_index normal : normals)
       sum += problem.matrix().diag_element(normal);
     return normals.empty() ? 0. : sum / static_cast<double>(normals.size());
+  }
+
+
+
+  /// The part of the work that forces could do, had they all the same sign,
+  /// below which what they do is rounding.
+  constexpr double rounding_of_work = 1e-12;
+
+
+
+  struct WorkOfLoads
+  {
+    /// Of the nodal forces along each of the motions.
+    Eigen::VectorXd along;
+
+    /// If no two of the terms had different signs.
+    Eigen::VectorXd largest;
+  };
+
+
+
+  template <int dim>
+  WorkOfLoads
+  work_of_loads(const ElasticProblem<dim>           &problem,
+                const LoadFactors                    factors,
+                const std::vector<RigidMotion<dim>> &motions)
+  {
+    const DofVector    forces = problem.fields().applied_nodal_forces(factors);
+    const Eigen::Index n      = static_cast<Eigen::Index>(motions.size());
+    WorkOfLoads        work{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+    std::vector<bool>  is_done(forces.size(), false);
+    for (const auto &cell :
+         problem.unknowns().dof_handler().active_cell_iterators())
+      {
+        const CellNodes<dim> nodes(cell);
+        for (unsigned int i = 0; i < nodes.size; ++i)
+          {
+            if (is_done[nodes.dofs[i][0]])
+              continue;
+            is_done[nodes.dofs[i][0]]         = true;
+            const dealii::Point<dim> position = node_position<dim>(cell, i);
+            dealii::Tensor<1, dim>   force;
+            for (unsigned int d = 0; d < dim; ++d)
+              force[d] = forces(nodes.dofs[i][d]);
+            for (Eigen::Index k = 0; k < n; ++k)
+              {
+                const dealii::Tensor<1, dim> way = motions[k](position);
+                work.along[k] += force * way;
+                work.largest[k] += force.norm() * way.norm();
+              }
+          }
+      }
+    return work;
+  }
+
+
+
+  /// The load of the condensed problem at these @p factors, which it has to be
+  /// scaled to already. What it does along @p free_motions is the work of the
+  /// applied forces: of what is prescribed, gaps too, elimination leaves
+  /// rounding there, which would lift the body or press it on the foundation.
+  template <int dim>
+  Eigen::VectorXd
+  load_at_contact(const ElasticProblem<dim> &problem,
+                  const Condensation        &condensed,
+                  const LoadFactors          factors,
+                  const Eigen::MatrixXd     &free_motions)
+  {
+    const Eigen::VectorXd &g = condensed.load();
+    if (free_motions.cols() == 0)
+      return g;
+    WorkOfLoads work =
+      work_of_loads(problem,
+                    factors,
+                    problem.unknowns().held_by_contact().motions);
+    for (Eigen::Index k = 0; k < work.along.size(); ++k)
+      if (std::abs(work.along[k]) <= rounding_of_work * work.largest[k])
+        work.along[k] = 0.;
+    return g + free_motions.transpose().completeOrthogonalDecomposition().solve(
+                 work.along - free_motions.transpose() * g);
   }
 } // namespace Debond
 
