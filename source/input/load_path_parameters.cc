@@ -208,4 +208,35 @@ namespace Debond
             displacement_factors.empty() ? factors[step] :
                                            displacement_factors[step]};
   }
+
+
+
+  bool
+  LoadPathParameters::moves_only() const
+  {
+    return !displacement_factors.empty() &&
+           std::count(factors.begin(), factors.end(), factors[0]) ==
+             static_cast<long>(factors.size());
+  }
+
+
+
+  double
+  LoadPathParameters::varying(const LoadFactors &at_step) const
+  {
+    return moves_only() ? at_step.displacements : at_step.loads;
+  }
+
+
+
+  std::string
+  LoadPathParameters::name(const LoadFactors &at_step) const
+  {
+    std::ostringstream text;
+    text << (moves_only() ? "displacement factor " : "factor ")
+         << varying(at_step);
+    if (!moves_only() && !displacement_factors.empty())
+      text << ", displacement factor " << at_step.displacements;
+    return text.str();
+  }
 } // namespace Debond

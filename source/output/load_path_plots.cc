@@ -17,10 +17,10 @@ namespace Debond
 
 
     std::string
-    curve_title(const double first, const double last)
+    curve_title(const std::string &name, const double first, const double last)
     {
       std::ostringstream title;
-      title << "factor " << first << " to " << last;
+      title << name << ' ' << first << " to " << last;
       return title.str();
     }
 
@@ -33,6 +33,17 @@ namespace Debond
       return std::all_of(steps.begin(), steps.end(), [&](const auto &step) {
         return step.factor == steps[0].factor;
       });
+    }
+
+
+
+    template <int dim>
+    std::string
+    name_of_factor(const std::vector<LoadPathStep<dim>> &steps)
+    {
+      return steps.size() > 1 && has_constant_loads(steps) ?
+               "displacement factor" :
+               "factor";
     }
 
 
@@ -101,7 +112,9 @@ namespace Debond
       const std::vector<unsigned int> turns = turning_points(factors);
       for (unsigned int t = 0; t + 1 < turns.size(); ++t)
         {
-          Curve curve{curve_title(factors[turns[t]], factors[turns[t + 1]]),
+          Curve curve{curve_title(name_of_factor(steps),
+                                  factors[turns[t]],
+                                  factors[turns[t + 1]]),
                       {},
                       "linespoints pt 7 ps 0.4"};
           for (unsigned int k = turns[t]; k <= turns[t + 1]; ++k)
@@ -162,23 +175,24 @@ namespace Debond
       return plot;
     };
     const std::vector<std::string> names = load_path_plot_names();
+    const std::string              label = name_of_factor(steps);
     return {make(names[0],
                  "The broken part of the contact boundary.",
-                 "factor",
+                 label,
                  "broken part",
                  [](const double factor, const State &state) {
                    return std::make_pair(factor, state.broken_part);
                  }),
             make(names[1],
                  "The energy.",
-                 "factor",
+                 label,
                  "J",
                  [](const double factor, const State &state) {
                    return std::make_pair(factor, state.functional);
                  }),
             make(names[2],
                  "The normal force of the foundation; negative: it pulls.",
-                 "factor",
+                 label,
                  "normal force",
                  [](const double factor, const State &state) {
                    return std::make_pair(factor, state.normal_force);
@@ -187,7 +201,7 @@ namespace Debond
               make(names[3],
                    "The forces of the supports over the displacement that they "
                    "prescribe.",
-                   "factor",
+                   label,
                    "work of the supports on the unit displacement",
                    [](const double factor, const State &state) {
                      return std::make_pair(factor,
@@ -196,7 +210,7 @@ namespace Debond
               make(names[3],
                    "The loads over the displacement that belongs to them.",
                    "<f, u>",
-                   "factor",
+                   label,
                    [](const double factor, const State &state) {
                      return std::make_pair(state.unit_load_work, factor);
                    })};

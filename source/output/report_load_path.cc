@@ -17,6 +17,7 @@ namespace Debond
                   const std::string               &label,
                   const bool                       has_bonds,
                   const std::optional<BondChange> &change,
+                  const LoadPathParameters        &load_path,
                   Record                          &record)
     {
       const std::string pointer = "/load_path/" + name;
@@ -35,24 +36,21 @@ namespace Debond
                      Record::Json(nullptr)},
                   {"broken_before", change->broken_before},
                   {"broken_after", change->broken_after}});
-      record.line(
-        label,
-        words("at factor ",
-              change->factor,
-              change->displacement_factor == change->factor ?
-                "" :
-                words(" (of displacements ", change->displacement_factor, ")"),
-              ", step ",
-              change->step,
-              has_bonds ? ", broken part " : ", open part ",
-              change->broken_before,
-              " to ",
-              change->broken_after) +
-          (change->change_factor ? words(", from ",
-                                         std::setprecision(10),
-                                         *change->change_factor,
-                                         " on") :
-                                   ""));
+      record.line(label,
+                  words("at ",
+                        load_path.name(
+                          {change->factor, change->displacement_factor}),
+                        ", step ",
+                        change->step,
+                        has_bonds ? ", broken part " : ", open part ",
+                        change->broken_before,
+                        " to ",
+                        change->broken_after) +
+                    (change->change_factor ? words(", from ",
+                                                   std::setprecision(10),
+                                                   *change->change_factor,
+                                                   " on") :
+                                             ""));
     }
 
 
@@ -62,18 +60,16 @@ namespace Debond
     template <int dim>
     void
     report_arc(const std::vector<LoadPathStep<dim>> &arc,
-               const bool                            wanted,
+               const LoadPathParameters             &load_path,
                Record                               &record)
     {
-      if (!wanted || arc.size() < 2)
+      if (!load_path.arc || arc.size() < 2)
         {
           record.add("/load_path/arc", nullptr);
           return;
         }
-      const bool of_loads = arc.front().factor != arc.back().factor ||
-                            arc[0].factor != arc[1].factor;
       const auto factor = [&](const std::size_t k) {
-        return of_loads ? arc[k].factor : arc[k].displacement_factor;
+        return load_path.varying(arc[k].factors());
       };
       const double sign     = factor(1) >= factor(0) ? 1. : -1.;
       std::size_t  unstable = 0, start = 0, from = 0, to = 0;
@@ -99,12 +95,15 @@ namespace Debond
           from == to ? Record::Json(nullptr) : Record::Json(factor(to))}});
       record.line("arc",
                   words(arc.size(), " states, ", unstable, " unstable") +
-                    (from == to ? "" :
-                                  words(", the longest way back from ",
-                                        std::setprecision(10),
-                                        factor(from),
-                                        " to ",
-                                        factor(to))));
+                    (from == to ?
+                       "" :
+                       words(", the longest way back from ",
+                             load_path.moves_only() ? "displacement factor " :
+                                                      "factor ",
+                             std::setprecision(10),
+                             factor(from),
+                             " to ",
+                             factor(to))));
     }
 
 
@@ -112,38 +111,40 @@ namespace Debond
     /// The steps at which most bonds break and close, and how far the path is
     /// from the global branch.
     void
-    report_totals(const LoadPathTotals        &path,
-                  const bool                   has_bonds,
-                  const bool                   bonds_heal,
-                  const std::optional<double> &comes_off_at,
-                  Record                      &record)
+    report_totals(const LoadPathTotals             &path,
+                  const bool                        has_bonds,
+                  const std::optional<LoadFactors> &comes_off_at,
+                  const LoadPathParameters         &load_path,
+                  Record                           &record)
     {
       record.heading("Load path");
       record.add("/load_path/factors", path.factors);
       record.add("/load_path/steps", path.steps);
-      record.add("/load_path/last_factor", path.last_factor);
+      record.add("/load_path/last_factor", load_path.varying(path.last));
       record.line("factors",
                   words(path.steps,
                         " of ",
                         path.factors,
-                        ", the last one ",
-                        path.last_factor));
+                        ", to ",
+                        load_path.name(path.last)));
       record.add("/load_path/comes_off_at",
-                 comes_off_at ? Record::Json(*comes_off_at) :
+                 comes_off_at ? Record::Json(load_path.varying(*comes_off_at)) :
                                 Record::Json(nullptr));
       if (comes_off_at)
-        record.line("comes off", words("at factor ", *comes_off_at));
+        record.line("comes off", "at " + load_path.name(*comes_off_at));
       report_change("largest_break",
                     has_bonds ? "most bonds break" : "most nodes open",
                     has_bonds,
                     path.largest_break,
+                    load_path,
                     record);
       // Of bonds that are broken for good only the gap closes.
-      const bool bonds_close = has_bonds && bonds_heal;
+      const bool bonds_close = has_bonds && load_path.bonds_heal;
       report_change("largest_closing",
                     bonds_close ? "most bonds close" : "most nodes close",
                     bonds_close,
                     path.largest_closing,
+                    load_path,
                     record);
 
       record.add("/load_path/compared_with_global_branch", path.compared);
@@ -176,10 +177,10 @@ namespace Debond
                               [](const ContactNodeState &node) {
                                 return node.branch != BondState::free;
                               }),
-                  load_path.bonds_heal,
                   result.solve.comes_off_at,
+                  load_path,
                   record);
-    report_arc(result.arc, load_path.arc, record);
+    report_arc(result.arc, load_path, record);
   }
 
 

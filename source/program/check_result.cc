@@ -172,9 +172,10 @@ namespace Debond
     std::string not_off;
     if (result.solve.status == SolverStatus::comes_off)
       {
-        result.coming_off = coming_off(scene.problem(),
-                                       scene.law(),
-                                       result.solve.comes_off_at.value_or(1.));
+        result.coming_off =
+          coming_off(scene.problem(),
+                     scene.law(),
+                     result.solve.comes_off_at.value_or(1.).loads);
         if (!result.coming_off)
           not_off =
             "the solver says that the body comes off, but no rigid motion away "

@@ -61,7 +61,7 @@ namespace Debond
             if (!solve(parameters.at(k), observer))
               break;
             const LoadPathStep<dim> &step = steps.back();
-            print(step.factor,
+            print(step.factors(),
                   step.state.functional,
                   step.state.broken_part,
                   step.state.minimum.empty() ? step.status :
@@ -268,8 +268,7 @@ namespace Debond
       bool
       solve(const LoadFactors factors, const LoadPathObserver<dim> &observer)
       {
-        const Eigen::VectorXd last   = s;
-        const double          factor = factors.loads;
+        const Eigen::VectorXd last = s;
 
         scale_load(factors);
         const Eigen::VectorXd load =
@@ -294,18 +293,20 @@ namespace Debond
 
         if (minimum.status == SolverStatus::comes_off)
           {
-            result.comes_off_at = factor;
+            result.comes_off_at = factors;
             result.message      = minimum.message;
             if (out != nullptr)
-              *out << std::setw(11) << factor << std::setw(17) << ""
-                   << std::setw(14) << ""
-                   << "  " << to_string(minimum.status) << std::endl;
+              {
+                print_factors(factors.loads, factors.displacements);
+                *out << std::setw(17) << "" << std::setw(14) << ""
+                     << "  " << to_string(minimum.status) << std::endl;
+              }
             return false;
           }
 
         LoadPathStep<dim> step;
         step.step                = static_cast<unsigned int>(steps.size() + 1);
-        step.factor              = factor;
+        step.factor              = factors.loads;
         step.displacement_factor = factors.displacements;
         step.iterations = static_cast<unsigned int>(minimum.history.size());
         if (!steps.empty())
@@ -400,15 +401,12 @@ namespace Debond
         return verification.failure(tolerance);
       }
 
-      static std::string
-      location(const LoadPathStep<dim> &step)
+      std::string
+      location(const LoadPathStep<dim> &step) const
       {
-        std::ostringstream text;
-        text << "load path, step " << step.step << ", factor " << step.factor
-             << ": ";
-        return text.str();
+        return "load path, step " + std::to_string(step.step) + ", " +
+               parameters.name(step.factors()) + ": ";
       }
-
 
       /// g of the condensed problem.
       Eigen::VectorXd
@@ -633,22 +631,37 @@ namespace Debond
       void
       print_titles(const std::string &third) const
       {
-        if (out != nullptr)
-          *out << std::setw(11) << "factor" << std::setw(17) << "J"
-               << std::setw(14) << third << "  state" << std::endl;
+        if (out == nullptr)
+          return;
+        print_factors<const char *>("factor", "displacement factor");
+        *out << std::setw(17) << "J" << std::setw(14) << third << "  state"
+             << std::endl;
+      }
+
+      /// Those that vary, or their titles.
+      template <typename Entry>
+      void
+      print_factors(const Entry &of_loads, const Entry &of_displacements) const
+      {
+        if (!parameters.moves_only())
+          *out << std::setw(11) << of_loads;
+        if (!parameters.displacement_factors.empty())
+          *out << std::setw(21) << of_displacements;
       }
 
       void
-      print(const double       factor,
+      print(const LoadFactors &factors,
             const double       functional,
             const double       number,
             const std::string &word) const
       {
-        if (out != nullptr)
-          *out << std::setw(11) << factor << std::scientific
-               << std::setprecision(8) << std::setw(17) << functional
-               << std::defaultfloat << std::setprecision(3) << std::setw(14)
-               << number << std::setprecision(6) << "  " << word << std::endl;
+        if (out == nullptr)
+          return;
+        print_factors(factors.loads, factors.displacements);
+        *out << std::scientific << std::setprecision(8) << std::setw(17)
+             << functional << std::defaultfloat << std::setprecision(3)
+             << std::setw(14) << number << std::setprecision(6) << "  " << word
+             << std::endl;
       }
 
       const LoadPathParameters       &parameters;

@@ -15,9 +15,9 @@ namespace Debond
     constexpr double tolerance = 1e-9;
 
     LoadPathTotals totals;
-    totals.factors     = n_factors;
-    totals.steps       = static_cast<unsigned int>(steps.size());
-    totals.last_factor = steps.back().factor;
+    totals.factors = n_factors;
+    totals.steps   = static_cast<unsigned int>(steps.size());
+    totals.last    = steps.back().factors();
 
     double broken = 0.;
     for (const LoadPathStep<dim> &step : steps)

@@ -66,6 +66,25 @@ expect_code 5 "$debond" bar.prm --set "Output/Directory=blocked" \
 grep -q "blocked/load_path/contact-00002.vtu" errors || fail "$(cat errors)"
 [ "$(rows blocked)" -eq 7 ] || fail "The table is not complete."
 
+# What varies is named: prescribed displacements, or they and the loads.
+moved() {
+  "$debond" bar.prm --set "Output/Directory=moved" \
+    --set "Boundary conditions/Clamped boundaries=left" \
+    --set "Boundary conditions/Displacement right=free; 2e-4" \
+    --set "Load path/Displacement factors=$1" --set "Load path/Factors=$2" \
+    --set "Output/Load path plots=false" >log
+  grep -q "factors  *3 of 3, to $3\$" log || fail "$(cat log)"
+}
+moved "0.5, 0.75, 2" "" "displacement factor 2"
+[ "$(awk '/broken part  state/ { print $1, $2; for (k = 0; k < 3; ++k) {
+  getline; print $1 } }' log | xargs)" = "displacement factor 0.5 0.75 2" ] ||
+  fail "The rows have not the factors of the displacements: $(cat log)"
+grep -q '"last_factor": 2.0' moved/summary.json || fail "last_factor is not 2"
+grep -q "displacement factor 0.5 to 2" moved/load_path.gp ||
+  fail "The plot does not name its factor."
+moved "0.5, 0.75, 2" "3, 2, 4" "factor 4, displacement factor 2"
+moved "0.75" "3, 2, 4" "factor 4, displacement factor 0.75"
+
 # A signal ends the path after the current factor.
 signal_when INT 'grep -q "local minimum" log' \
   "$debond" bar.prm --set "Output/Directory=interrupted" \

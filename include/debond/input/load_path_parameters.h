@@ -48,6 +48,18 @@ namespace Debond
     LoadFactors
     at(const unsigned int step) const;
 
+    /// Whether only prescribed displacements change on the path.
+    bool
+    moves_only() const;
+
+    /// That of the loads, unless they stay as they are.
+    double
+    varying(const LoadFactors &factors) const;
+
+    /// "factor 0.5", "displacement factor 0.5", or both.
+    std::string
+    name(const LoadFactors &factors) const;
+
     GlobalBranch global_branch = GlobalBranch::search;
 
     /// Whether the unstable states between those that the path leads to are

@@ -60,7 +60,7 @@ namespace Debond
   {
     unsigned int factors; ///< that the scene has
     unsigned int steps;   ///< that were done
-    double       last_factor;
+    LoadFactors  last;
 
     /// The steps at which the broken part grew and shrank most, if it did.
     std::optional<BondChange> largest_break;

@@ -28,7 +28,7 @@ namespace Debond
 
     /// The first factor of a load path at which the body comes off; the rest is
     /// of the one before.
-    std::optional<double> comes_off_at = {};
+    std::optional<LoadFactors> comes_off_at = {};
 
     unsigned int iterations  = 0;
     unsigned int long_steps  = 0;
