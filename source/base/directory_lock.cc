@@ -9,6 +9,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -19,6 +20,11 @@ namespace Debond
 {
   namespace
   {
+    /// Of the latest lock of this process, as long as it exists.
+    std::string name_of_lock;
+
+
+
     std::string
     host_name()
     {
@@ -99,6 +105,8 @@ namespace Debond
               "process %d on %s\n",
               static_cast<int>(getpid()),
               host_name().c_str());
+    name_of_lock = file_name;
+    std::at_quick_exit([]() { unlink(name_of_lock.c_str()); });
   }
 
 
@@ -107,6 +115,7 @@ namespace Debond
   {
     if (descriptor < 0)
       return;
+    name_of_lock.clear();
     unlink(file_name.c_str());
     close(descriptor);
   }

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/interrupt.h>
 
+#include <atomic>
+
 namespace Debond
 {
   namespace
   {
-    volatile std::sig_atomic_t signal_arrived = 0;
+    std::atomic<bool> signal_arrived(false);
 
     unsigned int n_guards = 0;
 
     extern "C" void
     debond_record_signal(int /*number*/)
     {
-      signal_arrived = 1;
+      signal_arrived = true;
     }
   } // namespace
 
@@ -23,7 +25,6 @@ namespace Debond
     // What arrived under an outer guard, between two solves, is not lost.
     if (n_guards++ > 0)
       return;
-    signal_arrived = 0;
 
     struct sigaction action = {};
     action.sa_handler       = debond_record_signal;
@@ -41,14 +42,15 @@ namespace Debond
       return;
     sigaction(SIGINT, &previous_int, nullptr);
     sigaction(SIGTERM, &previous_term, nullptr);
+    signal_arrived = false;
   }
 
 
 
   bool
-  InterruptGuard::requested() const
+  InterruptGuard::requested()
   {
-    return signal_arrived != 0;
+    return signal_arrived;
   }
 
 
@@ -56,7 +58,8 @@ namespace Debond
   void
   InterruptGuard::leave_to_parent()
   {
-    n_guards = 0;
+    n_guards       = 0;
+    signal_arrived = false;
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
   }

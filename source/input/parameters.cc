@@ -2,6 +2,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <debond/base/number_text.h>
+#include <debond/base/run_watch.h>
 #include <debond/base/text.h>
 #include <debond/input/material_parameters.h>
 #include <debond/input/mesh_parameters.h>
@@ -441,6 +442,8 @@ namespace Debond
   SceneTable::parameters(const std::string &scene)
   {
     parse();
+    RunWatch::is_quiet = !p.output.machine_details;
+    const Stage stage("mesh");
     p.scene = scene;
     complete_loads(p.dimension, p.materials.everywhere, p.loads, *this);
     complete_load_path(p.loads, p.supports, p.load_path, *this);

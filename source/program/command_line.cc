@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/multithread_info.h>
 
+#include <debond/base/run_watch.h>
 #include <debond/base/version.h>
 #include <debond/input/parameters.h>
 #include <debond/linear_algebra/blas_threads.h>
@@ -40,7 +41,8 @@ namespace Debond
       "  1  internal error\n"
       "  2  bad input: command line or scene; nothing is written\n"
       "  3  not converged: the stop criterion or the verification was not met\n"
-      "  4  interrupted by SIGINT or SIGTERM; the last iterate is written\n"
+      "  4  interrupted by SIGINT or SIGTERM; the last iterate is written if\n"
+      "     there is one\n"
       "  5  the output could not be written, or another run writes to its "
       "directory\n";
 
@@ -226,6 +228,7 @@ namespace Debond
     // operations would only change rounding.
     dealii::MultithreadInfo::set_thread_limit(1);
     use_one_blas_thread_by_default();
+    RunWatch   watch(std::cout, static_cast<int>(ExitCode::interrupted));
     const auto execute_here = [&]() {
       const po::options_description visible = visible_options();
       return execute(parse(argc, argv, visible), visible);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/run_watch.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/elasticity/refinement.h>
@@ -26,6 +27,16 @@ namespace Debond
 
     /// Contact boundaries with more nodes take their start from coarser ones.
     constexpr unsigned int coarsest_contact_nodes = 50;
+
+
+
+    /// A search that was not asked for may take as long, and a fifth of the
+    /// solve. Without optimisation all takes tens of times as long.
+#ifdef DEBUG
+    constexpr double least_search_seconds = 60.;
+#else
+    constexpr double least_search_seconds = 2.;
+#endif
 
 
 
@@ -126,7 +137,7 @@ namespace Debond
                   Watch                  &watch,
                   SolveResult            &result)
   {
-    dealii::Timer              timer;
+    dealii::Timer              timer, whole;
     const ElasticProblem<dim> &problem = scene.problem();
     watch.announce("factorisation", problem.unknowns().n_free_dofs());
     const Condensation condensed =
@@ -166,6 +177,7 @@ namespace Debond
                                  s,
                                  result);
     result.parts["contact"] = timer.wall_time();
+    RunWatch::has_result    = true;
 
     // Where nothing else holds the body J may fall without end.
     if (can_be_verified(result.status) && !is_held)
@@ -173,10 +185,14 @@ namespace Debond
         kind_without_search(scene.law(), scene.adhesion(), s);
     else if (can_be_verified(result.status))
       {
+        SolverParameters limited = parameters;
+        if (parameters.search == BondSearchChoice::automatic)
+          limited.search_seconds =
+            least_search_seconds + 0.2 * whole.cpu_time();
         timer.restart();
         const Eigen::VectorXd followed = s;
         result.minimum                 = find_better_minimum(
-          parameters,
+          limited,
           problem.unknowns().contact().boundary(),
           scene.law(),
           scene.adhesion(),

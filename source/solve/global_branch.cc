@@ -64,7 +64,8 @@ namespace Debond
                                  adhesion,
                                  s);
         const MajoriseMinimiseResult minimum =
-          MajoriseMinimise(parameters.majorise_minimise).minimize(problem);
+          MajoriseMinimise(parameters.majorise_minimise)
+            .minimize(problem, [this](const auto &) { return may_go_on(); });
         const double rounding = problem.evaluate().functional_rounding;
         if (!can_be_verified(minimum.status) ||
             minimum.functional >= point.functional - rounding)

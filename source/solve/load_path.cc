@@ -2,6 +2,7 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/base/interrupt.h>
+#include <debond/base/run_watch.h>
 #include <debond/base/text.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/elasticity/refinement.h>
@@ -82,6 +83,7 @@ namespace Debond
               interrupt("there is no global branch");
             return;
           }
+        const Stage stage("global branch");
         timer.restart();
         Branch followed;
         for (unsigned int k = 0; k < steps.size(); ++k)
@@ -130,6 +132,7 @@ namespace Debond
       void
       find_arc(std::vector<LoadPathStep<dim>> &arc)
       {
+        const Stage stage("arc");
         timer.restart();
         const auto [least, largest] =
           std::minmax_element(parameters.factors.begin(),
@@ -268,6 +271,9 @@ namespace Debond
       bool
       solve(const LoadFactors factors, const LoadPathObserver<dim> &observer)
       {
+        const Stage           stage("load path, step " +
+                          std::to_string(steps.size() + 1) + ", " +
+                          parameters.name(factors));
         const Eigen::VectorXd last = s;
 
         scale_load(factors);
@@ -281,7 +287,14 @@ namespace Debond
                                  stiffness_at_contact(scene.problem()));
         const MajoriseMinimiseResult minimum =
           MajoriseMinimise(solver_parameters.majorise_minimise)
-            .minimize(problem);
+            .minimize(problem,
+                      [this](const auto &) { return !guard.requested(); });
+        if (minimum.status == SolverStatus::interrupted && !steps.empty())
+          {
+            s = last;
+            interrupt("the path is not complete");
+            return false;
+          }
         result.status    = minimum.status;
         result.criterion = minimum.residual;
         for (MajoriseMinimiseIteration iteration : minimum.history)
@@ -345,6 +358,7 @@ namespace Debond
           }
         points.push_back(s);
         steps.push_back(step);
+        RunWatch::has_result = true;
         observer(step, u, verification, adhesion);
         return true;
       }
@@ -471,7 +485,8 @@ namespace Debond
         // Contact that comes and goes. Changes at the end of the step count.
         using Event = StationaryPath::Event;
         Event event = Event::contact;
-        for (unsigned int k = 0; event == Event::contact && k < 2 * s.size();
+        for (unsigned int k = 0;
+             event == Event::contact && k < 2 * s.size() && !guard.requested();
              ++k)
           event = path.advance(0., 1. + 1e-10);
         if (event != Event::bond)
@@ -537,7 +552,8 @@ namespace Debond
                             0.);
         using Event = StationaryPath::Event;
         Event event = Event::contact;
-        for (unsigned int k = 0; event == Event::contact && k < 2 * s.size();
+        for (unsigned int k = 0;
+             event == Event::contact && k < 2 * s.size() && !guard.requested();
              ++k)
           {
             const Eigen::VectorXd before = path.point();

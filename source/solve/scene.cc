@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/run_watch.h>
 #include <debond/base/text.h>
 #include <debond/check/error_estimate.h>
 #include <debond/elasticity/temperature_load.h>
@@ -99,6 +100,7 @@ namespace Debond
     , elastic_body(std::move(body))
     , body_materials(given.materials.everywhere)
   {
+    const Stage   stage("assembly");
     BoundaryNames boundaries;
     dealii::Timer timer;
     std::string   entry = "Mesh/Lengths"; // that errors belong to
@@ -174,10 +176,13 @@ namespace Debond
                           std::string          &entry)
   {
     dealii::Timer    timer;
-    const PieceNames names = elastic_body->make_mesh(triangulation);
-    boundaries             = names.boundaries;
-    body_notes             = names.notes;
-    seconds_for_mesh       = timer.wall_time();
+    const PieceNames names = [&]() {
+      const Stage stage("mesh");
+      return elastic_body->make_mesh(triangulation);
+    }();
+    boundaries       = names.boundaries;
+    body_notes       = names.notes;
+    seconds_for_mesh = timer.wall_time();
 
     entry               = "Boundary conditions/Clamped boundaries";
     boundary_conditions = make_conditions(given, boundaries);

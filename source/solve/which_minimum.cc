@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/run_watch.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
 #include <debond/input/bad_input.h>
@@ -11,6 +12,7 @@
 #include <debond/solve/which_minimum.h>
 
 #include <cmath>
+#include <ctime>
 #include <limits>
 
 namespace Debond
@@ -340,7 +342,8 @@ namespace Debond
         const double above = minimum.functional - given.functional;
         if (minimum.status != SolverStatus::success)
           {
-            ++result.search_failures;
+            result.search_failures +=
+              minimum.status != SolverStatus::interrupted;
             return false;
           }
         if (above < -given.functional_rounding)
@@ -501,8 +504,17 @@ namespace Debond
 
     if (wants_search(parameters))
       {
+        const Stage stage("search for a lower minimum");
+        // Processor time: what else the machine does changes no result.
+        const auto is_late = [&, first = std::clock()]() {
+          return static_cast<double>(std::clock() - first) >
+                 parameters.search_seconds * CLOCKS_PER_SEC;
+        };
+        const std::function<bool()> has_time = [&]() {
+          return may_go_on() && !is_late();
+        };
         MinimumSearch<dim> search(
-          parameters, boundary, law, adhesion, condensed, may_go_on, s, result);
+          parameters, boundary, law, adhesion, condensed, has_time, s, result);
         // Full is what automatic does, and more.
         if (parameters.search != BondSearchChoice::quick)
           {
@@ -515,10 +527,22 @@ namespace Debond
             result.kind != MinimumKind::global &&
             search.search_nodes(search_parameters(parameters)))
           result.closed_nodes = 0;
-        if (result.kind != MinimumKind::best_known &&
-            result.kind != MinimumKind::global)
+        const bool is_cut = !has_time() && result.kind != MinimumKind::global;
+        if (is_cut || (result.kind != MinimumKind::best_known &&
+                       result.kind != MinimumKind::global))
           result.kind = kind_without_search(law, adhesion, s);
+        if (is_cut && may_go_on() &&
+            result.proof_status == ProofStatus::interrupted)
+          result.proof_status = ProofStatus::time_limit;
+        if (is_cut && may_go_on())
+          result.notes.push_back(
+            "the search for a lower minimum has ended at its limit of time, "
+            "after " +
+            std::to_string(result.search_trials) +
+            " states: there may be lower ones. Solver/Search = full has no "
+            "limit");
       }
+    const Stage stage("proof");
     if (parameters.prove)
       prove(parameters, law, adhesion, condensed, may_go_on, s, result);
     if (result.proof_attempted)

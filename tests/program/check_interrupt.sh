@@ -35,3 +35,82 @@ if ! grep -q "the result is what it had found" errors; then
     fail "The files are not of the last mesh, with $unknowns unknowns."
 fi
 [ -s refined/body.vtu ] || fail "no body.vtu"
+
+# Wherever it comes: a run ends with its results, or without any and says where.
+# Half-written files and locks stay in no case.
+cat >block.prm <<'SCENE'
+set Dimension = 3
+subsection Mesh
+  set Lengths = 3, 1, 2
+  set Cells = 24, 9, 16
+end
+subsection Boundary conditions
+  set Clamped boundaries = left
+  set Contact boundary = bottom
+end
+subsection Loads
+  set Traction top = 0; 0.02; 0
+end
+subsection Contact law
+  set Bond stiffness = 20
+  set Bond threshold = 2e-4
+end
+subsection Solver
+  set Linear solver = direct
+end
+SCENE
+has_begun='grep -q debond /proc/$process/comm &&
+  grep -q "SigCgt:.*[4-7c-f]...$" /proc/$process/status' # it catches SIGTERM
+for seconds in 0 0.1 0.3 1 2 4 8; do
+  signal_when TERM "$has_begun && sleep $seconds" \
+    "$debond" block.prm --set "Output/Directory=block"
+  [ $code -eq 0 ] && [ "$seconds" != 0 ] && break # it has ended before
+  [ $code -eq 4 ] || fail "exit code $code after $seconds s: $(cat log errors)"
+  if [ -e block/summary.json ]; then
+    for file in body.vtu contact.vtu history.csv; do
+      [ -s block/$file ] || fail "no $file after $seconds s"
+    done
+  else
+    grep -q "interrupted before there was a result (" errors ||
+      fail "after $seconds s: $(cat errors)"
+    [ -z "$(ls block 2>/dev/null | grep -v parameters.prm)" ] ||
+      fail "after $seconds s: $(ls block)"
+  fi
+  [ -z "$(find . -name '*.partial' -o -name .lock)" ] ||
+    fail "left after $seconds s: $(find .)"
+  rm -rf block
+done
+
+# A search and a proof that take minutes say that they run.
+cat >patches.prm <<'SCENE'
+subsection Mesh
+  set Lengths = 1.7, 0.11
+  set Cells = 170, 1
+end
+subsection Material
+  set Young modulus = 1
+  set Poisson ratio = 0.1
+end
+subsection Boundary conditions
+  set Contact boundary = bottom
+  set Clamped boundaries = top
+end
+subsection Loads
+  set Traction bottom = 0; 0.95*sin(16.8*x + 5.65) + 0.35
+end
+subsection Contact law
+  set Tangential displacement = fixed
+  set Bond stiffness = 1400
+  set Bond threshold = 0.007
+end
+SCENE
+for stage in "search for a lower minimum" proof; do
+  signal_when INT "grep -q '^  $stage, 2 s' log" \
+    "$debond" patches.prm --set "Output/Directory=long" \
+    --set "Solver/Prove=true" \
+    --set "Solver/Search=$([ "$stage" = proof ] && echo none || echo full)"
+  [ $code -eq 4 ] || fail "exit code $code in place of 4: $(cat log errors)"
+  grep -q "the search or the proof was interrupted" errors ||
+    fail "$(cat errors)"
+  grep -q '"status": "success"' long/summary.json || fail "no result"
+done

@@ -21,9 +21,10 @@ namespace Debond
 
     InterruptGuard(const InterruptGuard &) = delete;
 
-    /// Whether a signal has arrived.
-    bool
-    requested() const;
+    /// Whether a signal has arrived under a guard. Loops ask it before each
+    /// piece of work that can take a good part of a second.
+    static bool
+    requested();
 
     /// In a process that was forked: the guards of its parent are none of its
     /// own, and signals end it.

@@ -2,6 +2,7 @@
 #ifndef debond_elasticity_contact_condensation_h
 #define debond_elasticity_contact_condensation_h
 
+#include <debond/base/run_watch.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/elastic_problem.h>
@@ -37,6 +38,7 @@ namespace Debond
   condense_to_contact(const ElasticProblem<dim>   &problem,
                       const AdhesionIntegral<dim> &adhesion)
   {
+    const Stage stage("factorisation");
     const auto &normals = problem.unknowns().contact().normals();
     return Condensation(
       problem.matrix(),

@@ -8,6 +8,7 @@
 #include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 
+#include <limits>
 #include <map>
 #include <string>
 
@@ -67,8 +68,12 @@ namespace Debond
     MajoriseMinimiseParameters majorise_minimise;
     BondSearchChoice           search = BondSearchChoice::automatic;
     BranchSearchParameters     full_search;
-    bool                       prove = false;
-    BranchAndBoundParameters   proof = proof_defaults();
+
+    /// What automatic may take beside a part of the solve.
+    double search_seconds = std::numeric_limits<double>::infinity();
+
+    bool                     prove = false;
+    BranchAndBoundParameters proof = proof_defaults();
   };
 
 

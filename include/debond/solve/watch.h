@@ -4,7 +4,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <debond/base/interrupt.h>
+#include <debond/base/run_watch.h>
 #include <debond/solve/progress.h>
 
 #include <memory>
@@ -67,6 +67,7 @@ namespace Debond
     bool
     operator()(Iteration iteration)
     {
+      RunWatch::has_result = true;
       iteration.functional += offset;
       if (progress)
         progress->report(iteration);

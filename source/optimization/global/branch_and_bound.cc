@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/interrupt.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/node_bound.h>
 #include <debond/optimization/majorise/condensed_problem.h>
@@ -328,10 +329,16 @@ namespace Debond
           for (const Job &job : batch)
             {
               take_if_better(job);
-              branch(job);
+              // What a signal has cut short is to be done again.
+              if (InterruptGuard::requested())
+                open.insert(job.node);
+              else
+                branch(job);
             }
           result.nodes += static_cast<unsigned int>(batch.size());
-          if (monitor && !monitor(progress()) && !open.empty())
+          if ((InterruptGuard::requested() ||
+               (monitor && !monitor(progress()))) &&
+              !open.empty())
             result.status = ProofStatus::interrupted;
           if (result.nodes >= next_record)
             {

@@ -259,7 +259,9 @@ namespace Debond
       /// Minimises from the changed state. Returns whether the functional is
       /// below that of @p point, which then moves.
       bool
-      attempt(const Trial &trial, Eigen::VectorXd &point)
+      attempt(const Trial                 &trial,
+              const std::function<bool()> &monitor,
+              Eigen::VectorXd             &point)
       {
         // Beside a clamped side quadrature points move less than the node, so
         // that they are on the last branch only if the node is far below its
@@ -302,13 +304,15 @@ namespace Debond
                          problem,
                          [&](const MajoriseMinimiseIteration &) {
                            ends_at_known = leads_to_known(next, trial.move);
-                           return !ends_at_known;
+                           return !ends_at_known && (!monitor || monitor());
                          });
         if (ends_at_known)
           return false;
         if (minimum.status != SolverStatus::success)
           {
-            ++result.failures;
+            result.complete =
+              result.complete && minimum.status != SolverStatus::interrupted;
+            result.failures += minimum.status != SolverStatus::interrupted;
             return false;
           }
         known.push_back(majorant(next, minimum.functional));
@@ -436,7 +440,7 @@ namespace Debond
             {
               if (!search.may_go_on(monitor))
                 return;
-              fell = search.attempt(trial, point);
+              fell = search.attempt(trial, monitor, point);
               if (fell)
                 break;
             }
@@ -456,7 +460,8 @@ namespace Debond
         for (const Trial &trial : starts)
           {
             Eigen::VectorXd point = given;
-            if (search.may_go_on(monitor) && search.attempt(trial, point))
+            if (search.may_go_on(monitor) &&
+                search.attempt(trial, monitor, point))
               descend(point);
           }
       }

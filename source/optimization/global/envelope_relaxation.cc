@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/interrupt.h>
 #include <debond/optimization/global/envelope_relaxation.h>
 
 #include <Eigen/Cholesky>
@@ -168,7 +169,8 @@ namespace Debond
           places[i] = place_of_minimum(envelopes[i],
                                        problem.A(i, i),
                                        s(i) - gradient(i) / problem.A(i, i));
-        if (places == old_places)
+        // Any point has a bound.
+        if (places == old_places || InterruptGuard::requested())
           return step;
         const Eigen::VectorXd old_s = s;
         solve_for(places, problem, envelopes, s);

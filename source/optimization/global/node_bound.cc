@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/interrupt.h>
 #include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/global/node_bound.h>
 
@@ -299,7 +300,7 @@ namespace Debond
         {
           const std::size_t n_undecided = undecided().size();
           const bool        all_decided = n_undecided == 0;
-          if (!set_up(round == 0))
+          if (InterruptGuard::requested() || !set_up(round == 0))
             break;
           minimise_relaxation(problem, envelopes, node.x);
           const LowerBound lower_bound(problem, node.x);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/interrupt.h>
 #include <debond/linear_algebra/dense_cholesky.h>
 #include <debond/optimization/majorise/bound_qp.h>
 
@@ -125,6 +126,8 @@ namespace Debond
           {
             result.status = SolverStatus::quadratic_program;
           }
+        if (!can_be_verified(result.status) && InterruptGuard::requested())
+          result.status = SolverStatus::interrupted;
         result.x = result.x.cwiseMin(b);
         return result;
       }
@@ -148,7 +151,8 @@ namespace Debond
       bool
       may_go_on() const
       {
-        return result.steps < std::min(maximum_active_set_steps, 100 + 2 * n);
+        return !InterruptGuard::requested() &&
+               result.steps < std::min(maximum_active_set_steps, 100 + 2 * n);
       }
 
       double

@@ -205,9 +205,10 @@ namespace Debond
       active = guess->active_set(M, E, r);
     const BoundQPResult qp =
       solve_bound_qp(M, r, Eigen::VectorXd::Zero(s.size()), active);
-    s = can_be_verified(qp.status) && phi.has_moving_points() ?
-          accelerated(qp.x) :
-          qp.x;
+    if (qp.status != SolverStatus::interrupted)
+      s = can_be_verified(qp.status) && phi.has_moving_points() ?
+            accelerated(qp.x) :
+            qp.x;
     return {qp.status, qp.steps, 0};
   }
 

@@ -52,8 +52,8 @@ namespace Debond
 
   struct BoundQPResult
   {
-    /// success, stagnated, or quadratic_program if there is no minimum or it
-    /// was not found.
+    /// success, stagnated, interrupted, or quadratic_program if there is no
+    /// minimum or it was not found.
     SolverStatus    status = SolverStatus::quadratic_program;
     unsigned int    steps  = 0; ///< factorisations
     Eigen::VectorXd x;
