@@ -92,7 +92,7 @@ refused() {
   local text=$1
   shift
   expect_code 2 prlimit --as=$((2000 * 1024 * 1024)) timeout 120 "$debond" "$@"
-  grep -qF "$text" errors || fail "$text: $(cat errors)"
+  grep -qF -- "$text" errors || fail "$text: $(cat errors)"
   ! grep -qP '[\x00-\x09\x0b-\x1f\x7f]|\xc2[\x80-\x9f]' errors ||
     fail "control characters: $(cat -v errors)"
 }
