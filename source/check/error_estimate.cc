@@ -43,6 +43,10 @@ namespace Debond
     template <int dim>
     constexpr double mean_on_face = dim == 2 ? 2. / 3. : 9. / 20.;
 
+    /// The mean of b_F^2 over F.
+    template <int dim>
+    constexpr double mean_square_on_face = dim == 2 ? 8. / 15. : 81. / 280.;
+
     /// The mean of b_F over a cell, by the one over F.
     constexpr double mean_in_cell = 0.5;
 
@@ -61,13 +65,15 @@ namespace Debond
 
 
     /// int_K |grad b_F|^2, which is the same for all faces F of a cell, as its
-    /// gradients add up to zero.
+    /// gradients add up to zero. In 2D that of half a square for all triangles:
+    /// stretched ones yield together with their neighbors, for less than the
+    /// b_F of one of them takes.
     template <int dim>
     double
     bubble_energy(const LinearSimplex<dim> &cell)
     {
-      return (dim == 2 ? 4. / 3. : 243. / 140.) * cell.volume *
-             sum_of_squares(cell);
+      return dim == 2 ? 8. / 3. :
+                        243. / 140. * cell.volume * sum_of_squares(cell);
     }
 
 
@@ -629,7 +635,7 @@ namespace Debond
               }
             if (is_contact)
               r = with_foundation(r,
-                                  normal,
+                                  face,
                                   boundary.faces[contact_face],
                                   rule.barycentric[q]);
             square += rule.weights[q] * free_part(r, normal, id).norm_square();
@@ -642,19 +648,28 @@ namespace Debond
       /// With what bonds bear, as far as the foundation lets the body go.
       dealii::Tensor<1, dim>
       with_foundation(const dealii::Tensor<1, dim>              &r,
-                      const dealii::Tensor<1, dim>              &normal,
+                      const Face                                &side,
                       const typename ContactBoundary<dim>::Face &face,
                       const std::array<double, dim> &barycentric) const
       {
         // Displacements of iterative methods may be off by so much.
-        constexpr double tolerance = 1e-6;
-        double r_nu      = r * normal - adhesion.traction(face, barycentric, s);
-        bool   is_closed = true;
+        constexpr double             tolerance = 1e-6;
+        const double                 measure   = side.area.norm();
+        const dealii::Tensor<1, dim> normal    = side.area / measure;
+        const double traction  = adhesion.traction(face, barycentric, s);
+        const double trace     = adhesion.trace(face, barycentric, s);
+        double       r_nu      = r * normal - traction;
+        bool         is_closed = true;
         for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
           is_closed = is_closed && (face.is_held(k) ||
                                     s(face.node(k)) >= -tolerance * largest_s);
         if (is_closed)
           r_nu = std::min(r_nu, 0.);
+        // What yields stretches the bonds, too.
+        if (trace != 0.)
+          r_nu /= std::sqrt(1. + mean_square_on_face<dim> * measure * traction /
+                                   (trace * cells[side.cell].mu *
+                                    cells[side.cell].bubble_energy));
         return conditions.fixes_tangential(face.id) ?
                  r_nu * normal :
                  r + (r_nu - r * normal) * normal;

@@ -192,6 +192,68 @@ namespace
 
 
 
+  /// By what J falls on finer meshes.
+  double
+  ratio_on_finer_meshes(const Values &values)
+  {
+    const auto levels =
+      refined<2>(
+        parameters_of(with(values, {"Accuracy/Maximum unknowns=8000"})))
+        .levels;
+    const double J = levels.front().functional;
+    return levels.front().estimated_error * std::abs(J) /
+           (J - levels.back().functional);
+  }
+
+
+
+  /// Layers of different stiffness, on stretched cells and on stiff bonds.
+  void
+  check_layers()
+  {
+    const Values beam = with(no_contact,
+                             {"Mesh/Lengths=6, 0.5",
+                              "Mesh/Cells=24, 8",
+                              "Parts/upper=y > 0.125",
+                              "Material/Young modulus=40",
+                              "Material/Young modulus upper=1",
+                              "Material/Poisson ratio=0",
+                              "Loads/Traction top="});
+    // The neutral axis is at 0.4296875 / 5.375.
+    check_ratio("bending of two layers, cells of 4:1",
+                Solved<2>(
+                  with(beam,
+                       {"Loads/Traction right=if(y < 0.125, -0.4, -0.01) * "
+                        "(y - 0.4296875 / 5.375); 0"}))
+                  .ratio("-0.01*x*(y - 0.4296875/5.375); 0.005*x^2"),
+                1.6);
+    check_ratio("shear of two layers, quadratic, cells of 4:1",
+                ratio_on_finer_meshes(with(beam,
+                                           {"Mesh/Degree=2",
+                                            "Mesh/Cells=12, 4",
+                                            "Material/Poisson ratio=0.3",
+                                            "Contact law/Quadrature=exact",
+                                            "Loads/Traction right=0; 0.001"})),
+                1.6);
+    const Values soft = {"Mesh/Lengths=1, 1",
+                         "Mesh/Cells=4, 4",
+                         "Parts/soft=x > 0.5",
+                         "Material/Young modulus=1",
+                         "Material/Young modulus soft=0.002",
+                         "Material/Poisson ratio=0.2",
+                         "Contact law/Bond stiffness=5",
+                         "Contact law/Bond threshold=1",
+                         "Contact law/Quadrature=exact",
+                         "Loads/Traction top=",
+                         "Loads/Traction bottom=0; 0.000001"};
+    check_ratio("soft layer on stiff bonds", ratio_on_finer_meshes(soft), 1.6);
+    check_ratio("the same, quadratic",
+                ratio_on_finer_meshes(with(soft, {"Mesh/Degree=2"})),
+                1.6);
+  }
+
+
+
   /// The paper's benchmark, in three systems of units and turned.
   void
   check_benchmark()
@@ -415,6 +477,7 @@ main(int argc, char **)
   print_figures = argc > 1;
   check_constant_strain();
   check_closed_forms();
+  check_layers();
   check_benchmark();
   check_loop();
   check_growths();

@@ -51,9 +51,13 @@ namespace Debond
    *
    * M being mu, and lambda + 2 mu for jumps of the pressure, lambda times the
    * dilation, between cells of one material (in nearly incompressible ones it
-   * may alternate from cell to cell without harm). The sum of these numbers
-   * over all faces, times a constant that depends on the dimension only, is the
-   * estimate; doc/notes/accuracy.md compares it with errors that are known.
+   * may alternate from cell to cell without harm). Bonds that b_F stretches
+   * resist as well. In 2D all cells have the int_K |grad b_F|^2 of half a
+   * square: a stretched cell's own is larger, as if it had to yield by itself,
+   * and made the estimate too low by the stretch. The sum of these numbers over
+   * all faces, times a constant that depends on dimension and degree only, is
+   * the estimate; doc/notes/error-estimate.md compares it with errors that are
+   * known.
    *
    * Directions in which the boundary is held have no r; where all nodes of a
    * face are in contact, only what pulls the body off counts. What the
