@@ -343,9 +343,10 @@ namespace Debond
       dealii::potrf("L", &n_inner, factor.L.data(), &n_inner, &info);
       AssertThrow(info >= 0, dealii::ExcInternalError());
       if (info > 0)
-        throw std::runtime_error("The matrix of the substructures is not "
-                                 "positive definite. Check the supports and "
-                                 "the material.");
+        throw std::runtime_error(
+          "to rounding the matrix of the equilibrated stresses is not positive "
+          "definite; try cells that are less flat, a Poisson ratio farther "
+          "from its limit, or parts that differ less in stiffness");
       if (n_outer == 0)
         return;
       dealii::trtrs("L",

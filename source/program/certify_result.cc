@@ -27,13 +27,18 @@ namespace Debond
         throw BadInput({scene->parameters().locations.at(entry) + ": " + entry +
                         ": " + error.what()});
       }
+    catch (const std::exception &)
+      {
+        // It is no fault of the scene; certify_result() will say it.
+        return nullptr;
+      }
   }
 
 
 
   template <int dim>
   void
-  certify_result(const Certifier<dim>                    &certifier,
+  certify_result(const Certifier<dim>                    *certifier,
                  const CertificateKind                    kind,
                  const bool                               is_refined,
                  const BranchAndBoundParameters          &proof,
@@ -53,15 +58,15 @@ namespace Debond
     };
     try
       {
-        if (is_refined && !certifier.is_for_finer_meshes())
+        if (certifier == nullptr ||
+            (is_refined && !certifier->is_for_finer_meshes()))
           certify(Certifier<dim>(kind, scene, memory_limit));
         else
-          certify(certifier);
+          certify(*certifier);
       }
-    catch (const EquilibriumError &error)
+    catch (const std::exception &error)
       {
-        result.notes.push_back(std::string("There is no certificate: ") +
-                               error.what() + ".");
+        result.notes.push_back(no_certificate(error));
       }
     result.times.emplace_back("certificate", timer.wall_time());
   }

@@ -188,8 +188,9 @@ namespace Debond
                  path.bonds ? *path.bonds : scene->adhesion(),
                  shortfall,
                  result);
-    if (certifier && result.is_success() && !result.certificate)
-      certify_result(*certifier,
+    if (certificate != CertificateKind::none && result.is_success() &&
+        !result.certificate)
+      certify_result(certifier.get(),
                      certificate,
                      accuracy.is_adaptive(),
                      solver.proof,

@@ -323,7 +323,7 @@ namespace Debond
                 return first;
               }
           }
-        catch (const EquilibriumError &)
+        catch (const std::exception &)
           {
             // Such as a body that only bonds hold.
           }
@@ -474,10 +474,9 @@ namespace Debond
                                    narrowest,
                                    [&]() { return !guard.requested(); });
             }
-          catch (const EquilibriumError &error)
+          catch (const std::exception &error)
             {
-              result.shortfall =
-                std::string("There is no certificate: ") + error.what() + '.';
+              result.shortfall = no_certificate(error);
             }
         };
         if (target > 0.)

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <new>
 #include <sstream>
 #include <type_traits>
 
@@ -460,6 +461,18 @@ namespace Debond
 
 
 
+  std::string
+  no_certificate(const std::exception &error)
+  {
+    return std::string("There is no certificate: ") +
+           (dynamic_cast<const std::bad_alloc *>(&error) != nullptr ?
+              "there is not enough memory for the equilibrated stresses" :
+              error.what()) +
+           '.';
+  }
+
+
+
   template <int dim>
   Certifier<dim>::Certifier(const CertificateKind                    kind,
                             const std::shared_ptr<const Scene<dim>> &scene,
@@ -534,15 +547,9 @@ namespace Debond
           certificate.lower -= certificate.reserve + own;
           certificate.reserve += 2. * own;
         }
-      catch (const std::runtime_error &error)
+      catch (const std::exception &)
         {
           // Such as a body that only bonds hold.
-          if (trace_constants.empty())
-            throw EquilibriumError(error.what());
-          certificate.gaps.clear();
-        }
-      catch (const EquilibriumError &)
-        {
           if (trace_constants.empty())
             throw;
           certificate.gaps.clear();
@@ -611,7 +618,7 @@ namespace Debond
                              to_string(certificate.proof_status) + ")");
     if (earlier != nullptr)
       intersect(certificate, *earlier);
-    if (certificate.lower > certificate.upper)
+    if (!(certificate.lower <= certificate.upper))
       {
         std::ostringstream text;
         text.precision(10);

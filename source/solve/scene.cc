@@ -13,6 +13,7 @@
 #include <debond/solve/scene_loads.h>
 
 #include <functional>
+#include <set>
 
 namespace Debond
 {
@@ -204,6 +205,20 @@ namespace Debond
     if (body_piece != nullptr)
       body_loads.n_faces = body_dead_loads.n_faces = body_piece->n_faces();
     body_materials = make_materials(given.materials, names.regions);
+    std::set<double> moduli;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      moduli.insert(body_materials(cell->material_id()).young_modulus);
+    // Where parts meet both are in one sum, of whose 16 digits the softer one
+    // has four left.
+    if (!moduli.empty() && *moduli.rbegin() > 1e12 * *moduli.begin())
+      throw PieceError("Material/Young modulus",
+                       words("moduli of ",
+                             *moduli.begin(),
+                             " and ",
+                             *moduli.rbegin(),
+                             " in one body are more than 1e12 apart, too far "
+                             "for double precision; what is 1e6 times as stiff "
+                             "as the rest is as good as rigid"));
     elastic_problem->assemble(body_materials,
                               body_loads,
                               storage,

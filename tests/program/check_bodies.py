@@ -178,6 +178,30 @@ def main(debond, scene):
             ["Loads/Temperature change=log(x - 0.1)"])
 
     refused("Mesh/File =  (default): Source = file needs one", ["Mesh/Source=file"])
+    # Layers, pulled off from below: bonds and layers are springs in a row.
+    heights, width, pull = (0.07, 0.05, 0.08), 0.1, 3e-4
+    for moduli in ((2., 5e8, 3.), (4e8, 2., 7e7), (3e10, 1., 2.), (1., 9e10, 4.)):
+        softness = sum(h / E for h, E in zip(heights, moduli))
+        stiffness = 0.7 / softness
+        J = -pull**2 * width * softness / (2. * (1. + 0.7))
+        result = run(debond, [
+            f"Mesh/Lengths={width}, 0.2", "Mesh/Cells=5, 20",
+            "Parts/middle=y > 0.07 && y < 0.12", "Parts/upper=y > 0.12",
+            f"Material/Young modulus={moduli[0]}",
+            f"Material/Young modulus middle={moduli[1]}",
+            f"Material/Young modulus upper={moduli[2]}",
+            "Material/Poisson ratio=0", "Loads/Traction top=",
+            f"Loads/Traction bottom=0; {pull}",
+            "Boundary conditions/Clamped boundaries=top",
+            "Boundary conditions/Roller boundaries=left, right",
+            f"Contact law/Bond stiffness={stiffness!r}",
+            "Contact law/Bond threshold=1"])
+        found = json.loads(pathlib.Path("output/summary.json").read_text())[
+            "functional"] if result.returncode == 0 else None
+        if found is None or abs(found / J - 1.) > 1e-12:
+            failures.append(f"layers of {moduli}: J {found}, expected {J}, "
+                            f"{result.stderr!r}")
+
     refused("scenes/none.msh cannot be read", file("none"))
     refused("this is no Gmsh file", ["Mesh/Source=file", "Mesh/File=bar.prm"])
     refused("the file ends within $Elements", file("cut"))

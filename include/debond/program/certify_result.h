@@ -12,8 +12,8 @@
 
 namespace Debond
 {
-  /// What certifies results of the scene, null if that is not asked for.
-  /// Throws BadInput if it cannot be done.
+  /// What certifies results of the scene, null if that is not asked for or if
+  /// rounding or memory do not allow it. Throws BadInput if the scene does not.
   template <int dim>
   std::unique_ptr<const Certifier<dim>>
   make_certifier(const CertificateKind                    kind,
@@ -21,10 +21,11 @@ namespace Debond
                  const double                             memory_limit);
 
   /// @p certifier: of the scene as it was before its mesh was refined, if it
-  /// was. @p kind and @p memory_limit are for a certificate on the last mesh.
+  /// was; null if there is none. @p kind and @p memory_limit are for a
+  /// certificate on the last mesh. A note says why there is none.
   template <int dim>
   void
-  certify_result(const Certifier<dim>                    &certifier,
+  certify_result(const Certifier<dim>                    *certifier,
                  const CertificateKind                    kind,
                  const bool                               is_refined,
                  const BranchAndBoundParameters          &proof,
