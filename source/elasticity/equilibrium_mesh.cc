@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <unordered_map>
 #include <utility>
 
@@ -350,6 +351,10 @@ namespace Debond
                                   const Supports<dim>      &supports,
                                   const Loads<dim>         &given)
   {
+    std::map<dealii::types::boundary_id, unsigned int> n_faces;
+    for (const auto &face : mesh.active_face_iterators())
+      if (face->at_boundary())
+        ++n_faces[face->boundary_id()];
     for (unsigned int element = 0; element < all_places.size(); ++element)
       for (unsigned int i = 0; i < all_places[element].sides.size(); ++i)
         {
@@ -429,8 +434,15 @@ namespace Debond
           if (traction != given.tractions.end())
             {
               const SideTraction<dim> own =
-                side_traction<dim>(*traction->second, corners(side.vertices));
-              exact_loads = exact_loads && own.is_linear;
+                side_traction<dim>(*traction->second,
+                                   corners(side.vertices),
+                                   n_faces[id]);
+              exact_loads = exact_loads && own.rest == 0.;
+              if (own.rest > 0.)
+                all_rests.push_back({cell,
+                                     measure * own.rest,
+                                     cell->face(face)->diameter(),
+                                     dim * cell->measure() / measure});
               for (unsigned int k = 0; k < dim; ++k)
                 for (unsigned int d = 0; d < dim; ++d)
                   loads(unknowns_of_a_side * number + dim * k + d) +=

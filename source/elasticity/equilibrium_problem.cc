@@ -2,6 +2,7 @@
 #include <debond/elasticity/equilibrium_problem.h>
 #include <debond/elasticity/linear_simplex.h>
 #include <debond/elasticity/side_moments.h>
+#include <debond/elasticity/trace_constant.h>
 
 #include <algorithm>
 #include <cmath>
@@ -455,6 +456,29 @@ namespace Debond
         for (unsigned int i = 0; i < (is_simplex ? 1 : place.cells.size()); ++i)
           sum += of_cells[place.cells[i]->active_cell_index()];
         result.push_back(sum);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<double>
+  EquilibriumProblem<dim>::load_rests(
+    const std::vector<CellDisplacement<dim>> &u) const
+  {
+    if (mesh.load_rests().empty())
+      return {};
+    const std::vector<double> energies = strain_energies(u);
+    std::vector<double>       result(energies.size(), 0.);
+    for (const auto &rest : mesh.load_rests())
+      {
+        const unsigned int cell = rest.cell->active_cell_index();
+        result[cell] += std::sqrt(
+          rest.square * energies[cell] /
+          elementary_trace_constant(RectangleAboveSide{rest.width, rest.height},
+                                    materials(rest.cell->material_id()),
+                                    false));
       }
     return result;
   }

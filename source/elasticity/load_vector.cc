@@ -658,6 +658,20 @@ namespace Debond
 
 
 
-  template decltype(load_vector<2>) load_vector<2>;
-  template decltype(load_vector<3>) load_vector<3>;
+  template <int dim>
+  std::array<dealii::Tensor<1, dim>, dim>
+  traction_moments(const dealii::Function<dim>               &traction,
+                   const std::array<dealii::Point<dim>, dim> &corners,
+                   const unsigned int                         n_faces)
+  {
+    CheckedLoad<dim> load(traction, "traction");
+    return TractionIntegral<dim, 1>(load, "traction", n_faces)(corners, 1.);
+  }
+
+
+
+  template decltype(load_vector<2>)      load_vector<2>;
+  template decltype(load_vector<3>)      load_vector<3>;
+  template decltype(traction_moments<2>) traction_moments<2>;
+  template decltype(traction_moments<3>) traction_moments<3>;
 } // namespace Debond

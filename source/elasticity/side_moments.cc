@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
+#include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/side_moments.h>
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 #include <vector>
 
@@ -16,47 +18,37 @@ namespace Debond
 
 
 
-    /// A point of a side with the part of it that belongs to it.
-    template <int dim>
-    struct SidePoint
-    {
-      std::array<double, dim> barycentric;
-      double                  weight;
-    };
-
-
-
-    /// Many of them, in which no load can hide that is not linear.
-    std::vector<SidePoint<2>>
+    /// Barycentric coordinates of many points, so that no load can hide that is
+    /// not linear.
+    std::vector<std::array<double, 2>>
     points_of_side(std::integral_constant<int, 2>)
     {
-      constexpr unsigned int    parts = 16;
-      const dealii::QGauss<1>   rule(3);
-      std::vector<SidePoint<2>> result;
+      constexpr unsigned int             parts = 16;
+      const dealii::QGauss<1>            rule(3);
+      std::vector<std::array<double, 2>> result;
       for (unsigned int part = 0; part < parts; ++part)
         for (unsigned int q = 0; q < rule.size(); ++q)
           {
             const double t = (part + rule.point(q)[0]) / parts;
-            result.push_back({{{1. - t, t}}, rule.weight(q) / parts});
+            result.push_back({{1. - t, t}});
           }
       return result;
     }
 
 
 
-    std::vector<SidePoint<3>>
+    std::vector<std::array<double, 3>>
     points_of_side(std::integral_constant<int, 3>)
     {
-      constexpr unsigned int         parts = 4;
-      const dealii::QGaussSimplex<2> rule(3);
-      std::vector<SidePoint<3>>      result;
+      constexpr unsigned int             parts = 4;
+      const dealii::QGaussSimplex<2>     rule(3);
+      std::vector<std::array<double, 3>> result;
       const auto add = [&](const double x, const double y, const double size) {
         for (unsigned int q = 0; q < rule.size(); ++q)
           {
             const double a = x + size * rule.point(q)[0];
             const double b = y + size * rule.point(q)[1];
-            result.push_back(
-              {{{1. - a - b, a, b}}, 2. * size * size * rule.weight(q)});
+            result.push_back({{1. - a - b, a, b}});
           }
       };
       for (unsigned int i = 0; i < parts; ++i)
@@ -66,24 +58,6 @@ namespace Debond
             if (i + j + 1 < parts)
               add((i + 1.) / parts, (j + 1.) / parts, -1. / parts);
           }
-      return result;
-    }
-
-
-
-    /// The values at the corners of the linear function that has the same
-    /// moments.
-    template <int dim>
-    std::array<dealii::Tensor<1, dim>, dim>
-    linear_part(const std::vector<SidePoint<dim>>         &points,
-                const std::vector<dealii::Tensor<1, dim>> &values)
-    {
-      std::array<dealii::Tensor<1, dim>, dim> result;
-      for (unsigned int q = 0; q < points.size(); ++q)
-        for (unsigned int k = 0; k < dim; ++k)
-          // The function that is orthogonal to the other coordinates.
-          result[k] += points[q].weight * dim *
-                       ((dim + 1) * points[q].barycentric[k] - 1.) * values[q];
       return result;
     }
 
@@ -113,31 +87,37 @@ namespace Debond
   template <int dim>
   SideTraction<dim>
   side_traction(const dealii::Function<dim>               &traction,
-                const std::array<dealii::Point<dim>, dim> &corners)
+                const std::array<dealii::Point<dim>, dim> &corners,
+                const unsigned int                         n_faces)
   {
-    static const std::vector<SidePoint<dim>> points =
+    static const std::vector<std::array<double, dim>> points =
       points_of_side(std::integral_constant<int, dim>());
-    std::vector<dealii::Tensor<1, dim>> tractions;
-    double                              largest = 0.;
-    for (const SidePoint<dim> &point : points)
+    // At the corners the linear function with the same moments.
+    std::array<dealii::Tensor<1, dim>, dim> linear =
+      traction_moments<dim>(traction, corners, n_faces);
+    dealii::Tensor<1, dim> sum;
+    for (const dealii::Tensor<1, dim> &moment : linear)
+      sum += moment;
+    for (dealii::Tensor<1, dim> &value : linear)
+      value = dim * ((dim + 1.) * value - sum);
+    double largest = 0., square = 0.;
+    for (const std::array<double, dim> &barycentric : points)
       {
-        dealii::Point<dim> place;
+        dealii::Point<dim>     place;
+        dealii::Tensor<1, dim> rest;
         for (unsigned int k = 0; k < dim; ++k)
-          place += point.barycentric[k] * corners[k];
-        tractions.push_back(field_vector(traction, place));
-        largest = std::max(largest, tractions.back().norm());
+          {
+            place += barycentric[k] * corners[k];
+            rest -= barycentric[k] * linear[k];
+          }
+        const dealii::Tensor<1, dim> value = field_vector(traction, place);
+        largest                            = std::max(largest, value.norm());
+        square +=
+          (value + rest).norm_square() / static_cast<double>(points.size());
       }
-    const auto        linear = linear_part<dim>(points, tractions);
-    SideTraction<dim> result = {conjugates(linear), true};
-    for (unsigned int q = 0; q < points.size(); ++q)
-      {
-        dealii::Tensor<1, dim> rest = tractions[q];
-        for (unsigned int k = 0; k < dim; ++k)
-          rest -= points[q].barycentric[k] * linear[k];
-        result.is_linear =
-          result.is_linear && rest.norm() <= traction_rounding * largest;
-      }
-    return result;
+    if (std::sqrt(square) <= traction_rounding * largest)
+      square = 0.;
+    return {conjugates(linear), square};
   }
 
 

@@ -306,8 +306,9 @@ namespace Debond
       record.add("/certificate/loads_are_exact", certificate.loads_are_exact);
       if (!certificate.loads_are_exact)
         record.line("loads",
-                    "for loads that are linear on each side and constant in "
-                    "each element, with the means of the given ones");
+                    "taken as linear on each side and constant in each "
+                    "element; the interval is wider by the work of the rest "
+                    "at the result");
       record.add("/certificate/lower", certificate.lower);
       record.add("/certificate/upper", certificate.upper);
       record.line("interval",

@@ -53,6 +53,7 @@ namespace Debond
         current.certify(*scene, result.solve.u, proof, [&guard]() {
           return !guard.requested();
         });
+      result.certificate->include(result.solve.functional);
       if (guard.requested())
         result.solve.minimum.interrupted = true;
     };

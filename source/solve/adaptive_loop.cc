@@ -338,6 +338,8 @@ namespace Debond
       std::ostringstream text;
       text << "The interval is " << std::setprecision(2) << certificate.width()
            << " of |J| wide, Certificate/Target is " << target;
+      if (!certificate.loads_are_exact)
+        text << " (a vertex where a load jumps or bends makes it narrower)";
       return text.str();
     }
 
@@ -473,6 +475,7 @@ namespace Debond
                                    is_last,
                                    narrowest,
                                    [&]() { return !guard.requested(); });
+              result.certificate->include(result.solve.functional);
             }
           catch (const std::exception &error)
             {

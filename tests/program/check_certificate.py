@@ -201,6 +201,56 @@ def main(debond, n, first):
                                 f"{interval}, exit code {result.returncode}, "
                                 f"{result.stderr!r}")
 
+    # A load that jumps inside a side: on the other mesh at a vertex, so that
+    # both intervals are for one number; and each has J in it, whatever the
+    # quadrature.
+    jump = ["Loads/Traction top=0; if(x<0.4*7/24,0.5,-0.4)",
+            "Certificate/Kind=global"]
+    fine = run(debond, jump + ["Mesh/Cells=48, 4", "Mesh/Degree=2",
+                               "Contact law/Quadrature=exact"])[1]
+    if not fine["certificate"]["loads_are_exact"]:
+        failures.append(f"jump at a vertex: {fine['certificate']}")
+    for degree, quadrature in (("1", "nodal"), ("1", "exact"), ("2", "exact")):
+        for cells in ("8, 1", "16, 2", "32, 2"):
+            for target in ("", "0.02"):
+                result, summary = run(debond, jump + [
+                    f"Mesh/Cells={cells}", f"Mesh/Degree={degree}",
+                    f"Contact law/Quadrature={quadrature}"] + (
+                        [f"Certificate/Target={target}",
+                         "Accuracy/Maximum unknowns=9000"] if target else []))
+                interval = summary["certificate"] if summary else {
+                    "lower": 1., "upper": -1.}
+                if not (interval["lower"] <= summary["functional"] <=
+                        interval["upper"] and
+                        interval["lower"] <= fine["certificate"]["upper"] and
+                        fine["certificate"]["lower"] <= interval["upper"]):
+                    failures.append(
+                        f"jump, {cells} cells, degree {degree}, {quadrature}, "
+                        f"{target}: {summary['functional']} in {interval}?")
+
+    # What rounding does not let certify has its result, and the reason.
+    flat = ["Mesh/Lengths=0.0002, 0.06", "Mesh/Cells=4, 3",
+            "Boundary conditions/Clamped boundaries=top",
+            "Loads/Traction top=", "Loads/Traction bottom=0; 0.2",
+            "Material/Hypothesis=plane strain",
+            "Material/Poisson ratio=0.4999995"]
+    alone = run(debond, flat)[1]
+    result, summary = run(debond, flat + ["Certificate/Kind=global"])
+    if summary is None or not (
+            summary["functional"] == alone["functional"] and
+            "certificate" not in summary and any(
+                note.startswith("There is no certificate: to rounding")
+                for note in summary["notes"])):
+        failures.append(f"flat cells: exit code {result.returncode}, "
+                        f"{result.stderr!r}")
+    result, summary = run(debond, flat + [
+        "Certificate/Kind=global", "Certificate/Target=0.1"])
+    if not (result.returncode == 3 and
+            "There is no certificate: to rounding" in result.stderr and
+            pathlib.Path("output/contact_profile.csv").exists()):
+        failures.append(f"flat cells, target: exit code {result.returncode}, "
+                        f"{result.stderr!r}")
+
     # A flap that turns about a soft hinge opens the one contact side in reach
     # from far below the threshold to far above it, while its stresses are those
     # of the element: without the slope's term the bound is 5 % of the bonds'

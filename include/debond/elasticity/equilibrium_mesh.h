@@ -109,6 +109,14 @@ namespace Debond
       std::array<unsigned int, dim> unknowns;
     };
 
+    /// A side with a traction that is not linear.
+    struct LoadRest
+    {
+      Cell   cell;   ///< above it
+      double square; ///< the integral of the square of what is not linear
+      double width, height;
+    };
+
     /// @p thermal_stresses: of each active cell, see mean_thermal_stresses();
     /// none if empty. Keeps a reference to the mesh. Throws EquilibriumError
     /// for what is not done: displacements that are prescribed and not zero,
@@ -158,6 +166,12 @@ namespace Debond
     bool
     loads_are_exact() const;
 
+    const std::vector<LoadRest> &
+    load_rests() const
+    {
+      return all_rests;
+    }
+
   private:
     void
     find_elements();
@@ -195,7 +209,8 @@ namespace Debond
     std::vector<char> fixed;
     Eigen::VectorXd   loads;
 
-    bool exact_loads = true;
+    bool                  exact_loads = true;
+    std::vector<LoadRest> all_rests;
   };
 } // namespace Debond
 

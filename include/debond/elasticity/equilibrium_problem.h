@@ -89,6 +89,13 @@ namespace Debond
     std::vector<double>
     element_energies(const std::vector<CellDisplacement<dim>> &u) const;
 
+    /// Of each active cell how much work tractions on its sides may do that is
+    /// not in the loads here, nothing if all are linear: by Cauchy's inequality
+    /// for the strain energy of u and elementary_trace_constant(), which is of
+    /// rectangles, so that it is an estimate.
+    std::vector<double>
+    load_rests(const std::vector<CellDisplacement<dim>> &u) const;
+
     /// Of each active cell
     ///     1/2 int |C^{1/2} epsilon(u) - C^{-1/2} (sigma + p 1)|^2
     /// of u as above and of @p stresses without weights.

@@ -3,11 +3,14 @@
 #define debond_elasticity_load_vector_h
 
 #include <deal.II/base/function.h>
+#include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
 #include <deal.II/dofs/dof_handler.h>
 
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/body.h>
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -87,6 +90,15 @@ namespace Debond
   DofVector
   load_vector(const dealii::DoFHandler<dim> &dof_handler,
               const Loads<dim>              &loads);
+
+  /// The means on a face with these corners of a traction times each
+  /// barycentric coordinate, integrated as in load_vector(). @p n_faces: of the
+  /// side that the face is of.
+  template <int dim>
+  std::array<dealii::Tensor<1, dim>, dim>
+  traction_moments(const dealii::Function<dim>               &traction,
+                   const std::array<dealii::Point<dim>, dim> &corners,
+                   const unsigned int                         n_faces);
 } // namespace Debond
 
 #endif

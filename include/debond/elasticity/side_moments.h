@@ -36,15 +36,17 @@ namespace Debond
     /// area, vector by vector, see EquilibriumElement.
     std::array<dealii::Tensor<1, dim>, dim> conjugates;
 
-    bool is_linear; ///< to rounding
+    /// The mean square of what is not linear, 0 if that is rounding.
+    double rest;
   };
 
   /// @p traction: force per area (per length in 2D); @p corners: of the side,
-  /// in the order of its unknowns.
+  /// in the order of its unknowns; @p n_faces: on its boundary.
   template <int dim>
   SideTraction<dim>
   side_traction(const dealii::Function<dim>               &traction,
-                const std::array<dealii::Point<dim>, dim> &corners);
+                const std::array<dealii::Point<dim>, dim> &corners,
+                const unsigned int                         n_faces);
 
   /// The unknowns of a side of a displacement, vector by vector, see
   /// EquilibriumElement.

@@ -82,6 +82,12 @@ namespace Debond
     /// (upper - lower) / |upper|
     double
     width() const;
+
+    /// Makes the interval so wide that it has J of the result in it, which
+    /// quadrature of j_1 may have moved out: then the width says how far that J
+    /// can be from the minimum, too.
+    void
+    include(const double functional);
   };
 
 
