@@ -162,6 +162,7 @@ namespace
             "Mesh/Cells=5, 7"},
            {"Mesh/Source=generator",
             "Mesh/Generator=hyper_cube",
+            "Mesh/Arguments=0 : 1 : true",
             "Mesh/Rotation=7",
             "Mesh/Scale=3"},
            {"Material/Thermal expansion=1e-6"},
