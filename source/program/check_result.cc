@@ -40,6 +40,10 @@ namespace Debond
   {
     /// Energies are off by the square of what displacements are.
     constexpr double largest_relative_descent = 1e-6;
+
+    /// Up to here estimates are from half of the error to twice of it, see
+    /// doc/notes/error-estimate.md.
+    constexpr double largest_judged_error = 0.2;
   } // namespace
 
 
@@ -144,6 +148,11 @@ namespace Debond
             "the error of the mesh may be from two thirds to three times the "
             "estimate, which was not calibrated for " +
             reason);
+        else if (result.estimate->is_of_J &&
+                 result.estimate->relative() > largest_judged_error)
+          result.notes.push_back(
+            "the mesh is coarse: estimates of more than a fifth of J are from a "
+            "third of the error to twice of it");
       }
     catch (const std::invalid_argument &error)
       {

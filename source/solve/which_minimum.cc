@@ -223,7 +223,9 @@ namespace Debond
                         make_guess());
         const bool rests_on_coarse = result.closed_nodes > 0;
         add_search(guided.search, static_cast<unsigned int>(s.size()), result);
-        if (guided.proof && !rests_on_coarse)
+        // What a limit of time has cut may not have come to any bound.
+        if (guided.proof && !rests_on_coarse &&
+            std::isfinite(guided.proof->lower))
           add_proof(*guided.proof, lumped, condensed, result);
       }
 
