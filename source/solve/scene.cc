@@ -12,6 +12,7 @@
 #include <debond/solve/scene_conditions.h>
 #include <debond/solve/scene_loads.h>
 
+#include <algorithm>
 #include <functional>
 #include <set>
 
@@ -269,6 +270,15 @@ namespace Debond
         "decide nothing: all its vertices are held by supports, or as corners "
         "by fixed tangential displacements. A finer mesh has others, and "
         "Contact law/Tangential displacement = free does not hold corners");
+    const std::set<dealii::types::boundary_id> &clamped =
+      boundary_conditions.clamped;
+    for (const auto &[name, traction] : given.loads.tractions)
+      if (const std::set<dealii::types::boundary_id> &ids =
+            boundary_conditions.names.at(name);
+          traction.find_first_not_of("0;. ") != std::string::npos &&
+          std::includes(clamped.begin(), clamped.end(), ids.begin(), ids.end()))
+        body_notes.push_back("no effect of Loads/Traction " + name +
+                             ": the boundary is clamped");
     if (n_unknowns() == 0)
       body_notes.push_back("no vertex is free, so that there is nothing to "
                            "solve: J is that of the prescribed displacements");

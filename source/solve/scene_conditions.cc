@@ -6,7 +6,6 @@
 #include <debond/input/expression.h>
 #include <debond/solve/scene_conditions.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -96,14 +95,6 @@ namespace Debond
     for (const std::string &name : given.contact_boundaries)
       insert(boundaries.at(name), conditions.contact);
     conditions.names = boundaries;
-    for (const auto &[name, unused] : given.loads.tractions)
-      if (const std::set<dealii::types::boundary_id> &ids = boundaries.at(name);
-          std::includes(conditions.clamped.begin(),
-                        conditions.clamped.end(),
-                        ids.begin(),
-                        ids.end()))
-        throw PieceError("Loads/Traction " + name,
-                         "it has no effect, since the boundary is clamped");
     conditions.tangential_displacement_fixed =
       given.tangential_displacement_fixed;
     const auto &own = given.tangential_displacements;

@@ -181,7 +181,8 @@ namespace
         check("largest displacement",
               rest["largest_displacement"].get<double>(),
               1e-17);
-        check("no stress is said to change", rest["notes"].size() == 1);
+        check("no stress is said to change",
+              rest["notes"].dump().find("rounding") == std::string::npos);
 
         const Json path =
           solve_scene(scene + Values{"Loads/Traction top=0; -0.01",
