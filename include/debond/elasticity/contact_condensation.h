@@ -156,7 +156,7 @@ namespace Debond
                   const Eigen::MatrixXd     &free_motions)
   {
     const Eigen::VectorXd &g = condensed.load();
-    if (free_motions.cols() == 0 || !problem.unknowns().has_lifting())
+    if (free_motions.cols() == 0)
       return g;
     WorkOfLoads work =
       work_of_loads(problem,
