@@ -60,7 +60,7 @@ signal_when() {
     eval "$condition" && held=yes && break
     sleep 0.02
   done
-  kill -s "$signal" $process
+  kill -s "$signal" $process 2>/dev/null || true # it may have ended
   code=0
   wait $process 2>/dev/null || code=$?
   [ -n "$held" ] || fail "never: $condition; $(cat log errors)"
