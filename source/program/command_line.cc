@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/multithread_info.h>
 
+#include <debond/base/interrupt.h>
 #include <debond/base/run_watch.h>
 #include <debond/base/version.h>
 #include <debond/input/parameters.h>
@@ -19,8 +20,11 @@
 
 #include <unistd.h>
 
+#include <filesystem>
 #include <functional>
+#include <iomanip>
 #include <iostream>
+#include <map>
 
 namespace Debond
 {
@@ -29,11 +33,14 @@ namespace Debond
     namespace po = boost::program_options;
 
     const char *const usage =
-      "Usage: debond SCENE.prm [OPTIONS]\n"
+      "Usage: debond SCENE.prm... [OPTIONS]\n"
       "       debond --study STUDY.prm [OPTIONS]; see debond --study --help\n"
       "\n"
       "Solves the unilateral contact of an elastic body with an adhesive\n"
-      "foundation as the scene describes it.\n\n";
+      "foundation as the scene describes it. Several scenes are solved one\n"
+      "after the other, whatever becomes of the others, and the last lines\n"
+      "say how each has ended; each needs an output directory of its own. The\n"
+      "exit code is then that of the first one that is no success.\n\n";
 
     const char *const exit_codes =
       "\nExit codes:\n"
@@ -79,9 +86,9 @@ namespace Debond
     {
       po::options_description all;
       all.add(visible);
-      all.add_options()("scene", po::value<std::string>());
+      all.add_options()("scene", po::value<std::vector<std::string>>());
       po::positional_options_description positional;
-      positional.add("scene", 1);
+      positional.add("scene", -1);
 
       // Abbreviations would make every new option a breaking change.
       const int style = po::command_line_style::default_style &
@@ -130,16 +137,109 @@ namespace Debond
 
 
 
-    ExitCode
-    execute(const po::variables_map       &options,
-            const po::options_description &visible)
+    /// Reads the scene, if there is one, and what --set says. Throws BadInput.
+    void
+    read_table(const std::string              &scene,
+               const std::vector<std::string> &assignments,
+               SceneTable                     &table)
     {
-      if (options.count("help") > 0)
+      if (!scene.empty())
+        {
+          read_scene(scene, table);
+          if (table.has_unknown_section("Study"))
+            throw BadInput(
+              {scene + ": this is a study; run debond --study " + scene});
+        }
+      for (const std::string &assignment : assignments)
+        table.assign(assignment);
+    }
+
+
+
+    /// The options for each scene.
+    struct SceneOptions
+    {
+      std::vector<std::string> assignments;
+      bool                     validate = false;
+      bool                     restart  = false;
+    };
+
+    /// The output directories of scenes that have been read, with the scenes.
+    using Directories = std::map<std::filesystem::path, std::string>;
+
+    ExitCode
+    execute_scene(const std::string  &scene,
+                  const SceneOptions &options,
+                  Directories        &directories)
+    {
+      SceneTable table;
+      read_table(scene, options.assignments, table);
+      Parameters parameters          = table.parameters(scene);
+      parameters.checkpoints.restart = options.restart;
+
+      const auto [other, is_new] = directories.emplace(
+        std::filesystem::weakly_canonical(parameters.output.directory), scene);
+      if (!is_new && !options.validate)
+        throw BadInput({scene + ": the output directory " +
+                        parameters.output.directory + " is that of " +
+                        other->second + " as well; set Output/Directory"});
+      return parameters.dimension == 2 ?
+               run_or_validate<2>(parameters, options.validate) :
+               run_or_validate<3>(parameters, options.validate);
+    }
+
+
+
+    /// Does an action, and makes an exit code of what that throws.
+    using Guard = ExitCode(const std::function<ExitCode()> &);
+
+    ExitCode
+    execute_scenes(const std::vector<std::string> &scenes,
+                   const SceneOptions             &options,
+                   Guard                          &guard)
+    {
+      const InterruptGuard  interrupts;
+      Directories           directories;
+      std::vector<ExitCode> codes;
+      for (const std::string &scene : scenes)
+        {
+          if (scenes.size() > 1)
+            std::cout << (codes.empty() ? "" : "\n") << "== " << scene
+                      << std::endl;
+          RunWatch::has_result = false;
+          codes.push_back(
+            InterruptGuard::requested() ? ExitCode::interrupted : guard([&]() {
+              return execute_scene(scene, options, directories);
+            }));
+        }
+
+      ExitCode first_failure = ExitCode::success;
+      if (scenes.size() > 1)
+        std::cout << "\nexit code  scene\n";
+      for (unsigned int i = 0; i < scenes.size(); ++i)
+        {
+          if (scenes.size() > 1)
+            std::cout << std::setw(9) << static_cast<int>(codes[i]) << "  "
+                      << scenes[i] << std::endl;
+          if (first_failure == ExitCode::success)
+            first_failure = codes[i];
+        }
+      return first_failure;
+    }
+
+
+
+    ExitCode
+    execute(const int argc, const char *const argv[], Guard &guard)
+    {
+      const po::options_description visible = visible_options();
+      const po::variables_map       values  = parse(argc, argv, visible);
+      if (values.count("help") > 0)
         {
           std::cout << usage << visible << exit_codes;
           return ExitCode::success;
         }
-      if (options.count("version") > 0)
+      if (values.count("version") > 0)
         {
           std::cout << "Debond " << program_version() << "\nrevision "
                     << git_revision() << "\ndeal.II " << deal_ii_version()
@@ -147,40 +247,39 @@ namespace Debond
           return ExitCode::success;
         }
 
-      std::vector<std::string> assignments;
-      if (options.count("set") > 0)
-        assignments = options["set"].as<std::vector<std::string>>();
+      std::vector<std::string> scenes;
+      if (values.count("scene") > 0)
+        scenes = values["scene"].as<std::vector<std::string>>();
+      SceneOptions options;
+      if (values.count("set") > 0)
+        options.assignments = values["set"].as<std::vector<std::string>>();
+      options.validate = values.count("validate") > 0;
+      options.restart  = values.count("restart") > 0;
 
-      SceneTable table;
-      if (options.count("scene") > 0)
+      if (values.count("print-parameters") > 0)
         {
-          const std::string file = options["scene"].as<std::string>();
-          read_scene(file, table);
-          if (table.has_unknown_section("Study"))
-            throw BadInput(
-              {file + ": this is a study; run debond --study " + file});
-        }
-      for (const std::string &assignment : assignments)
-        table.assign(assignment);
-
-      if (options.count("print-parameters") > 0)
-        {
+          if (scenes.size() > 1)
+            throw BadInput({"--print-parameters is for one scene"});
+          SceneTable table;
+          read_table(scenes.empty() ? "" : scenes[0],
+                     options.assignments,
+                     table);
           if (!table.errors().empty())
             throw BadInput(table.errors());
           table.print(std::cout, true);
           return ExitCode::success;
         }
-
-      if (options.count("scene") == 0)
+      if (scenes.empty())
         throw BadInput({"no scene is given; see debond --help"});
+      return execute_scenes(scenes, options, guard);
+    }
 
-      const bool only_validate = options.count("validate") > 0;
-      Parameters parameters =
-        table.parameters(options["scene"].as<std::string>());
-      parameters.checkpoints.restart = options.count("restart") > 0;
-      return parameters.dimension == 2 ?
-               run_or_validate<2>(parameters, only_validate) :
-               run_or_validate<3>(parameters, only_validate);
+
+
+    ExitCode
+    guard_here(const std::function<ExitCode()> &action)
+    {
+      return report_errors("debond", action);
     }
 
 
@@ -188,15 +287,10 @@ namespace Debond
     /// Ranks agree on bad input and results, so the first one speaks for all.
     /// What happens to one alone, such as a lack of memory, ends them all.
     ExitCode
-    execute_on_ranks(const std::function<ExitCode()> &action)
+    guard_on_ranks(const std::function<ExitCode()> &action)
     {
-      static int                                     argc = 0;
-      static char                                  **argv = nullptr;
-      const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-      const bool                                     is_first =
+      const bool is_first =
         dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
-      if (!is_first)
-        std::cout.setstate(std::ios::failbit);
       return report_errors("debond", [&]() {
         try
           {
@@ -210,8 +304,7 @@ namespace Debond
           }
         catch (...)
           {
-            const ExitCode code =
-              report_errors("debond", []() -> ExitCode { throw; });
+            const ExitCode code = guard_here([]() -> ExitCode { throw; });
             MPI_Abort(MPI_COMM_WORLD, static_cast<int>(code));
             return code;
           }
@@ -228,12 +321,14 @@ namespace Debond
     // operations would only change rounding.
     dealii::MultithreadInfo::set_thread_limit(1);
     use_one_blas_thread_by_default();
-    RunWatch   watch(std::cout, static_cast<int>(ExitCode::interrupted));
-    const auto execute_here = [&]() {
-      const po::options_description visible = visible_options();
-      return execute(parse(argc, argv, visible), visible);
-    };
-    return n_started_ranks() == 1 ? report_errors("debond", execute_here) :
-                                    execute_on_ranks(execute_here);
+    RunWatch watch(std::cout, static_cast<int>(ExitCode::interrupted));
+    if (n_started_ranks() == 1)
+      return guard_here([&]() { return execute(argc, argv, guard_here); });
+
+    start_mpi();
+    if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
+      std::cout.setstate(std::ios::failbit);
+    return guard_on_ranks(
+      [&]() { return execute(argc, argv, guard_on_ranks); });
   }
 } // namespace Debond

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
 #include <debond/program/ranks.h>
 
 #include <algorithm>
@@ -15,5 +17,15 @@ namespace Debond
       if (const char *const text = std::getenv(name))
         n = std::max(n, std::atoi(text));
     return static_cast<unsigned int>(n);
+  }
+
+
+
+  void
+  start_mpi()
+  {
+    static int                                            argc = 0;
+    static char                                         **argv = nullptr;
+    static const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   }
 } // namespace Debond

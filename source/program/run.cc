@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/timer.h>
 
 #include <debond/base/append.h>
@@ -10,6 +9,7 @@
 #include <debond/output/report.h>
 #include <debond/program/certify_result.h>
 #include <debond/program/check_result.h>
+#include <debond/program/ranks.h>
 #include <debond/program/run.h>
 #include <debond/program/session.h>
 #include <debond/solve/load_path.h>
@@ -21,26 +21,6 @@
 
 namespace Debond
 {
-  namespace
-  {
-    using MPI = dealii::Utilities::MPI::MPI_InitFinalize;
-
-    /// MPI for this process alone, if it is needed: Trilinos needs it even in
-    /// one process; others need not wait for it.
-    std::unique_ptr<MPI>
-    initialize_mpi(const MethodChoice &choice)
-    {
-      static int    argc = 0;
-      static char **argv = nullptr;
-      if (choice.linear_solver != LinearSolver::multigrid ||
-          dealii::Utilities::MPI::job_supports_mpi())
-        return nullptr;
-      return std::make_unique<MPI>(argc, argv, 1);
-    }
-  } // namespace
-
-
-
   template <int dim>
   ExitCode
   run(const Parameters &parameters, std::ostream &out, const bool terminal)
@@ -52,7 +32,9 @@ namespace Debond
     const OutputParameters   &output      = parameters.output;
     const AccuracyParameters &accuracy    = parameters.accuracy;
     MethodChoice choice = choose_method(parameters, solver, accuracy);
-    const std::unique_ptr<MPI>        mpi   = initialize_mpi(choice);
+    // Trilinos needs MPI even in one process; others need not wait for it.
+    if (choice.linear_solver == LinearSolver::multigrid)
+      start_mpi();
     std::shared_ptr<const Scene<dim>> scene = make_first_scene<dim>(
       parameters, accuracy, matrix_storage(choice), parameters.start_file());
     check_supports_of_method(choice, solver, *scene);

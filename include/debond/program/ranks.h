@@ -8,6 +8,11 @@ namespace Debond
   /// says in the environment; 1 if there is none. MPI need not be there yet.
   unsigned int
   n_started_ranks();
+
+  /// Starts MPI with one thread, unless it has been started, until the program
+  /// ends.
+  void
+  start_mpi();
 } // namespace Debond
 
 #endif
