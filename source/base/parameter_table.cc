@@ -567,18 +567,6 @@ namespace Debond
 
 
 
-  std::map<std::string, std::string>
-  ParameterTable::values_of_state() const
-  {
-    std::map<std::string, std::string> result;
-    for (const auto &[path, entry] : entries)
-      if (entry.restart == AtRestart::same)
-        result[path] = get(path);
-    return result;
-  }
-
-
-
   std::vector<std::string>
   ParameterTable::known_entries() const
   {

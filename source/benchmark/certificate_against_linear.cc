@@ -20,7 +20,7 @@ namespace Debond
     const auto         scene =
       std::make_shared<const Scene<2>>(parameters,
                                        matrix_storage(choice),
-                                       parameters.start_file());
+                                       parameters.solver.start);
     const SolveResult        solved  = solve(choice, parameters.solver, *scene);
     const ElasticProblem<2> &problem = scene->problem();
 

@@ -114,7 +114,7 @@ namespace Debond
       if (scenes[storage] == nullptr)
         scenes[storage] = std::make_unique<Scene<dim>>(parameters,
                                                        storage,
-                                                       parameters.start_file());
+                                                       parameters.solver.start);
       return *scenes[storage];
     };
     const ElasticProblem<dim> &problem =

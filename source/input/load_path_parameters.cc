@@ -141,7 +141,7 @@ namespace Debond
       {{"none", GlobalBranch::none},
        {"search", GlobalBranch::search},
        {"prove", GlobalBranch::prove}},
-      "What is computed beside the states that the load path leads to: search is the lowest minimum that a search finds at each factor (full, unless Solver/Search is quick), prove has it proved as well, with the limits of Solver/Proof for each factor, and needs nodal quadrature");
+      "What is computed beside the states that the load path leads to: search is the lowest minimum that a search finds at each factor, prove has it proved as well, with the limits of Solver/Proof for each factor, and needs nodal quadrature");
     table.bind(
       "Load path/Arc",
       load_path.arc,

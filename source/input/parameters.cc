@@ -114,7 +114,7 @@ namespace Debond
     laws.bind(*this);
     bind_supports(p.supports, *this);
     bind_contact(p, *this);
-    bind_solver(p.solver, p.checkpoints, *this);
+    bind_solver(p.solver, *this);
     bind_certificate(p.certificate, *this);
     bind_accuracy(p.accuracy, *this);
     bind_verification(p.verification, *this);
@@ -330,9 +330,6 @@ namespace Debond
              {has_path && !has_branches,
               "the load path has no global branch",
               "Solver/Search"},
-             {search != BondSearchChoice::full && !has_branches,
-              "the search is not full",
-              "Solver/Search moves"},
              {!searches && !p.solver.prove &&
                 p.certificate.kind == CertificateKind::none,
               "nothing is proved",
@@ -344,10 +341,7 @@ namespace Debond
               "Solver/Linear solver, Solver/Majorise minimise/"},
              {is_energy && !searches && !p.solver.prove,
               method,
-              "Solver/Majorise minimise/"},
-             {!is_euclidean && !is_energy,
-              method,
-              "Solver/Checkpoint interval"}})
+              "Solver/Majorise minimise/"}})
         if (is_idle)
           table.without_effect(entries, reason);
     }
@@ -430,9 +424,6 @@ namespace Debond
       refuse(p.solver.prove,
              "Solver/Prove",
              "nothing is proved on meshes that are refined");
-      refuse(p.checkpoints.interval > 0.,
-             "Solver/Checkpoint interval",
-             "there are no checkpoints of meshes that are refined");
     }
   } // namespace
 
@@ -486,9 +477,8 @@ namespace Debond
       p.notes.push_back("no entry of the scene uses " + join(unused, ", "));
     std::ostringstream effective;
     print(effective, false);
-    p.effective_scene   = effective.str();
-    p.checkpoints.state = values_of_state();
-    p.locations         = locations();
+    p.effective_scene = effective.str();
+    p.locations       = locations();
     return p;
   }
 } // namespace Debond

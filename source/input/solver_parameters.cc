@@ -151,26 +151,6 @@ namespace Debond
 
 
 
-    /// The moves of a full search by name.
-    BranchSearchParameters
-    search_with(const std::string &text)
-    {
-      const std::vector<std::string> moves =
-        dealii::Utilities::split_string_list(text, ',');
-      const auto has = [&moves](const std::string &move) {
-        return std::find(moves.begin(), moves.end(), move) != moves.end();
-      };
-      BranchSearchParameters search;
-      search.starts = has("starts");
-      search.flips  = has("flips");
-      search.splits = has("splits");
-      if (!has("shifts"))
-        search.maximum_shift = 0;
-      return search;
-    }
-
-
-
     void
     bind_search(SolverParameters &solver, ParameterTable &table)
     {
@@ -179,19 +159,8 @@ namespace Debond
         solver.search,
         {{"automatic", BondSearchChoice::automatic},
          {"none", BondSearchChoice::none},
-         {"quick", BondSearchChoice::quick},
          {"full", BondSearchChoice::full}},
-        "Whether a lower minimum than the one found is searched for by changing which bonds are broken, with a direct linear solver: quick starts from rest and from all bonds broken and moves the edges of the broken patches by a node, full does what automatic does, and then moves them by up to four nodes and breaks, closes and splits patches; automatic is none unless the method is automatic, and then as much of this as it takes until a lower bound of J (with nodal quadrature) or the minimum on coarser contact nodes says that it is enough, with more than 200 contact nodes on coarser ones but for the starts from rest and from all bonds broken",
-        AtRestart::any);
-      table.declare(
-        "Solver/Search moves",
-        "starts, shifts, flips, splits",
-        list_of({"starts", "shifts", "flips", "splits"}),
-        "The moves of Search = full: starts from rest and from all bonds broken; shifts of the edges of broken patches; flips, which break or close a patch; splits of patches",
-        "none",
-        [&solver](const std::string &text) {
-          solver.full_search = search_with(text);
-        },
+        "Whether a lower minimum than the one found is searched for by changing which bonds are broken, with a direct linear solver: full does what automatic does, and then starts from rest and from all bonds broken, moves the edges of the broken patches by up to four nodes and breaks, closes and splits patches; automatic is none unless the method is automatic, and then as much of this as it takes until a lower bound of J (with nodal quadrature) or the minimum on coarser contact nodes says that it is enough, with more than 200 contact nodes on coarser ones but for the starts from rest and from all bonds broken",
         AtRestart::any);
     }
 
@@ -251,9 +220,7 @@ namespace Debond
 
 
   void
-  bind_solver(SolverParameters     &solver,
-              CheckpointParameters &checkpoints,
-              ParameterTable       &table)
+  bind_solver(SolverParameters &solver, ParameterTable &table)
   {
     table.bind(
       "Solver/Method",
@@ -289,13 +256,6 @@ namespace Debond
           read_number(text, limit);
         solver.memory_limit = limit * (1 << 30);
       },
-      AtRestart::any);
-    table.bind(
-      "Solver/Checkpoint interval",
-      checkpoints.interval,
-      number(">= 0", is_not_negative),
-      "Wall time after which the bundle methods write their state again, into the file checkpoint in the output directory, and when they end without success; 'debond SCENE.prm --restart' goes on from it with the same iterates. 0 writes none",
-      "seconds",
       AtRestart::any);
     bind_euclidean_bundle(solver.bundle, solver.start, table);
     bind_energy_bundle(solver.energy_bundle, table);

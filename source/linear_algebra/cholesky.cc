@@ -147,24 +147,4 @@ namespace Debond
     L.solveInPlace(b);
     L.transpose().solveInPlace(b);
   }
-
-
-
-  void
-  UpdatableCholesky::save(OutArchive &archive) const
-  {
-    save_matrix(archive,
-                factor.topLeftCorner(n, n).triangularView<Eigen::Lower>());
-  }
-
-
-
-  void
-  UpdatableCholesky::load(InArchive &archive)
-  {
-    const Eigen::MatrixXd loaded = load_matrix(archive);
-    require_fit(loaded.rows() <= factor.rows());
-    n                          = static_cast<unsigned int>(loaded.rows());
-    factor.topLeftCorner(n, n) = loaded;
-  }
 } // namespace Debond

@@ -79,18 +79,6 @@ namespace Debond
 
 
   void
-  report_checkpoints(const RunCheckpoints &checkpoints, Record &record)
-  {
-    const std::string description = checkpoints.description();
-    if (!record.has_details() || description.empty())
-      return;
-    record.heading("Checkpoints");
-    record.heading("  " + description);
-  }
-
-
-
-  void
   report_files(const std::vector<std::string> &files,
                const std::string              &no_pictures,
                Record                         &record)

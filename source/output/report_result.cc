@@ -120,8 +120,6 @@ namespace Debond
       record.add("/minimum/search_failures", minimum.search_failures);
       record.add("/minimum/search_nodes", minimum.search_nodes);
       record.add("/minimum/closed_nodes", minimum.closed_nodes);
-      record.add("/minimum/front_windows", minimum.front_windows);
-      record.add("/minimum/front_trials", minimum.front_trials);
       if (is_success)
         {
           std::string text = kind;
@@ -131,12 +129,6 @@ namespace Debond
               (minimum.search_nodes < n_nodes ?
                  words(" on ", minimum.search_nodes, " of the contact nodes") :
                  "");
-          if (details && minimum.front_windows > 0)
-            text += words(", ",
-                          minimum.front_trials,
-                          " in ",
-                          minimum.front_windows,
-                          " windows on fronts");
           if (details && minimum.closed_nodes > 0)
             text += words(", the minimum on ",
                           minimum.closed_nodes,

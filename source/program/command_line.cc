@@ -65,9 +65,6 @@ namespace Debond
         ("print-parameters",
          "print all parameters with their documentation as a scene, with the "
          "defaults or the values of SCENE.prm and --set") //
-        ("restart",
-         "go on from the checkpoint in the output directory, see "
-         "Solver/Checkpoint interval")                      //
         ("validate", "read and check the scene, then stop") //
         ("set",
          po::value<std::vector<std::string>>()->value_name(
@@ -129,7 +126,7 @@ namespace Debond
         choose_method(parameters, parameters.solver, parameters.accuracy);
       const Scene<dim> scene(parameters,
                              MatrixStorage::serial,
-                             parameters.start_file());
+                             parameters.solver.start);
       check_supports_of_method(choice, parameters.solver, scene);
       std::cout << parameters.scene << ": valid" << std::endl;
       return ExitCode::success;
@@ -161,7 +158,6 @@ namespace Debond
     {
       std::vector<std::string> assignments;
       bool                     validate = false;
-      bool                     restart  = false;
     };
 
     /// The output directories of scenes that have been read, with the scenes.
@@ -174,8 +170,7 @@ namespace Debond
     {
       SceneTable table;
       read_table(scene, options.assignments, table);
-      Parameters parameters          = table.parameters(scene);
-      parameters.checkpoints.restart = options.restart;
+      const Parameters parameters = table.parameters(scene);
 
       const auto [other, is_new] = directories.emplace(
         std::filesystem::weakly_canonical(parameters.output.directory), scene);
@@ -254,7 +249,6 @@ namespace Debond
       if (values.count("set") > 0)
         options.assignments = values["set"].as<std::vector<std::string>>();
       options.validate = values.count("validate") > 0;
-      options.restart  = values.count("restart") > 0;
 
       if (values.count("print-parameters") > 0)
         {

@@ -36,7 +36,7 @@ namespace Debond
     if (choice.linear_solver == LinearSolver::multigrid)
       start_mpi();
     std::shared_ptr<const Scene<dim>> scene = make_first_scene<dim>(
-      parameters, accuracy, matrix_storage(choice), parameters.start_file());
+      parameters, accuracy, matrix_storage(choice), parameters.solver.start);
     check_supports_of_method(choice, solver, *scene);
     // Before the solve, so that nothing is lost if it is not finite somewhere.
     error_of(parameters.verification.exact_displacement,
@@ -44,9 +44,6 @@ namespace Debond
              DofVector(scene->problem().unknowns().n_dofs()));
     const std::unique_ptr<const Certifier<dim>> certifier =
       make_certifier(certificate, scene, solver.memory_limit);
-    RunCheckpoints checkpoints(parameters.checkpoints,
-                               output.directory,
-                               choice);
 
     RunResult<dim>          result;
     std::string             no_pictures;
@@ -77,7 +74,6 @@ namespace Debond
 
     Record record(output.machine_details);
     report_problem(*scene, choice, solver.bundle.u, record);
-    report_checkpoints(checkpoints, record);
     record.print(out);
 
     result.times = {{"mesh", scene->mesh_seconds()},
@@ -132,8 +128,7 @@ namespace Debond
                            solver,
                            *scene,
                            record.has_details() ? &out : nullptr,
-                           terminal,
-                           &checkpoints);
+                           terminal);
     // On a refined mesh the states are computed again, now with all that is
     // written of them.
     if (!load_path.factors.empty() &&
@@ -187,9 +182,9 @@ namespace Debond
                                            parameters.contact_boundaries,
                                            parameters.degree),
                                 dim));
-    std::string output_error = finish_checkpoints(checkpoints, result, written);
     report_result(*scene, choice, result, record);
 
+    std::string output_error;
     timer.restart();
     try
       {

@@ -94,9 +94,6 @@ namespace Debond
       refuse(!parameters.verification.exact_displacement.empty(),
              "Verification/Exact displacement",
              "several ranks compare no displacements");
-      refuse(parameters.checkpoints.restart,
-             "--restart",
-             "several ranks have no checkpoints");
       refuse(!parameters.body->has_coarse_levels(),
              box != nullptr ? "Mesh/Cells" : "Mesh/Refinements",
              "several ranks need coarser levels, and this " +

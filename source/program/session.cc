@@ -38,27 +38,6 @@ namespace Debond
 
 
   template <int dim>
-  std::string
-  finish_checkpoints(const RunCheckpoints     &checkpoints,
-                     RunResult<dim>           &result,
-                     std::vector<std::string> &written)
-  {
-    if (result.is_success())
-      {
-        checkpoints.remove();
-        return "";
-      }
-    if (checkpoints.written())
-      {
-        written.push_back(checkpoints.file_name());
-        result.message += " The run goes on with --restart.";
-      }
-    return checkpoints.error();
-  }
-
-
-
-  template <int dim>
   ExitCode
   conclude(const RunResult<dim> &result, const std::string &output_error)
   {
@@ -81,8 +60,6 @@ namespace Debond
 
 
 
-  template decltype(finish_checkpoints<2>) finish_checkpoints<2>;
-  template decltype(finish_checkpoints<3>) finish_checkpoints<3>;
-  template decltype(conclude<2>)           conclude<2>;
-  template decltype(conclude<3>)           conclude<3>;
+  template decltype(conclude<2>) conclude<2>;
+  template decltype(conclude<3>) conclude<3>;
 } // namespace Debond

@@ -419,7 +419,7 @@ namespace Debond
             if (problem.load_path.factors.empty())
               {
                 solution = solve(
-                  choice, solver, here, nullptr, false, nullptr, start.get());
+                  choice, solver, here, nullptr, false, start.get());
                 functional = solution.functional;
                 if (can_be_verified(solution.status) &&
                     !solution.minimum.interrupted)

@@ -45,7 +45,6 @@ namespace Debond
     solve_by_energy_bundle(ProximalBundleParameters bundle,
                            const Scene<dim>        &scene,
                            const Condensation      &condensed,
-                           Checkpoints             *checkpoints,
                            Watch                   &watch,
                            Eigen::VectorXd         &s,
                            SolveResult             &result)
@@ -70,8 +69,7 @@ namespace Debond
       add_bundle_result(ProximalBundle<Vector>(bundle).minimize(functional,
                                                                 direction,
                                                                 x,
-                                                                std::ref(watch),
-                                                                checkpoints),
+                                                                std::ref(watch)),
                         result);
       s = eigen_view(x);
       // The functional differs from J by the energy at s = 0.
@@ -132,7 +130,6 @@ namespace Debond
   solve_condensed(const std::string      &method,
                   const SolverParameters &parameters,
                   const Scene<dim>       &scene,
-                  Checkpoints            *checkpoints,
                   const Vector           *start,
                   Watch                  &watch,
                   SolveResult            &result)
@@ -164,7 +161,6 @@ namespace Debond
       solve_by_energy_bundle(parameters.energy_bundle,
                              scene,
                              condensed,
-                             checkpoints,
                              watch,
                              s,
                              result);

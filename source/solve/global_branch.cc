@@ -23,9 +23,8 @@ namespace Debond
         , adhesion(adhesion)
         , condensed(condensed)
       {
-        if (parameters.search != BondSearchChoice::quick)
-          parameters.search = BondSearchChoice::full;
-        parameters.prove = false;
+        parameters.search = BondSearchChoice::full;
+        parameters.prove  = false;
       }
 
       void

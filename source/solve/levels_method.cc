@@ -10,7 +10,6 @@
 #include <debond/input/bad_input.h>
 #include <debond/optimization/majorise/restricted_function.h>
 #include <debond/solve/condensed_methods.h>
-#include <debond/solve/front_search.h>
 #include <debond/solve/levels_method.h>
 #include <debond/solve/multigrid_method.h>
 #include <debond/solve/refine_result.h>
@@ -27,11 +26,6 @@ namespace Debond
   {
     using Vector = DofVector;
 
-
-
-    /// Each lowers J; fronts that are still moving then are left where they
-    /// are.
-    constexpr unsigned int most_front_rounds = 20;
 
     /// A level needs to be solved to what the next finer one makes of it.
     constexpr double coarse_level_tolerance = 1e-4;
@@ -129,7 +123,6 @@ namespace Debond
                           coarse,
                           coarse_scene,
                           nullptr,
-                          nullptr,
                           watch,
                           start);
           result.notes                   = start.notes;
@@ -221,45 +214,6 @@ namespace Debond
         }
       return u;
     }
-
-
-
-    /// The search on coarser meshes knows fronts to the size of their elements.
-    template <int dim>
-    void
-    improve_fronts(const SolverParameters &parameters,
-                   const Scene<dim>       &scene,
-                   const double            energy,
-                   MajorantProblem        &problem,
-                   Watch                  &watch,
-                   SolveResult            &result)
-    {
-      if (scene.law().curvature(0.) == 0.)
-        return;
-      const MajoriseMinimise method(parameters.majorise_minimise);
-      WhichMinimum          &minimum = result.minimum;
-      for (unsigned int round = 1; can_be_verified(result.status); ++round)
-        {
-          const dealii::Timer     timer;
-          const FrontSearchResult search = search_fronts(
-            scene, method, [&]() { return watch.may_go_on(); }, result.u);
-          result.parts["fronts"] += timer.wall_time();
-          minimum.front_windows += search.windows;
-          minimum.front_trials += search.trials;
-          minimum.search_improvements += search.improvements;
-          minimum.search_failures += search.failures;
-          minimum.interrupted = !watch.may_go_on();
-          const bool is_last  = !search.complete || round == most_front_rounds;
-          if (is_last && (!search.complete || search.improvements > 0))
-            result.notes.push_back("the search for better fronts of bonds was "
-                                   "ended before it had tried all of them");
-          if (search.improvements > 0)
-            minimise_on_all_unknowns(
-              parameters, energy, problem, watch, result);
-          if (is_last || search.improvements == 0)
-            return;
-        }
-    }
   } // namespace
 
 
@@ -305,13 +259,11 @@ namespace Debond
                               [&watch]() { return watch.may_go_on(); });
     LevelCorrection<dim> solver(*levels);
     minimise_on_all_unknowns(parameters, energy, problem, watch, result);
-    // Windows are cut out of a whole mesh.
-    if (wants_search(parameters) && scene.piece() == nullptr)
-      improve_fronts(parameters, scene, energy, problem, watch, result);
-    else if (wants_search(parameters) && scene.law().branches().size() > 1)
+    // The search was done on a coarser mesh.
+    if (wants_search(parameters) && scene.law().branches().size() > 1)
       result.notes.push_back(
-        "fronts of bonds are as the search on coarser meshes left them: several "
-        "ranks do not look for better ones on the finest mesh, one does");
+        "fronts of bonds are as the search on coarser meshes left them; with "
+        "Solver/Linear solver = direct it is done on the finest one");
     refine_result(scene, solver, watch, result);
   }
 

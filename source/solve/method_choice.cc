@@ -177,8 +177,7 @@ namespace Debond
 
     if (!problem.load_path.factors.empty())
       check_load_path(problem, solver.prove, choice);
-    const bool searches = solver.search == BondSearchChoice::quick ||
-                          solver.search == BondSearchChoice::full;
+    const bool searches = solver.search == BondSearchChoice::full;
     if ((searches || solver.prove) &&
         choice.linear_solver != LinearSolver::direct)
       throw BadInput(

@@ -28,7 +28,6 @@ namespace Debond
     void
     solve_by_euclidean_bundle(const ProximalBundleParameters &parameters,
                               const Scene<dim>               &scene,
-                              Checkpoints                    *checkpoints,
                               Watch                          &watch,
                               SolveResult                    &result)
     {
@@ -41,8 +40,7 @@ namespace Debond
           .minimize(scene.functional(),
                     scene.problem().unknowns().contact().bounds(),
                     result.u,
-                    std::ref(watch),
-                    checkpoints),
+                    std::ref(watch)),
         result);
       for (BundleIteration &iteration : result.bundle_history)
         iteration.functional += energy;
@@ -83,8 +81,7 @@ namespace Debond
       refuse("Prove",
              "false: J may fall without end, and then there is no global "
              "minimum");
-    if (parameters.search == BondSearchChoice::quick ||
-        parameters.search == BondSearchChoice::full)
+    if (parameters.search == BondSearchChoice::full)
       refuse("Search", "none: J may fall without end");
     if (!problem.load_path.factors.empty() &&
         problem.load_path.global_branch == GlobalBranch::prove)
@@ -116,7 +113,6 @@ namespace Debond
         const Scene<dim>       &scene,
         std::ostream           *out,
         const bool              terminal,
-        Checkpoints            *checkpoints,
         const Vector           *start)
   {
     SolveResult result;
@@ -134,14 +130,14 @@ namespace Debond
                     std::make_unique<Watch>(guard, ranks);
       if (choice.method == SolverMethod::euclidean_bundle)
         solve_by_euclidean_bundle(
-          parameters.bundle, scene, checkpoints, *watch, result);
+          parameters.bundle, scene, *watch, result);
       else if (choice.has_levels)
         solve_by_levels(choice, parameters, scene, guard, *watch, result);
       else if (choice.linear_solver == LinearSolver::multigrid)
         solve_by_multigrid(parameters, scene, guard, *watch, result);
       else
         solve_condensed(
-          choice.method, parameters, scene, checkpoints, start, *watch, result);
+          choice.method, parameters, scene, start, *watch, result);
     }
     if (choice.linear_solver != LinearSolver::direct)
       result.minimum.kind = kind_without_search(scene.law(),

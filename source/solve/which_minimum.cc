@@ -37,20 +37,6 @@ namespace Debond
 
 
 
-    BranchSearchParameters
-    search_parameters(const SolverParameters &parameters)
-    {
-      if (parameters.search == BondSearchChoice::full)
-        return parameters.full_search;
-      BranchSearchParameters quick;
-      quick.maximum_shift = 1;
-      quick.flips         = false;
-      quick.splits        = false;
-      return quick;
-    }
-
-
-
     void
     add_search(const BranchSearchResult &search,
                const unsigned int        n_nodes,
@@ -517,17 +503,14 @@ namespace Debond
         };
         MinimumSearch<dim> search(
           parameters, boundary, law, adhesion, condensed, has_time, s, result);
+        if (s.size() <= largest_automatic_search)
+          search.search_all_nodes();
+        else
+          search.search_coarse_nodes();
         // Full is what automatic does, and more.
-        if (parameters.search != BondSearchChoice::quick)
-          {
-            if (s.size() <= largest_automatic_search)
-              search.search_all_nodes();
-            else
-              search.search_coarse_nodes();
-          }
-        if (parameters.search != BondSearchChoice::automatic &&
+        if (parameters.search == BondSearchChoice::full &&
             result.kind != MinimumKind::global &&
-            search.search_nodes(search_parameters(parameters)))
+            search.search_nodes(BranchSearchParameters()))
           result.closed_nodes = 0;
         const bool is_cut = !has_time() && result.kind != MinimumKind::global;
         if (is_cut || (result.kind != MinimumKind::best_known &&

@@ -180,13 +180,10 @@ namespace
            {"Solver/Method=energy bundle",
             "Solver/Prove=true",
             "Solver/Majorise minimise/Stop tolerance=1e-7",
-            "Solver/Proof/Maximum nodes=5",
-            "Solver/Checkpoint interval=5"},
+            "Solver/Proof/Maximum nodes=5"},
            {"Solver/Method=euclidean bundle",
             "Solver/Linear solver=direct",
             "Solver/Energy bundle/Bundle size=9"},
-           {"Solver/Checkpoint interval=5", "Solver/Search moves=flips"},
-           {"Solver/Search=full", "Solver/Search moves=flips"},
            {"Certificate/Target=0.1"}})
       {
         for (const std::string &assignment : assignments)
@@ -194,18 +191,6 @@ namespace
                     << (&assignment == &assignments.back() ? "\n" : " | ");
         print_notes("", assignments);
       }
-  }
-
-
-
-  void
-  test_restart()
-  {
-    const SceneTable                         table;
-    const std::map<std::string, std::string> state = table.values_of_state();
-    for (const auto &[path, unused] : table.locations())
-      if (state.count(path) == 0)
-        std::cout << "  " << path << std::endl;
   }
 } // namespace
 
@@ -237,6 +222,4 @@ main()
                "Even=3"});
   std::cout << "== Entries without effect" << std::endl;
   test_entries_without_effect();
-  std::cout << "== What a restart may change" << std::endl;
-  test_restart();
 }

@@ -427,7 +427,7 @@ namespace
       !multigrid && method != "euclidean bundle" && !own.held_by_bonds;
     attack.set("Solver/Search",
                direct ? random.choice<std::string>(
-                          {"automatic", "full", "quick", "none"}) :
+                          {"automatic", "full", "none"}) :
                         "automatic");
     attack.set("Solver/Prove",
                direct && own.quadrature == "nodal" && random.chance(0.3) ?

@@ -23,20 +23,6 @@ for file in parameters.prm body.vtu contact.vtu contact_profile.csv \
   [ ! -e full/summary.json ] || fail "The directory says that it is complete."
 done
 
-# A checkpoint: the run goes on, and says in the end that it is not saved.
-(
-  ulimit -f 20
-  expect_code 5 "$debond" bar.prm --set "Solver/Method=euclidean bundle" \
-    --set "Mesh/Cells=40, 4" --set "Output/Body VTU=false" \
-    --set "Output/Contact VTU=false" --set "Output/Displacement=false" \
-    --set "Solver/Checkpoint interval=1e6" \
-    --set "Solver/Euclidean bundle/Maximum iterations=3"
-)
-grep -q "Cannot write output/bar/checkpoint: File too large" errors ||
-  fail "The checkpoint is not named: $(cat errors)"
-[ ! -e output/bar/checkpoint ] || fail "half a checkpoint"
-[ -s output/bar/summary.json ] || fail "The results are not written."
-
 # A limit of the shell, in blocks of 1 kB: VTU files are larger, others are not.
 (
   ulimit -f 8

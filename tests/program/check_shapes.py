@@ -317,7 +317,7 @@ class Scene:
             ["automatic", "automatic", "majorise minimise", "energy bundle"]))
         self.set("Solver/Linear solver", "direct")
         self.set("Solver/Search",
-                 draw.choice(["automatic", "automatic", "full", "quick", "none"]))
+                 draw.choice(["automatic", "automatic", "full", "none"]))
         self.set("Solver/Prove", "true" if self.quadrature == "nodal"
                  and draw.chance(0.3) else "false")
         self.set("Solver/Proof/Maximum time", "10")

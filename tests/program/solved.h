@@ -42,7 +42,6 @@ solved(const Debond::Parameters &parameters,
                        scene,
                        nullptr,
                        false,
-                       nullptr,
                        start);
 }
 

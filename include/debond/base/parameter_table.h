@@ -155,10 +155,6 @@ namespace Debond
     std::string
     get(const std::string &path) const;
 
-    /// All values that have to be the same at a restart, by path.
-    std::map<std::string, std::string>
-    values_of_state() const;
-
     /// Where each entry was set, "FILE:LINE"; the file if it was not.
     std::map<std::string, std::string>
     locations() const;

@@ -22,7 +22,6 @@ namespace Debond
   struct Parameters : ProblemParameters
   {
     SolverParameters       solver;
-    CheckpointParameters   checkpoints;
     AccuracyParameters     accuracy;
     VerificationParameters verification;
     CertificateParameters  certificate;
@@ -33,14 +32,6 @@ namespace Debond
 
     /// What is odd in the scene, for its user.
     std::vector<std::string> notes;
-
-    /// File with the first iterate, empty for that at rest. A run that restarts
-    /// has its own.
-    std::string
-    start_file() const
-    {
-      return checkpoints.restart ? "" : solver.start;
-    }
   };
 
 

@@ -19,7 +19,6 @@ namespace Debond
   {
     automatic, ///< what it takes if the method is automatic, else none
     none,
-    quick,
     full
   };
 
@@ -67,7 +66,6 @@ namespace Debond
 
     MajoriseMinimiseParameters majorise_minimise;
     BondSearchChoice           search = BondSearchChoice::automatic;
-    BranchSearchParameters     full_search;
 
     /// What automatic may take beside a part of the solve.
     double search_seconds = std::numeric_limits<double>::infinity();
@@ -78,20 +76,9 @@ namespace Debond
 
 
 
-  struct CheckpointParameters
-  {
-    double interval = 0.; ///< seconds, 0 for none
-    bool   restart  = false;
-
-    /// The values that have to be the same at a restart, by path.
-    std::map<std::string, std::string> state;
-  };
-
   /// The section Solver.
   void
-  bind_solver(SolverParameters     &solver,
-              CheckpointParameters &checkpoints,
-              ParameterTable       &table);
+  bind_solver(SolverParameters &solver, ParameterTable &table);
 
   /// What its patterns leave to be checked.
   void

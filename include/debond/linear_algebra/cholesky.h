@@ -2,8 +2,6 @@
 #ifndef debond_linear_algebra_cholesky_h
 #define debond_linear_algebra_cholesky_h
 
-#include <debond/base/checkpoints.h>
-
 #include <Eigen/Core>
 
 namespace Debond
@@ -53,13 +51,6 @@ namespace Debond
     /// b <- K^{-1} b.
     void
     solve_in_place(Eigen::Ref<Eigen::VectorXd> b) const;
-
-    void
-    save(OutArchive &archive) const;
-
-    /// A factor for which there is room.
-    void
-    load(InArchive &archive);
 
   private:
     /// Rank-one update of the trailing block that starts at row @p first; w

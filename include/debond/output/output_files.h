@@ -14,7 +14,7 @@ namespace Debond
 {
   /**
    * The files of a run but those that are there before the end of the solve
-   * (parameters.prm, checkpoint), those of a load path (LoadPathOutput) and
+   * (parameters.prm), those of a load path (LoadPathOutput) and
    * summary.json. Keeps references: the @p result need not be there yet. What
    * hinders gnuplot is told in @p note.
    */

@@ -6,7 +6,7 @@
 #include <debond/output/record.h>
 #include <debond/output/run_result.h>
 #include <debond/solve/method_choice.h>
-#include <debond/solve/run_checkpoints.h>
+#include <debond/solve/method_choice.h>
 #include <debond/solve/scene.h>
 
 #include <string>
@@ -28,10 +28,6 @@ namespace Debond
   report_level(const unsigned int   number,
                const AdaptiveLevel &level,
                Record              &record);
-
-  /// How the run goes on from a checkpoint, if it does.
-  void
-  report_checkpoints(const RunCheckpoints &checkpoints, Record &record);
 
   /// What became of the factors of a load path, and its curve of stationary
   /// states.

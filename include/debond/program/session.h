@@ -6,7 +6,6 @@
 #include <debond/output/record.h>
 #include <debond/output/run_result.h>
 #include <debond/program/exit_code.h>
-#include <debond/solve/run_checkpoints.h>
 
 #include <string>
 #include <vector>
@@ -25,14 +24,6 @@ namespace Debond
   /// Of this process so far, in bytes.
   double
   peak_memory();
-
-  /// Removes the checkpoint of a success; otherwise adds it to the files that
-  /// are @p written. Returns what kept it from being written.
-  template <int dim>
-  std::string
-  finish_checkpoints(const RunCheckpoints     &checkpoints,
-                     RunResult<dim>           &result,
-                     std::vector<std::string> &written);
 
   /// Says on std::cerr what did not go well, and returns how the program ends.
   template <int dim>

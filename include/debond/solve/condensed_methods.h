@@ -2,7 +2,6 @@
 #ifndef debond_solve_condensed_methods_h
 #define debond_solve_condensed_methods_h
 
-#include <debond/base/checkpoints.h>
 #include <debond/input/solver_parameters.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/solve/scene.h>
@@ -14,14 +13,13 @@
 namespace Debond
 {
   /// Condenses the problem onto the contact normals and minimises there, with
-  /// search and proof: by the energy bundle with @p checkpoints or by
+  /// search and proof: by the energy bundle or by
   /// majorise-minimise, from @p start unless it is null.
   template <int dim>
   void
   solve_condensed(const std::string      &method,
                   const SolverParameters &parameters,
                   const Scene<dim>       &scene,
-                  Checkpoints            *checkpoints,
                   const DofVector        *start,
                   Watch                  &watch,
                   SolveResult            &result);

@@ -13,8 +13,7 @@
 namespace Debond
 {
   /// Minimises the functional of the scene, whose matrix must be stored as
-  /// matrix_storage() says, by the given method, the bundle methods with
-  /// @p checkpoints if there are any. Iterations are printed to @p out unless
+  /// matrix_storage() says, by the given method. Iterations are printed to @p out unless
   /// it is null. Methods with a factorisation begin at @p start, if there is
   /// one. Ranks that share a scene call it together, with a method that has
   /// levels; the first one has J and the notes.
@@ -25,7 +24,6 @@ namespace Debond
         const Scene<dim>       &scene,
         std::ostream           *out         = nullptr,
         const bool              terminal    = false,
-        Checkpoints            *checkpoints = nullptr,
         const DofVector        *start       = nullptr);
 
   /// Throws BadInput if the method cannot do with a body that only its bonds

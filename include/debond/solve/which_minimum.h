@@ -38,10 +38,6 @@ namespace Debond
     unsigned int search_failures     = 0; ///< trials without a result
     unsigned int search_nodes = 0; ///< contact nodes of the mesh of the search
 
-    /// Of search_fronts(), on the finest mesh.
-    unsigned int front_windows = 0;
-    unsigned int front_trials  = 0;
-
     /// Contact nodes of the coarser mesh, with lumped bonds, on which the
     /// minimum is proved and leads to the result; 0 if there is none.
     unsigned int closed_nodes = 0;

@@ -165,37 +165,4 @@ namespace Debond
       }
     return solution;
   }
-
-
-
-  void
-  BundleQP::save(OutArchive &archive) const
-  {
-    save_matrix(archive, gram.topLeftCorner(m, m));
-    save_matrix(archive, bounded.leftCols(m));
-    archive << cuts << bound_active << kappa << factor_u << factor_valid;
-    save_matrix(archive, lambda);
-    save_matrix(archive, mu);
-    factor.save(archive);
-  }
-
-
-
-  void
-  BundleQP::load(InArchive &archive)
-  {
-    const Eigen::MatrixXd products   = load_matrix(archive);
-    const Eigen::MatrixXd components = load_matrix(archive);
-    require_fit(products.rows() <= gram.rows() &&
-                components.rows() == bounded.rows());
-    m                        = static_cast<unsigned int>(products.rows());
-    gram.topLeftCorner(m, m) = products;
-    bounded.leftCols(m)      = components;
-    archive >> cuts >> bound_active >> kappa >> factor_u >> factor_valid;
-    lambda = load_matrix(archive);
-    mu     = load_matrix(archive);
-    for (unsigned int i = 0; i < mu.size(); ++i)
-      free_bounds(i) = bound_active[i] == 0 ? 1. : 0.;
-    factor.load(archive);
-  }
 } // namespace Debond

@@ -146,28 +146,6 @@ namespace Debond
 
 
 
-  template <typename VectorType>
-  void
-  EuclideanDirection<VectorType>::save(OutArchive &archive) const
-  {
-    qp.save(archive);
-    for (unsigned int j = 0; j < size(); ++j)
-      save_values(archive, subgradients[j]);
-  }
-
-
-
-  template <typename VectorType>
-  void
-  EuclideanDirection<VectorType>::load(InArchive &archive)
-  {
-    qp.load(archive);
-    for (unsigned int j = 0; j < size(); ++j)
-      load_values(archive, subgradients[j]);
-  }
-
-
-
   template class EuclideanDirection<dealii::Vector<double>>;
   template class EuclideanDirection<
     dealii::LinearAlgebra::distributed::Vector<double>>;

@@ -184,32 +184,5 @@ namespace Debond
 
 
 
-  template <typename VectorType>
-  void
-  MetricDirection<VectorType>::save(OutArchive &archive) const
-  {
-    save_matrix(archive, eta.leftCols(m));
-    archive << active;
-  }
-
-
-
-  template <typename VectorType>
-  void
-  MetricDirection<VectorType>::load(InArchive &archive)
-  {
-    const Eigen::MatrixXd subgradients = load_matrix(archive);
-    ActiveSet             bounds;
-    archive >> bounds;
-    require_fit(subgradients.rows() == eta.rows() &&
-                subgradients.cols() <= eta.cols() &&
-                bounds.size() == active.size());
-    m               = static_cast<unsigned int>(subgradients.cols());
-    eta.leftCols(m) = subgradients;
-    active          = bounds;
-  }
-
-
-
   template class MetricDirection<dealii::Vector<double>>;
 } // namespace Debond

@@ -98,38 +98,6 @@ namespace Debond
 
 
 
-  // Not in an unnamed namespace, where the archive would not find them.
-  template <typename Archive>
-  void
-  serialize(Archive &archive, BundleIteration &iteration, const unsigned int)
-  {
-    archive &iteration.iteration;
-    archive &iteration.functional;
-    archive &iteration.v;
-    archive &iteration.t_L;
-    archive &iteration.t_R;
-    archive &iteration.bundle_size;
-    archive &iteration.qp_steps;
-    archive &iteration.kind;
-  }
-
-
-
-  /// What a state has of a result: the rest is found at the end of a run.
-  template <typename Archive>
-  void
-  serialize(Archive &archive, ProximalBundleResult &result, const unsigned int)
-  {
-    archive &result.functional;
-    archive &result.long_steps;
-    archive &result.short_steps;
-    archive &result.null_steps;
-    archive &result.largest_qp_residual;
-    archive &result.history;
-  }
-
-
-
   void
   ProximalBundleParameters::validate() const
   {
@@ -168,14 +136,13 @@ namespace Debond
   ProximalBundle<VectorType>::minimize(const Objective<VectorType> &objective,
                                        const UpperBounds           &bounds,
                                        VectorType                  &x,
-                                       const Monitor               &monitor,
-                                       Checkpoints *checkpoints) const
+                                       const Monitor &monitor) const
   {
     EuclideanDirection<VectorType> direction_problem(parameters.u,
                                                      bounds,
                                                      parameters.bundle_size,
                                                      x);
-    return minimize(objective, direction_problem, x, monitor, checkpoints);
+    return minimize(objective, direction_problem, x, monitor);
   }
 
 
@@ -186,8 +153,7 @@ namespace Debond
     const Objective<VectorType>  &objective,
     DirectionProblem<VectorType> &direction_problem,
     VectorType                   &x,
-    const Monitor                &monitor,
-    Checkpoints                  *checkpoints) const
+    const Monitor                &monitor) const
   {
     if (!direction_problem.is_feasible(x))
       throw std::invalid_argument(
@@ -215,23 +181,7 @@ namespace Debond
       if (is_usable(eta))
         bundle.add(eta, 0., 0.);
     };
-    const auto save = [&](OutArchive &archive) {
-      save_values(archive, x);
-      save_values(archive, eta);
-      bundle.save(archive);
-      archive << result;
-    };
-    if (InArchive *const state =
-          checkpoints != nullptr ? checkpoints->resume_from() : nullptr;
-        state != nullptr)
-      {
-        load_values(*state, x);
-        load_values(*state, eta);
-        bundle.load(*state);
-        *state >> result;
-      }
-    else
-      restart();
+    restart();
 
     const typename Bundle<VectorType>::Solution *direction = nullptr;
     while (true)
@@ -338,13 +288,7 @@ namespace Debond
           }
         iteration.functional = result.functional;
         result.history.push_back(iteration);
-        const bool go_on = !monitor || monitor(iteration);
-        if (checkpoints != nullptr)
-          checkpoints->offer(save,
-                             result.iterations(),
-                             !go_on || result.iterations() >=
-                                         parameters.maximum_iterations);
-        if (!go_on)
+        if (monitor && !monitor(iteration))
           {
             result.status = SolverStatus::interrupted;
             break;

@@ -2,7 +2,6 @@
 #ifndef debond_optimization_bundle_bundle_h
 #define debond_optimization_bundle_bundle_h
 
-#include <debond/base/archive.h>
 #include <debond/optimization/bundle/direction_problem.h>
 #include <debond/optimization/bundle/line_search.h>
 
@@ -83,26 +82,6 @@ namespace Debond
       alpha.head(m) +=
         (step.change - step.t_L * solution.slopes.array()).matrix();
       distance.head(m).array() += step.t_L * d_length;
-    }
-
-    void
-    save(OutArchive &archive) const
-    {
-      problem.save(archive);
-      save_matrix(archive, alpha.head(size()));
-      save_matrix(archive, distance.head(size()));
-    }
-
-    void
-    load(InArchive &archive)
-    {
-      problem.load(archive);
-      const Eigen::MatrixXd errors  = load_matrix(archive);
-      const Eigen::MatrixXd lengths = load_matrix(archive);
-      require_fit(size() <= alpha.size() && errors.rows() == size() &&
-                  lengths.rows() == size());
-      alpha.head(size())    = errors;
-      distance.head(size()) = lengths;
     }
 
   private:

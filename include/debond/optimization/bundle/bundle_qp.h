@@ -103,16 +103,6 @@ namespace Debond
           const Eigen::Ref<const Eigen::VectorXd> &b,
           const double                             u);
 
-    /// Cuts, working set and factor, so that the next solve() takes the same
-    /// steps.
-    void
-    save(OutArchive &archive) const;
-
-    /// Throws std::invalid_argument if the state is not one of as many bounds
-    /// or there is no room for its cuts.
-    void
-    load(InArchive &archive);
-
   private:
     /// lambda of the working set and mu of all bounds, as a point of the dual
     /// problem or as a direction in it.

@@ -2,7 +2,6 @@
 #ifndef debond_optimization_bundle_direction_problem_h
 #define debond_optimization_bundle_direction_problem_h
 
-#include <debond/base/checkpoints.h>
 
 #include <Eigen/Core>
 
@@ -77,14 +76,6 @@ namespace Debond
     /// Takes rounding back that may have taken x out of K.
     virtual void
     project(VectorType &x) const = 0;
-
-    /// Subgradients and all that the next solve() starts from.
-    virtual void
-    save(OutArchive &archive) const = 0;
-
-    /// Throws std::invalid_argument if the state does not fit this problem.
-    virtual void
-    load(InArchive &archive) = 0;
   };
 } // namespace Debond
 

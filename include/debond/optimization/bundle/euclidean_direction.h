@@ -51,12 +51,6 @@ namespace Debond
     void
     project(VectorType &x) const override;
 
-    void
-    save(OutArchive &archive) const override;
-
-    void
-    load(InArchive &archive) override;
-
   private:
     const double       u;
     const UpperBounds &bounds;

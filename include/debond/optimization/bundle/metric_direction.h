@@ -53,12 +53,6 @@ namespace Debond
     void
     project(VectorType &x) const override;
 
-    void
-    save(OutArchive &archive) const override;
-
-    void
-    load(InArchive &archive) override;
-
   private:
     const MatrixView          S;
     const PiecewiseQuadratic &phi;

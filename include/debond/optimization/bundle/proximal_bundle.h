@@ -2,7 +2,6 @@
 #ifndef debond_optimization_bundle_proximal_bundle_h
 #define debond_optimization_bundle_proximal_bundle_h
 
-#include <debond/base/checkpoints.h>
 #include <debond/optimization/bundle/direction_problem.h>
 #include <debond/optimization/bundle/line_search.h>
 #include <debond/optimization/objective.h>
@@ -119,16 +118,12 @@ namespace Debond
     /// Throws std::invalid_argument for parameters out of range.
     explicit ProximalBundle(const ProximalBundleParameters &parameters);
 
-    /// Improves x. Throws std::invalid_argument if x is not in K. If
-    /// @p checkpoints have a state to go on from, the run goes on with the same
-    /// iterates as the one that left it, and x as it is given does not count;
-    /// throws std::invalid_argument if that state does not fit.
+    /// Improves x. Throws std::invalid_argument if x is not in K.
     ProximalBundleResult
     minimize(const Objective<VectorType> &objective,
              const UpperBounds           &bounds,
              VectorType                  &x,
-             const Monitor               &monitor     = {},
-             Checkpoints                 *checkpoints = nullptr) const;
+             const Monitor               &monitor = {}) const;
 
     /// The same in the metric of @p direction_problem, which also knows K and
     /// has to have room for `bundle_size` subgradients; the parameter u is not
@@ -137,8 +132,7 @@ namespace Debond
     minimize(const Objective<VectorType>  &objective,
              DirectionProblem<VectorType> &direction_problem,
              VectorType                   &x,
-             const Monitor                &monitor     = {},
-             Checkpoints                  *checkpoints = nullptr) const;
+             const Monitor                &monitor = {}) const;
 
   private:
     ProximalBundleParameters parameters;
