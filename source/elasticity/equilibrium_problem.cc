@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/sparse_matrix.h>
+#include <deal.II/lac/sparsity_pattern.h>
+
 #include <debond/elasticity/equilibrium_problem.h>
 #include <debond/elasticity/linear_simplex.h>
 #include <debond/elasticity/side_moments.h>
@@ -7,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <map>
 
 namespace Debond
 {
@@ -223,13 +226,12 @@ namespace Debond
   Eigen::MatrixXd
   EquilibriumProblem<dim>::matrix_of(const unsigned int element) const
   {
-    const Place           &place = mesh.places()[element];
     const Eigen::MatrixXd &K     = all_elements[element].K();
     Eigen::MatrixXd        half  = Eigen::MatrixXd::Zero(K.rows(), K.cols());
     Eigen::MatrixXd        whole = half;
     const auto             turn_columns = [&](const Eigen::MatrixXd &matrix,
                                   Eigen::MatrixXd       &result) {
-      for_each_coefficient(place,
+      for_each_coefficient(mesh.places()[element],
                            [&](const unsigned int row,
                                const unsigned int column,
                                const double       c) {
@@ -238,119 +240,70 @@ namespace Debond
     };
     turn_columns(K, half);
     turn_columns(half.transpose(), whole);
-
-    const std::vector<unsigned int> unknowns = mesh.unknowns_of(place);
-    std::vector<unsigned int>       rows;
-    for (unsigned int i = 0; i < unknowns.size(); ++i)
-      if (!mesh.is_fixed(unknowns[i]))
-        rows.push_back(i);
-    return whole(rows, rows);
+    return whole;
   }
 
 
 
   template <int dim>
-  void
-  EquilibriumProblem<dim>::make_substructures() const
+  std::unique_ptr<Condensation>
+  EquilibriumProblem<dim>::condense(const std::vector<double> &weights) const
   {
-    std::vector<char> is_at_contact(all_elements.size(), 0);
-    for (const ContactSide &side : mesh.contact_sides())
-      is_at_contact[side.element] = 1;
-    std::map<std::array<double, dim * dim>, unsigned int> frames;
-    std::map<const Eigen::MatrixXd *, unsigned int>       shapes;
-    std::map<std::vector<unsigned int>, unsigned int>     kinds;
-    std::vector<unsigned int>                             first_of_kind;
+    const Eigen::VectorXd &loads = mesh.loads_on_sides();
+    DofVector              f(loads.size());
+    std::copy(loads.begin(), loads.end(), f.begin());
+    dealii::DynamicSparsityPattern pattern(f.size());
+    for (const Place &place : mesh.places())
+      {
+        const std::vector<unsigned int> unknowns = mesh.unknowns_of(place);
+        for (const unsigned int row : unknowns)
+          pattern.add_entries(row, unknowns.begin(), unknowns.end());
+      }
+    dealii::SparsityPattern sparsity;
+    sparsity.copy_from(pattern);
 
-    std::vector<SubstructureElement> parts;
-    f = mesh.loads_on_sides();
+    dealii::SparseMatrix<double> A(sparsity);
+    double                       constant = 0.;
     for (unsigned int element = 0; element < all_elements.size(); ++element)
       {
         const EquilibriumElement<dim>  &own      = all_elements[element];
         const Place                    &place    = mesh.places()[element];
         const std::vector<unsigned int> unknowns = mesh.unknowns_of(place);
-        const Eigen::VectorXd           F        = own.F();
+        const double          weight = weights.empty() ? 1. : weights[element];
+        const Eigen::MatrixXd matrix = matrix_of(element);
+        const Eigen::VectorXd F      = own.F();
+        constant += own.constant() / weight;
+        for (unsigned int i = 0; i < unknowns.size(); ++i)
+          for (unsigned int j = 0; j < unknowns.size(); ++j)
+            A.add(unknowns[i], unknowns[j], weight * matrix(i, j));
         for_each_coefficient(place,
                              [&](const unsigned int row,
                                  const unsigned int column,
                                  const double       c) {
                                f(unknowns[column]) += c * F(row);
                              });
-
-        SubstructureElement       part = {0, {}, {}, {}, false};
-        std::vector<unsigned int> key;
-        for (unsigned int i = 0; i < place.sides.size(); ++i)
-          {
-            const Side &side = mesh.sides()[place.sides[i]];
-            key.insert(key.end(),
-                       place.positions[i].begin(),
-                       place.positions[i].end());
-            std::array<double, dim * dim> directions;
-            for (unsigned int k = 0; k < directions.size(); ++k)
-              directions[k] = side.directions[k / dim][k % dim];
-            key.push_back(
-              frames.emplace(directions, frames.size()).first->second);
-          }
-        for (const unsigned int unknown : unknowns)
-          {
-            key.push_back(mesh.is_fixed(unknown) ? 1 : 0);
-            if (!mesh.is_fixed(unknown))
-              part.unknowns.push_back(unknown);
-          }
-        key.push_back(shapes.emplace(&own.K(), shapes.size()).first->second);
-        const auto [entry, is_new] =
-          kinds.emplace(key, static_cast<unsigned int>(kinds.size()));
-        part.kind = entry->second;
-        if (is_new)
-          first_of_kind.push_back(element);
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            part.centre[d] = own.centre[d];
-            const auto [least, largest] =
-              std::minmax_element(own.corners.begin(),
-                                  own.corners.end(),
-                                  [d](const auto &one, const auto &other) {
-                                    return one[d] < other[d];
-                                  });
-            part.extent[d] = (*largest)[d] - (*least)[d];
-          }
-        part.has_weight = is_at_contact[element] != 0;
-        parts.push_back(part);
       }
 
     std::vector<unsigned int> kept;
     for (unsigned int k = 0; k < dim; ++k)
       for (const ContactSide &side : mesh.contact_sides())
         kept.push_back(side.unknowns[k]);
-    substructures =
-      std::make_unique<Substructures>(parts,
-                                      static_cast<unsigned int>(f.size()),
-                                      kept,
-                                      [this,
-                                       first_of_kind](const unsigned int kind) {
-                                        return matrix_of(first_of_kind[kind]);
-                                      });
-  }
-
-
-
-  template <int dim>
-  std::unique_ptr<CondensedSubstructures>
-  EquilibriumProblem<dim>::condense(const std::vector<double> &weights) const
-  {
-    if (substructures == nullptr)
-      make_substructures();
-    double constant = 0.;
-    for (unsigned int element = 0; element < all_elements.size(); ++element)
-      constant += all_elements[element].constant() /
-                  (weights.empty() ? 1. : weights[element]);
-    return substructures->condense(f, weights, constant);
+    OtherParts others;
+    others.energy = [constant](double, double) { return constant; };
+    return std::make_unique<Condensation>(
+      A,
+      f,
+      kept,
+      [this](const unsigned int i) { return mesh.is_fixed(i); },
+      others,
+      /*is_semidefinite=*/true);
   }
 
 
 
   template <int dim>
   std::vector<Eigen::VectorXd>
-  EquilibriumProblem<dim>::stresses(const Eigen::VectorXd     &unknowns,
+  EquilibriumProblem<dim>::stresses(const DofVector           &unknowns,
                                     const std::vector<double> &weights) const
   {
     std::vector<Eigen::VectorXd> result;
@@ -537,7 +490,7 @@ namespace Debond
   template <int dim>
   double
   EquilibriumProblem<dim>::rounding_of(
-    const CondensedSubstructures       &condensed,
+    const Condensation                 &condensed,
     const Eigen::VectorXd              &kept,
     const std::vector<Eigen::VectorXd> &stresses,
     const std::vector<double>          &weights) const
@@ -565,7 +518,7 @@ namespace Debond
                                         materials(cell->material_id()));
           }
       }
-    const Eigen::MatrixXd &S = condensed.schur_complement();
+    const MatrixView S = condensed.schur_complement();
     // It may be more at other displacements.
     return 4. * std::abs(condensed.energy_at_zero() - 0.5 * kept.dot(S * kept) +
                          energy);

@@ -291,8 +291,7 @@ namespace Debond
                   const std::function<bool()>             &may_go_on)
     {
       const auto certify = [&](const CertificateKind           kind_of_this,
-                               const BranchAndBoundParameters &limits,
-                               const double                    narrow_enough) {
+                               const BranchAndBoundParameters &limits) {
         Certificate certificate =
           Certifier<dim>(kind_of_this, scene, memory_limit)
             .certify(*scene,
@@ -300,8 +299,7 @@ namespace Debond
                      limits,
                      may_go_on,
                      global ? &*global : nullptr,
-                     !is_last,
-                     narrow_enough);
+                     !is_last);
         if (certificate.minimum == CertifiedMinimum::global)
           global = certificate;
         return certificate;
@@ -310,7 +308,7 @@ namespace Debond
         try
           {
             const Certificate first =
-              certify(CertificateKind::fixed_state, proof, target);
+              certify(CertificateKind::fixed_state, proof);
             if (first.minimum == CertifiedMinimum::global)
               return first;
             if (first.width() > target)
@@ -318,8 +316,7 @@ namespace Debond
                 BranchAndBoundParameters limits = proof;
                 limits.maximum_nodes =
                   std::min(limits.maximum_nodes, n_nodes_on_the_way);
-                // Parts help only the interval of this mesh.
-                certify(kind, limits, std::numeric_limits<double>::infinity());
+                certify(kind, limits);
                 return first;
               }
           }
@@ -327,7 +324,7 @@ namespace Debond
           {
             // Such as a body that only bonds hold.
           }
-      return certify(kind, proof, target);
+      return certify(kind, proof);
     }
 
 
@@ -418,8 +415,8 @@ namespace Debond
           {
             if (problem.load_path.factors.empty())
               {
-                solution = solve(
-                  choice, solver, here, nullptr, false, start.get());
+                solution =
+                  solve(choice, solver, here, nullptr, false, start.get());
                 functional = solution.functional;
                 if (can_be_verified(solution.status) &&
                     !solution.minimum.interrupted)

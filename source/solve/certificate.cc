@@ -314,7 +314,7 @@ namespace Debond
       const std::vector<SideOf<dim>> &sides = equilibrium.contact_sides();
       const Eigen::Index     n = static_cast<Eigen::Index>(sides.size());
       const auto             condensed = equilibrium.condense();
-      const Eigen::MatrixXd &S         = condensed->schur_complement();
+      const Eigen::MatrixXd  S         = condensed->schur_complement();
       const Eigen::VectorXd &g         = condensed->load();
 
       // Weighted means, which are <= 0 if the displacement is, as linear
@@ -527,8 +527,7 @@ namespace Debond
                           const BranchAndBoundParameters &proof,
                           const std::function<bool()>    &may_go_on,
                           const Certificate              *earlier,
-                          const bool                      is_for_finer,
-                          const double                    narrow_enough) const
+                          const bool                      is_for_finer) const
   {
     const bool is_own = &solved == scene.get();
     Assert(is_own || is_for_finer_meshes(), dealii::ExcInternalError());
@@ -608,7 +607,6 @@ namespace Debond
                                            certificate.upper,
                                            known,
                                            is_for_finer,
-                                           narrow_enough,
                                            proof,
                                            may_go_on);
           certificate.lower        = bound.lower - own;

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <limits>
 #include <memory>
 #include <numeric>
 
@@ -36,7 +36,7 @@ namespace Debond
     constexpr std::array<double, 2> first_shifts = {{2., 6.}};
 
     /// Problems in which what is certain is used, as long as each makes the
-    /// interval narrower by a part.
+    /// interval narrower by a known.
     constexpr unsigned int n_stages = 18;
 
     /// Shifts where no piece is certain are at least so many times the
@@ -48,11 +48,6 @@ namespace Debond
     constexpr unsigned int n_idle_stages = 3;
 
     constexpr double least_gain = 0.05;
-
-    /// Divisions into parts, and those in a row without such a gain that end
-    /// them, if there are not more parts.
-    constexpr unsigned int n_divisions      = 40;
-    constexpr unsigned int n_idle_divisions = 8;
 
     /// What another one may save of what the sides lose.
     constexpr double part_of_losses = 0.5;
@@ -108,19 +103,15 @@ namespace Debond
     }
 
 
-    constexpr double infinity = std::numeric_limits<double>::infinity();
 
-
-
-    /// Some of the displacements with J at most the upper number.
-    struct UncertainPart
+    /// What is known of the displacements with J at most the upper number.
+    struct Known
     {
       std::vector<CertifiedSide> ranges;
-      bool                       is_whole = true; ///< all of them
 
-      double              lower    = -infinity; ///< J is not below this
-      double              rounding = 0.;
-      ProofStatus         status   = ProofStatus::no_bound;
+      double      lower    = -std::numeric_limits<double>::infinity(); ///< of J
+      double      rounding = 0.;
+      ProofStatus status   = ProofStatus::no_bound;
       std::vector<double> losses; ///< where that bound is the least
 
       /// The latest one, and its means and slopes where it is least.
@@ -145,25 +136,25 @@ namespace Debond
     /// Whether saving what may be saved of what the sides lose would make the
     /// interval narrower.
     bool
-    losses_matter(const UncertainPart &part, const double upper)
+    losses_matter(const Known &known, const double upper)
     {
       const double loss =
-        std::accumulate(part.losses.begin(), part.losses.end(), 0.);
-      return part_of_losses * loss >= least_gain * (upper - part.lower);
+        std::accumulate(known.losses.begin(), known.losses.end(), 0.);
+      return part_of_losses * loss >= least_gain * (upper - known.lower);
     }
 
 
 
-    /// Raises the bounds of parts and makes their ranges narrower.
-    class PartBounds
+    /// Raises the bound and makes the ranges narrower, in turn.
+    class StagedBounds
     {
     public:
-      PartBounds(const MeanProblems             &problems,
-                 const BranchMinimum            &law,
-                 const Eigen::VectorXd          &means,
-                 const double                    upper,
-                 const BranchAndBoundParameters &proof,
-                 const std::function<bool()>    &may_go_on)
+      StagedBounds(const MeanProblems             &problems,
+                   const BranchMinimum            &law,
+                   const Eigen::VectorXd          &means,
+                   const double                    upper,
+                   const BranchAndBoundParameters &proof,
+                   const std::function<bool()>    &may_go_on)
         : problems(problems)
         , law(law)
         , given_means(means)
@@ -175,11 +166,7 @@ namespace Debond
       unsigned int nodes = 0; ///< of all bounds
 
       void
-      bound_whole(UncertainPart &whole);
-
-      /// The part on either side of a kink, if it is worth it.
-      std::vector<UncertainPart>
-      divided(const UncertainPart &part);
+      run(Known &known);
 
     private:
       const MeanProblems             &problems;
@@ -193,33 +180,30 @@ namespace Debond
       double
       add_bound(const std::vector<double> &D,
                 const bool                 is_first,
-                UncertainPart             &part);
+                Known                     &known);
 
       void
-      add_bound_for_ranges(const double least_shift, UncertainPart &part);
+      add_bound_for_ranges(const double least_shift, Known &known);
 
       void
-      begin(const bool is_known, UncertainPart &whole);
+      begin(const bool is_known, Known &known);
 
-      /// Makes the ranges narrower by the latest problem; false if there are
-      /// none left. If nothing was known it has all means: then quickly and
-      /// without trials of single sides, as the next one has fewer.
-      bool
-      look(const bool is_quick, UncertainPart &part) const;
-
-      bool
-      bound_part(UncertainPart &part);
+      /// Makes the ranges narrower by the latest problem. If nothing was known
+      /// it has all means: then quickly and without trials of single sides, as
+      /// the next one has fewer.
+      void
+      look(const bool is_quick, Known &known) const;
     };
 
 
 
     double
-    PartBounds::add_bound(const std::vector<double> &D,
-                          const bool                 is_first,
-                          UncertainPart             &part)
+    StagedBounds::add_bound(const std::vector<double> &D,
+                            const bool                 is_first,
+                            Known                     &known)
     {
-      const double             interval   = std::isfinite(part.lower) ?
-                                              upper - part.lower :
+      const double             interval   = std::isfinite(known.lower) ?
+                                              upper - known.lower :
                                               first_interval * std::abs(upper);
       BranchAndBoundParameters parameters = proof;
       parameters.tolerance = std::max(proof_tolerance * std::abs(upper),
@@ -228,38 +212,30 @@ namespace Debond
         parameters.maximum_nodes =
           std::min(parameters.maximum_nodes, n_later_nodes);
       const auto problem = std::make_shared<const MeanProblem>(
-        problems.mean_problem(part.ranges,
+        problems.mean_problem(known.ranges,
                               given_means,
                               D,
-                              std::vector<double>(part.ranges.size(), 0.)));
-      // The whole is where J is at most the upper number, wherever the means
-      // are.
-      std::vector<Interval> ranges;
-      if (!part.is_whole)
-        for (const unsigned int i : problem->kept)
-          ranges.push_back(part.ranges[i].mean);
+                              std::vector<double>(known.ranges.size(), 0.)));
       const BranchAndBoundResult bound =
         BranchAndBound(parameters)
-          .minimize(
-            problem->S,
-            problem->g,
-            *problem->phi,
-            problem->kept_of(part.is_whole ? given_means : part.means()),
-            [&](const ProofProgress &) { return may_go_on(); },
-            ranges);
+          .minimize(problem->S,
+                    problem->g,
+                    *problem->phi,
+                    problem->kept_of(given_means),
+                    [&](const ProofProgress &) { return may_go_on(); });
       nodes += bound.nodes;
       const double lower =
         bound.status == ProofStatus::no_bound ?
-          -infinity :
+          -std::numeric_limits<double>::infinity() :
           problem->constant + bound.lower - problem->rounding;
-      part.problem = problem;
-      part.values  = problem->all(bound.s);
-      if (lower > part.lower)
+      known.problem = problem;
+      known.values  = problem->all(bound.s);
+      if (lower > known.lower)
         {
-          part.lower    = lower;
-          part.rounding = problem->rounding;
-          part.status   = bound.status;
-          part.losses   = problems.losses(*problem, part.values);
+          known.lower    = lower;
+          known.rounding = problem->rounding;
+          known.status   = bound.status;
+          known.losses   = problems.losses(*problem, known.values);
         }
       return lower;
     }
@@ -267,183 +243,101 @@ namespace Debond
 
 
     void
-    PartBounds::add_bound_for_ranges(const double   least_shift,
-                                     UncertainPart &part)
+    StagedBounds::add_bound_for_ranges(const double least_shift, Known &known)
     {
       add_bound(problems.shifts_for_ranges(
-                  part.ranges, part.means(), part.slopes(), least_shift),
+                  known.ranges, known.means(), known.slopes(), least_shift),
                 false,
-                part);
-    }
-
-
-
-    bool
-    PartBounds::look(const bool is_quick, UncertainPart &part) const
-    {
-      if (!shrink_ranges(
-            *part.problem, upper, is_quick, may_go_on, part.ranges))
-        return false;
-      if (!is_quick)
-        exclude_pieces(
-          *part.problem, upper, part.means(), may_go_on, part.ranges);
-      return true;
+                known);
     }
 
 
 
     void
-    PartBounds::begin(const bool is_known, UncertainPart &whole)
+    StagedBounds::look(const bool is_quick, Known &known) const
+    {
+      if (shrink_ranges(
+            *known.problem, upper, is_quick, may_go_on, known.ranges) &&
+          !is_quick)
+        exclude_pieces(
+          *known.problem, upper, known.means(), may_go_on, known.ranges);
+    }
+
+
+
+    void
+    StagedBounds::begin(const bool is_known, Known &known)
     {
       std::vector<std::vector<double>> trials;
       if (is_known)
         {
           const auto shifts = [&]() {
-            return problems.shifts_for_ranges(whole.ranges,
+            return problems.shifts_for_ranges(known.ranges,
                                               given_means,
                                               Eigen::VectorXd::Zero(
                                                 given_means.size()),
                                               least_shifts[0]);
           };
           const MeanProblem problem =
-            problems.mean_problem(whole.ranges,
+            problems.mean_problem(known.ranges,
                                   given_means,
                                   shifts(),
-                                  std::vector<double>(whole.ranges.size(), 0.));
-          exclude_pieces(problem, upper, given_means, may_go_on, whole.ranges);
-          shrink_ranges(problem, upper, false, may_go_on, whole.ranges);
+                                  std::vector<double>(known.ranges.size(), 0.));
+          exclude_pieces(problem, upper, given_means, may_go_on, known.ranges);
+          shrink_ranges(problem, upper, false, may_go_on, known.ranges);
           trials.push_back(shifts());
         }
       for (const double multiple : first_shifts)
         trials.push_back(problems.shifts_for_means(given_means, multiple));
       std::shared_ptr<const MeanProblem> best;
       Eigen::VectorXd                    best_values;
-      double                             best_lower = -infinity;
+      double best_lower = -std::numeric_limits<double>::infinity();
       for (const std::vector<double> &D : trials)
         {
-          const bool is_first = !is_known && !std::isfinite(whole.lower);
-          if (const double lower = add_bound(D, is_first, whole);
+          const bool is_first = !is_known && !std::isfinite(known.lower);
+          if (const double lower = add_bound(D, is_first, known);
               !best || lower > best_lower)
             {
-              best        = whole.problem;
-              best_values = whole.values;
+              best        = known.problem;
+              best_values = known.values;
               best_lower  = lower;
             }
-          if (whole.status == ProofStatus::proved &&
-              (!is_known || !losses_matter(whole, upper)))
+          if (known.status == ProofStatus::proved &&
+              (!is_known || !losses_matter(known, upper)))
             break;
         }
-      whole.problem = best;
-      whole.values  = best_values;
+      known.problem = best;
+      known.values  = best_values;
     }
 
 
 
     void
-    PartBounds::bound_whole(UncertainPart &whole)
+    StagedBounds::run(Known &known)
     {
       const bool is_known =
-        std::any_of(whole.ranges.begin(),
-                    whole.ranges.end(),
+        std::any_of(known.ranges.begin(),
+                    known.ranges.end(),
                     [](const CertifiedSide &side) {
                       return std::isfinite(side.linear().upper);
                     });
-      begin(is_known, whole);
+      begin(is_known, known);
       unsigned int n_idle = 0;
       for (unsigned int stage = 0; stage < n_stages && may_go_on(); ++stage)
         {
-          look(stage == 0 && !is_known, whole);
-          const double before = upper - whole.lower;
+          look(stage == 0 && !is_known, known);
+          const double before = upper - known.lower;
           add_bound_for_ranges(least_shifts[stage % least_shifts.size()],
-                               whole);
+                               known);
           n_idle =
-            upper - whole.lower > (1. - least_gain) * before ? n_idle + 1 : 0;
+            upper - known.lower > (1. - least_gain) * before ? n_idle + 1 : 0;
           // The first one has only the ranges of a problem that knew nothing.
           if (n_idle == n_idle_stages ||
-              (stage > 0 && !losses_matter(whole, upper)))
+              (stage > 0 && !losses_matter(known, upper)))
             break;
         }
       if (may_go_on())
-        look(false, whole);
-    }
-
-
-
-    /// Returns whether there can be any of it with J at most the upper number.
-    bool
-    PartBounds::bound_part(UncertainPart &part)
-    {
-      for (const double least_shift : least_shifts)
-        {
-          if (!may_go_on())
-            return true;
-          if (!look(false, part))
-            return false;
-          const double before = upper - part.lower;
-          add_bound_for_ranges(least_shift, part);
-          if (part.lower > upper)
-            return false;
-          if (!losses_matter(part, upper) ||
-              (least_shift != least_shifts[0] &&
-               upper - part.lower > (1. - least_gain) * before))
-            break;
-        }
-      return !may_go_on() || look(false, part);
-    }
-
-
-
-    std::vector<UncertainPart>
-    PartBounds::divided(const UncertainPart &part)
-    {
-      // Where it is least certain on which side of a kink the mean is.
-      std::optional<unsigned int> side;
-      double                      kink = 0., largest = 0.;
-      for (const unsigned int i : part.problem->kept)
-        for (unsigned int k = 0; k + 1 < law.size(); ++k)
-          {
-            const Interval &mean = part.ranges[i].mean;
-            const double    distance =
-              std::min(law[k].lower - mean.lower, mean.upper - law[k].lower);
-            if (distance > largest)
-              {
-                largest = distance;
-                side    = i;
-                kink    = law[k].lower;
-              }
-          }
-      if (!side)
-        return {part};
-      std::vector<UncertainPart> halves(2, part);
-      halves[0].ranges[*side].mean.lower = kink;
-      halves[1].ranges[*side].mean.upper = kink;
-      std::vector<UncertainPart> left;
-      for (UncertainPart &half : halves)
-        {
-          half.is_whole = false;
-          if (bound_part(half))
-            left.push_back(std::move(half));
-        }
-      return left;
-    }
-
-
-
-    /// What holds in one of the parts.
-    std::vector<CertifiedSide>
-    hull(const std::vector<UncertainPart> &parts)
-    {
-      std::vector<CertifiedSide> result = parts[0].ranges;
-      for (const UncertainPart &part : parts)
-        for (unsigned int i = 0; i < result.size(); ++i)
-          {
-            const CertifiedSide &own = part.ranges[i];
-            result[i].mean           = hull(result[i].mean, own.mean);
-            for (const unsigned int k : {0, 1})
-              result[i].at_ends[k] = hull(result[i].at_ends[k], own.at_ends[k]);
-            result[i].deviation = std::max(result[i].deviation, own.deviation);
-          }
-      return result;
+        look(false, known);
     }
   } // namespace
 
@@ -519,60 +413,22 @@ namespace Debond
                const double                    upper,
                std::vector<CertifiedSide>      known,
                const bool                      with_deviations,
-               const double                    narrow_enough,
                const BranchAndBoundParameters &proof,
                const std::function<bool()>    &may_go_on)
   {
     const MeanProblems sides(equilibrium, trace_constants, law, energies);
-    PartBounds         bounds(sides, law, means, upper, proof, may_go_on);
-    std::vector<UncertainPart> parts(1);
-    parts[0].ranges = std::move(known);
-    bounds.bound_whole(parts[0]);
-    const auto worst = [&]() {
-      return std::min_element(parts.begin(),
-                              parts.end(),
-                              [](const UncertainPart &a,
-                                 const UncertainPart &b) {
-                                return a.lower < b.lower;
-                              });
-    };
-    // Which of them is the least is the lower number, so that all have to be
-    // bounded better for it to rise.
-    double       reference = upper - parts[0].lower;
-    unsigned int n_idle    = 0;
-    for (unsigned int k = 0;
-         k < n_divisions &&
-         upper - worst()->lower > narrow_enough * std::abs(upper) &&
-         n_idle < std::max<std::size_t>(parts.size(), n_idle_divisions) &&
-         bounds.nodes < proof.maximum_nodes && losses_matter(*worst(), upper) &&
-         may_go_on();
-         ++k)
-      {
-        const auto                 part = worst();
-        std::vector<UncertainPart> left = bounds.divided(*part);
-        // If neither is left it is by rounding.
-        if (left.empty() && parts.size() == 1)
-          break;
-        parts.erase(part);
-        std::move(left.begin(), left.end(), std::back_inserter(parts));
-        const double now = upper - worst()->lower;
-        ++n_idle;
-        if (now <= (1. - least_gain) * reference)
-          {
-            reference = now;
-            n_idle    = 0;
-          }
-      }
+    StagedBounds       bounds(sides, law, means, upper, proof, may_go_on);
+    Known              last;
+    last.ranges = std::move(known);
+    bounds.run(last);
 
     GlobalBound result;
-    result.nodes              = bounds.nodes;
-    const UncertainPart &last = *worst();
-    // What is in no part is above the upper number.
+    result.nodes                      = bounds.nodes;
     result.lower                      = std::min(last.lower, upper);
     result.rounding                   = last.rounding;
     result.status                     = last.status;
     result.losses                     = last.losses;
-    std::vector<CertifiedSide> ranges = hull(parts);
+    std::vector<CertifiedSide> ranges = std::move(last.ranges);
     if (with_deviations && may_go_on())
       {
         const std::vector<double> D = sides.shifts_for_ranges(ranges,

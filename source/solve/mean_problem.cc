@@ -240,7 +240,7 @@ namespace Debond
     std::vector<double> weights(equilibrium.elements().size(), 1.);
     for (unsigned int i = 0; i < n; ++i)
       weights[sides[i].element] -= (D[i] + rests[i]) / trace_constants[i];
-    std::unique_ptr<const CondensedSubstructures> condensed;
+    std::unique_ptr<const Condensation> condensed;
     try
       {
         condensed = equilibrium.condense(weights);

@@ -223,14 +223,6 @@ namespace
   double
   minimum(const Condensation &condensed)
   {
-    return condensed.energy_at_zero() - condensed.energy_of_kept();
-  }
-
-
-
-  double
-  minimum(const CondensedSubstructures &condensed)
-  {
     const Eigen::VectorXd &g = condensed.load();
     return condensed.energy_at_zero() -
            0.5 * g.dot(condensed.schur_complement().llt().solve(g));

@@ -507,94 +507,6 @@ namespace
 
 
 
-  /// The least value in a box: the least one of the points in it that are
-  /// stationary for some bonds, some unknowns being at an end.
-  double
-  enumerated_minimum_in(const Problem &p, const std::vector<Interval> &box)
-  {
-    const unsigned int n     = p.g.size();
-    double             least = std::numeric_limits<double>::infinity();
-    for (unsigned int state = 0; state < (1u << n); ++state)
-      for (unsigned int ends = 0; ends < std::pow(3, n); ++ends)
-        {
-          Eigen::MatrixXd A    = p.S;
-          Vector          load = p.g;
-          unsigned int    rest = ends;
-          for (unsigned int i = 0; i < n; ++i, rest /= 3)
-            {
-              if ((state >> i) % 2 == 0)
-                A(i, i) += p.stiffness(i);
-              if (rest % 3 == 0)
-                continue;
-              A.row(i).setZero();
-              A(i, i) = 1.;
-              load(i) = rest % 3 == 1 ? box[i].lower : box[i].upper;
-            }
-          const Vector s       = A.partialPivLu().solve(load);
-          bool         is_in   = true;
-          Vector       clipped = s;
-          for (unsigned int i = 0; i < n; ++i)
-            {
-              is_in = is_in && s(i) > box[i].lower - 1e-12 &&
-                      s(i) < box[i].upper + 1e-12;
-              clipped(i) = std::clamp(s(i), box[i].lower, box[i].upper);
-            }
-          if (is_in)
-            least = std::min(least, p.value(clipped));
-        }
-    return least;
-  }
-
-
-
-  void
-  test_ranges(std::mt19937_64 &engine)
-  {
-    std::uniform_real_distribution<double> uniform(0., 1.);
-    unsigned int invalid = 0, not_proved = 0, outside = 0, n_ends = 0;
-    for (unsigned int k = 0; k < 500; ++k)
-      {
-        const unsigned int    n = 2 + k % 3;
-        const Problem         p = random_problem(engine, n, k % 2 == 0);
-        std::vector<Interval> box;
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            const double width  = 3. * p.threshold(i);
-            const double middle = -width * uniform(engine);
-            const double half   = 0.5 * width * uniform(engine);
-            box.push_back({middle - half, std::min(middle + half, 0.)});
-          }
-        const double             minimum   = enumerated_minimum_in(p, box);
-        const double             tolerance = 1e-9;
-        BranchAndBoundParameters parameters;
-        parameters.tolerance = tolerance;
-        const auto proof =
-          BranchAndBound(parameters)
-            .minimize(p.S, p.g, p.bonds, Vector::Zero(n), {}, box);
-        not_proved += proof.status != ProofStatus::proved ||
-                      proof.upper > minimum + tolerance;
-        invalid += proof.lower > minimum;
-        bool is_at_end = false;
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            outside += proof.s(i) < box[i].lower || proof.s(i) > box[i].upper;
-            is_at_end = is_at_end || proof.s(i) == box[i].lower ||
-                        (proof.s(i) == box[i].upper && proof.s(i) < 0.);
-          }
-        n_ends += is_at_end;
-      }
-    std::cout << "in ranges: bounds never above the enumerated minimum: "
-              << verdict(invalid == 0)
-              << ", the minimum found and proved: " << verdict(not_proved == 0)
-              << ", in the ranges: " << verdict(outside == 0)
-              << ", often at an end: " << verdict(n_ends > 250) << '\n';
-    if (print_figures)
-      std::cout << "  invalid " << invalid << ", not proved " << not_proved
-                << ", outside " << outside << ", at an end " << n_ends << '\n';
-  }
-
-
-
   /// The same nodes in the same order, whatever the number of threads.
   void
   test_threads(std::mt19937_64 &engine)
@@ -765,5 +677,4 @@ main(int argc, char *[])
   test_limits(engine);
   test_starts();
   test_brittle(engine);
-  test_ranges(engine);
 }

@@ -4,7 +4,8 @@
 
 #include <debond/elasticity/cell_displacement.h>
 #include <debond/elasticity/equilibrium_mesh.h>
-#include <debond/linear_algebra/substructures.h>
+#include <debond/linear_algebra/condensation.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/by_region.h>
 
 #include <memory>
@@ -61,19 +62,17 @@ namespace Debond
     ///               + int_{Gamma_C} sigma_nu p
     ///         = c_0 + 1/2 s'S s - g's,
     /// p the linear normal displacement that these unknowns s are of. Each
-    /// element is @p weights times as stiff (all as they are if empty); only
-    /// those at contact sides may have one that is not 1. What does not depend
-    /// on them is condensed the first time.
+    /// element is @p weights times as stiff (all as they are if empty).
     ///
     /// Throws std::runtime_error if the matrix of the other unknowns is not
     /// positive definite.
-    std::unique_ptr<CondensedSubstructures>
+    std::unique_ptr<Condensation>
     condense(const std::vector<double> &weights = {}) const;
 
     /// The stress of each element, see EquilibriumElement::stress(), for all
     /// unknowns, those of a condensation with these @p weights.
     std::vector<Eigen::VectorXd>
-    stresses(const Eigen::VectorXd     &unknowns,
+    stresses(const DofVector           &unknowns,
              const std::vector<double> &weights = {}) const;
 
     /// 1/2 a(u,u) - L(u) of the displacement u, given in the order of the
@@ -108,7 +107,7 @@ namespace Debond
     /// of a condensation with @p weights to rounding: four times by how much
     /// this fails at @p kept for the @p stresses that belong to it.
     double
-    rounding_of(const CondensedSubstructures       &condensed,
+    rounding_of(const Condensation                 &condensed,
                 const Eigen::VectorXd              &kept,
                 const std::vector<Eigen::VectorXd> &stresses,
                 const std::vector<double>          &weights = {}) const;
@@ -125,27 +124,19 @@ namespace Debond
     void
     make_elements();
 
-    /// Groups elements with the same matrix of their sides' free unknowns.
-    void
-    make_substructures() const;
-
     /// l of EquilibriumElement as linear functions of the unknowns of the
     /// element's sides: calls @p add(row, column, coefficient).
     template <typename Add>
     void
     for_each_coefficient(const Place &place, const Add &add) const;
 
-    /// Of the free unknowns of the element's sides.
+    /// Of the unknowns of the element's sides.
     Eigen::MatrixXd
     matrix_of(const unsigned int element) const;
 
     EquilibriumMesh<dim>                 mesh;
     const ByRegion<Material>             materials;
     std::vector<EquilibriumElement<dim>> all_elements;
-
-    // What condense() makes when it is called first.
-    mutable std::unique_ptr<Substructures> substructures;
-    mutable Eigen::VectorXd                f;
   };
 } // namespace Debond
 

@@ -131,19 +131,15 @@ namespace Debond
     /// on a finer mesh. @p proof: limits of branch and bound. @p earlier: of
     /// the same scene on another mesh, whose bounds and what it knows of sides
     /// are used if they are of the least J and of the loads as they are. If @p
-    /// is_for_finer, the sides have what finer meshes can use of them. Where
-    /// bonds may break, parts of what is uncertain are bounded on their own as
-    /// long as width() is more than @p narrow_enough. Throws EquilibriumError
-    /// if no bound was found.
+    /// is_for_finer, the sides have what finer meshes can use of them. Throws
+    /// EquilibriumError if no bound was found.
     Certificate
     certify(const Scene<dim>               &solved,
             const DofVector                &u,
             const BranchAndBoundParameters &proof,
             const std::function<bool()>    &may_go_on,
             const Certificate              *earlier      = nullptr,
-            const bool                      is_for_finer = false,
-            const double                    narrow_enough =
-              std::numeric_limits<double>::infinity()) const;
+            const bool                      is_for_finer = false) const;
 
   private:
     double

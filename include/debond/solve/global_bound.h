@@ -49,8 +49,6 @@ namespace Debond
    * above the contact sides, for the choice of shifts; @p known: what is known
    * on each contact side of displacements with J at most @p upper. If @p
    * with_deviations, the result's sides have these, which takes one bound more.
-   * What is uncertain is divided into parts while the interval is wider than @p
-   * narrow_enough, relative to @p upper.
    * Throws EquilibriumError if there is no bound.
    */
   GlobalBound
@@ -62,7 +60,6 @@ namespace Debond
                const double                    upper,
                std::vector<CertifiedSide>      known,
                const bool                      with_deviations,
-               const double                    narrow_enough,
                const BranchAndBoundParameters &proof,
                const std::function<bool()>    &may_go_on);
 } // namespace Debond

@@ -55,8 +55,7 @@ namespace Debond
                 const MatrixView               &S,
                 const VectorView               &g,
                 const SeparableBranches        &phi,
-                const VectorView               &start,
-                const std::vector<Interval>    &ranges);
+                const VectorView               &start);
 
       BranchAndBoundResult
       run(const BranchAndBound::Monitor &monitor);
@@ -68,8 +67,6 @@ namespace Debond
       const SeparableBranches        &phi;
       const unsigned int              n;
       const NodeBound                 node_bound;
-      const bool                      has_ranges;
-      Eigen::VectorXd                 lower, upper; ///< their ends
 
       const Clock::time_point begin = Clock::now();
       BranchAndBoundResult    result;
@@ -109,26 +106,15 @@ namespace Debond
                          const MatrixView               &S,
                          const VectorView               &g,
                          const SeparableBranches        &phi,
-                         const VectorView               &start,
-                         const std::vector<Interval>    &ranges)
+                         const VectorView               &start)
       : parameters(parameters)
       , S(S)
       , g(g)
       , phi(phi)
       , n(static_cast<unsigned int>(g.size()))
       , node_bound(S, g, phi)
-      , has_ranges(!ranges.empty())
-      , lower(
-          Eigen::VectorXd::Constant(n,
-                                    -std::numeric_limits<double>::infinity()))
-      , upper(Eigen::VectorXd::Zero(n))
       , least_left_out(std::numeric_limits<double>::infinity())
     {
-      for (unsigned int i = 0; i < ranges.size(); ++i)
-        {
-          lower(i) = ranges[i].lower;
-          upper(i) = std::min(ranges[i].upper, 0.);
-        }
       result.upper = std::numeric_limits<double>::infinity();
       result.lower = -std::numeric_limits<double>::infinity();
       Job job;
@@ -144,18 +130,11 @@ namespace Debond
       job.state.resize(n);
       for (unsigned int i = 0; i < n; ++i)
         job.state[i] = phi.f[i].index(x(i));
-      // A minimum in the ranges need not be one.
-      if (has_ranges)
-        {
-          job.s     = x.cwiseMax(lower).cwiseMin(upper);
-          job.value = CondensedProblem(S, g, phi, job.s).evaluate().functional;
-        }
       if (tried.count(job.state) > 0)
         return;
       Eigen::VectorXd  s = x.cwiseMin(0.);
       CondensedProblem problem(S, g, phi, s);
       MajoriseMinimise({}).minimize(problem);
-      s                  = s.cwiseMax(lower).cwiseMin(upper);
       const double value = problem.evaluate().functional;
       if (value < job.value)
         {
@@ -306,11 +285,7 @@ namespace Debond
           if (!root)
             return result;
           root->bound = std::max(root->bound, certified);
-          root->lower = root->lower.cwiseMax(lower);
-          root->upper = root->upper.cwiseMin(upper);
-          // If not, all points of the ranges are above the best one.
-          if ((root->lower.array() <= root->upper.array()).all())
-            open.insert(*root);
+          open.insert(*root);
           result.status = ProofStatus::proved;
         }
       else
@@ -392,13 +367,12 @@ namespace Debond
 
 
   BranchAndBoundResult
-  BranchAndBound::minimize(const MatrixView            &S,
-                           const VectorView            &g,
-                           const SeparableBranches     &phi,
-                           const VectorView            &start,
-                           const Monitor               &monitor,
-                           const std::vector<Interval> &ranges) const
+  BranchAndBound::minimize(const MatrixView        &S,
+                           const VectorView        &g,
+                           const SeparableBranches &phi,
+                           const VectorView        &start,
+                           const Monitor           &monitor) const
   {
-    return ProofTree(parameters, S, g, phi, start, ranges).run(monitor);
+    return ProofTree(parameters, S, g, phi, start).run(monitor);
   }
 } // namespace Debond

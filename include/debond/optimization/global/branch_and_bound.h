@@ -93,15 +93,13 @@ namespace Debond
 
     explicit BranchAndBound(const BranchAndBoundParameters &parameters);
 
-    /// @p start is a good point, with s <= 0. If there are @p ranges of the
-    /// unknowns, the minimum is that of the points in them.
+    /// @p start is a good point, with s <= 0.
     BranchAndBoundResult
-    minimize(const MatrixView            &S,
-             const VectorView            &g,
-             const SeparableBranches     &phi,
-             const VectorView            &start,
-             const Monitor               &monitor = {},
-             const std::vector<Interval> &ranges  = {}) const;
+    minimize(const MatrixView        &S,
+             const VectorView        &g,
+             const SeparableBranches &phi,
+             const VectorView        &start,
+             const Monitor           &monitor = {}) const;
 
   private:
     BranchAndBoundParameters parameters;
