@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/archive.h>
 #include <debond/optimization/bundle/bundle_qp.h>
 #include <debond/optimization/bundle/bundle_qp_tolerances.h>
 

@@ -2,7 +2,6 @@
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/vector.h>
 
-#include <debond/base/archive.h>
 #include <debond/optimization/bundle/euclidean_direction.h>
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/vector.h>
 
-#include <debond/base/archive.h>
 #include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/bundle/bundle_qp.h>
 #include <debond/optimization/bundle/metric_direction.h>

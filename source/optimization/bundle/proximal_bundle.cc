@@ -3,7 +3,6 @@
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/vector.h>
 
-#include <debond/base/archive.h>
 #include <debond/optimization/bundle/bundle.h>
 #include <debond/optimization/bundle/euclidean_direction.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
