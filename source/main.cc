@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/program/command_line.h>
-#include <debond/study/command_line.h>
 
 #include <csignal>
 
@@ -9,7 +8,5 @@ main(int argc, char *argv[])
 {
   // A file beyond the limit of the shell is then an error like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
-  return static_cast<int>(Debond::is_study_command_line(argc, argv) ?
-                            Debond::execute_study_command_line(argc, argv) :
-                            Debond::execute_command_line(argc, argv));
+  return static_cast<int>(Debond::execute_command_line(argc, argv));
 }

@@ -35,10 +35,6 @@ namespace Debond
       "Displacement",
       output.displacement,
       "Write displacement.txt, all degrees of freedom, from which another run can start");
-    bind_switch("Load path plots",
-                output.path_plots,
-                "Draw load_path*.png and .svg with gnuplot; their data and "
-                "scripts are written without it as well");
     bind_switch(
       "Load path contact VTU",
       output.path_contact_vtu,

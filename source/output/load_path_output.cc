@@ -4,7 +4,6 @@
 #include <debond/base/atomic_file.h>
 #include <debond/output/load_path.h>
 #include <debond/output/load_path_output.h>
-#include <debond/output/load_path_plots.h>
 #include <debond/output/vtu.h>
 
 #include <filesystem>
@@ -25,13 +24,11 @@ namespace Debond
     const OutputParameters               &output,
     const ElasticProblem<dim>            &problem,
     const std::vector<LoadPathStep<dim>> &steps,
-    const std::vector<LoadPathStep<dim>> &arc,
-    std::string                          &note)
+    const std::vector<LoadPathStep<dim>> &arc)
     : output(output)
     , problem(problem)
     , steps(steps)
     , arc(arc)
-    , note(note)
   {}
 
 
@@ -95,19 +92,15 @@ namespace Debond
   std::vector<OutputFile>
   LoadPathOutput<dim>::files()
   {
-    const auto has_steps = [this]() { return !steps.empty(); };
-    return {{{"load_path.csv"},
-             has_steps,
-             [this](const std::string &file) { write_load_path(steps, file); }},
-            {{"load_path_arc.csv"},
+    return {{"load_path_arc.csv",
              [this]() { return !arc.empty(); },
              [this](const std::string &file) { write_load_path(arc, file); }},
             series_file("load_path_body.pvd", bodies),
             series_file("load_path_contact.pvd", contacts),
-            {plot_files(load_path_plot_names()),
-             has_steps,
-             [this](const std::string & /*file*/) {
-               draw();
+            {"load_path.csv",
+             [this]() { return !steps.empty(); },
+             [this](const std::string &file) {
+               write_load_path(steps, file);
                if (!error.empty())
                  throw std::runtime_error(error);
              }}};
@@ -120,27 +113,13 @@ namespace Debond
   LoadPathOutput<dim>::series_file(const std::string &name,
                                    const Series      &series) const
   {
-    return {{name},
+    return {name,
             [&series]() { return !series.empty(); },
             [&series](const std::string &file) {
               write_atomically(file, [&series](std::ostream &out) {
                 dealii::DataOutBase::write_pvd_record(out, series);
               });
             }};
-  }
-
-
-
-  template <int dim>
-  void
-  LoadPathOutput<dim>::draw() const
-  {
-    for (const Plot &plot : load_path_plots(steps, arc))
-      {
-        write_gnuplot(plot, output.directory);
-        if (output.path_plots && note.empty())
-          note = run_gnuplot(plot, output.directory);
-      }
   }
 
 

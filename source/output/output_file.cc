@@ -10,13 +10,12 @@ namespace Debond
                const std::string             &directory)
   {
     for (const OutputFile &file : files)
-      for (const std::string &name : file.names)
-        {
-          const auto      path = std::filesystem::path(directory) / name;
-          std::error_code error;
-          if (std::filesystem::is_regular_file(path, error))
-            std::filesystem::remove(path, error);
-        }
+      {
+        const auto      path = std::filesystem::path(directory) / file.name;
+        std::error_code error;
+        if (std::filesystem::is_regular_file(path, error))
+          std::filesystem::remove(path, error);
+      }
   }
 
 
@@ -27,16 +26,12 @@ namespace Debond
   {
     std::vector<std::string> written;
     for (const OutputFile &file : files)
-      {
-        if (!file.is_wanted())
-          continue;
-        const std::filesystem::path folder = directory;
-        file.write((folder / file.names.front()).string());
-        // Some are not written if others cannot be made, such as pictures.
-        for (const std::string &name : file.names)
-          if (std::filesystem::exists(folder / name))
-            written.push_back((folder / name).string());
-      }
+      if (file.is_wanted())
+        {
+          written.push_back(
+            (std::filesystem::path(directory) / file.name).string());
+          file.write(written.back());
+        }
     return written;
   }
 } // namespace Debond

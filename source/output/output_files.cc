@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/output/output_files.h>
-#include <debond/output/proof_plots.h>
 #include <debond/output/tables.h>
 #include <debond/output/vtu.h>
 #include <debond/solve/displacement.h>
@@ -22,20 +21,6 @@ namespace Debond
         write_history(result.bundle_history, found, path);
       else
         write_history(result.majorise_history, found, path);
-    }
-
-
-
-    void
-    draw_proof(const std::vector<ProofProgress> &history,
-               const std::string                &directory,
-               std::string                      &note)
-    {
-      for (const Plot &plot : proof_plots(history))
-        {
-          write_gnuplot(plot, directory);
-          note = run_gnuplot(plot, directory);
-        }
     }
 
 
@@ -116,14 +101,10 @@ namespace Debond
   std::vector<OutputFile>
   output_files(const OutputParameters &output,
                const Scene<dim>       &scene,
-               const RunResult<dim>   &result,
-               std::string            &note)
+               const RunResult<dim>   &result)
   {
-    const auto has_proof = [&]() {
-      return output.history && !result.solve.minimum.proof_history.empty();
-    };
     return {
-      {{"body.vtu"},
+      {"body.vtu",
        [&]() {
          return output.body_vtu && result.has_displacement() &&
                 scene.piece() == nullptr;
@@ -137,10 +118,10 @@ namespace Debond
                         fields_of_cells(scene, result.certificate));
        }},
       // Of several ranks, which write it themselves.
-      {{"body.pvtu"},
+      {"body.pvtu",
        []() { return false; },
        [](const std::string & /*path*/) {}},
-      {{"contact.vtu"},
+      {"contact.vtu",
        [&]() { return output.contact_vtu && result.has_displacement(); },
        [&](const std::string &path) {
          write_contact_vtu(scene.contact_boundary(),
@@ -148,14 +129,14 @@ namespace Debond
                            path,
                            fields_of_faces(scene, result.certificate));
        }},
-      {{"contact_profile.csv"},
+      {"contact_profile.csv",
        [&]() { return output.contact_profile && result.has_displacement(); },
        [&](const std::string &path) {
          write_contact_profile(scene.contact_boundary(),
                                result.verification,
                                path);
        }},
-      {{"certified_sides.csv"},
+      {"certified_sides.csv",
        [&]() {
          return output.contact_profile && result.certificate &&
                 !result.certificate->sides.empty();
@@ -163,23 +144,20 @@ namespace Debond
        [&](const std::string &path) {
          write_certified_sides(*result.certificate, scene.law(), path);
        }},
-      {{"history.csv"},
+      {"history.csv",
        [&]() { return output.history; },
        [&](const std::string &path) { write_iterations(result.solve, path); }},
-      {{"displacement.txt"},
+      {"displacement.txt",
        [&]() { return output.displacement && result.has_displacement(); },
        [&](const std::string &path) {
          write_displacement(result.solve.u, path);
        }},
-      {{"proof.csv"},
-       has_proof,
+      {"proof.csv",
+       [&]() {
+         return output.history && !result.solve.minimum.proof_history.empty();
+       },
        [&](const std::string &path) {
          write_history(result.solve.minimum.proof_history, path);
-       }},
-      {plot_files(proof_plot_names()),
-       has_proof,
-       [&](const std::string & /*path*/) {
-         draw_proof(result.solve.minimum.proof_history, output.directory, note);
        }}};
   }
 

@@ -79,18 +79,13 @@ namespace Debond
 
 
   void
-  report_files(const std::vector<std::string> &files,
-               const std::string              &no_pictures,
-               Record                         &record)
+  report_files(const std::vector<std::string> &files, Record &record)
   {
-    if (record.has_details())
-      {
-        record.heading("Written");
-        for (const std::string &file : files)
-          record.heading("  " + file);
-      }
-    if (!no_pictures.empty())
-      record.heading("No pictures: " + no_pictures);
+    if (!record.has_details())
+      return;
+    record.heading("Written");
+    for (const std::string &file : files)
+      record.heading("  " + file);
   }
 
 

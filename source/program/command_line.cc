@@ -34,7 +34,6 @@ namespace Debond
 
     const char *const usage =
       "Usage: debond SCENE.prm... [OPTIONS]\n"
-      "       debond --study STUDY.prm [OPTIONS]; see debond --study --help\n"
       "\n"
       "Solves the unilateral contact of an elastic body with an adhesive\n"
       "foundation as the scene describes it. Several scenes are solved one\n"
@@ -90,6 +89,8 @@ namespace Debond
       // Abbreviations would make every new option a breaking change.
       const int style = po::command_line_style::default_style &
                         ~po::command_line_style::allow_guessing;
+      if (argc > 1 && std::string(argv[1]) == "--study")
+        throw BadInput({"studies are run by scripts/study STUDY.prm"});
       try
         {
           po::variables_map values;
@@ -145,7 +146,7 @@ namespace Debond
           read_scene(scene, table);
           if (table.has_unknown_section("Study"))
             throw BadInput(
-              {scene + ": this is a study; run debond --study " + scene});
+              {scene + ": this is a study; run scripts/study " + scene});
         }
       for (const std::string &assignment : assignments)
         table.assign(assignment);

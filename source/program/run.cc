@@ -46,13 +46,10 @@ namespace Debond
       make_certifier(certificate, scene, solver.memory_limit);
 
     RunResult<dim>          result;
-    std::string             no_pictures;
-    std::vector<OutputFile> files =
-      output_files(output, *scene, result, no_pictures);
+    std::vector<OutputFile> files = output_files(output, *scene, result);
     std::optional<LoadPathOutput<dim>> path_output;
     const auto                         add_path_output = [&]() {
-      path_output.emplace(
-        output, scene->problem(), result.path, result.arc, no_pictures);
+      path_output.emplace(output, scene->problem(), result.path, result.arc);
       append(path_output->files(), files);
     };
     add_path_output();
@@ -120,7 +117,7 @@ namespace Debond
                                                parameters.contact_boundaries,
                                                parameters.degree),
                                     dim);
-        files = output_files(output, *scene, result, no_pictures);
+        files = output_files(output, *scene, result);
         add_path_output();
       }
     else if (load_path.factors.empty())
@@ -201,7 +198,7 @@ namespace Debond
       {
         output_error = error.what();
       }
-    report_files(written, no_pictures, record);
+    report_files(written, record);
     record.print(out);
     return conclude(result, output_error);
   }

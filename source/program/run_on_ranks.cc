@@ -140,11 +140,10 @@ namespace Debond
     const Scene<dim>        scene(parameters, piece, ranks);
 
     RunResult<dim>                result;
-    std::string                   no_pictures, failure;
-    const std::vector<OutputFile> files =
-      output_files(output, scene, result, no_pictures);
-    std::optional<DirectoryLock> lock;
-    std::vector<std::string>     written;
+    std::string                   failure;
+    const std::vector<OutputFile> files = output_files(output, scene, result);
+    std::optional<DirectoryLock>  lock;
+    std::vector<std::string>      written;
     if (is_first)
       try
         {
@@ -263,7 +262,7 @@ namespace Debond
           {
             failure = error.what();
           }
-        report_files(written, no_pictures, record);
+        report_files(written, record);
         record.print(out);
         code = conclude(result, failure);
       }

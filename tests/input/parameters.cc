@@ -169,7 +169,7 @@ namespace
             "Mesh/Scale=3"},
            {"Material/Thermal expansion=1e-6"},
            {"Loads/Temperature change=5"},
-           {"Load path/Bonds heal=false", "Output/Load path plots=false"},
+           {"Load path/Bonds heal=false", "Output/Load path body VTU=true"},
            {"Load path/Factors=0:0.1:1",
             "Load path/Global branch=none",
             "Solver/Search=full"},

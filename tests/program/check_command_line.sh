@@ -71,8 +71,10 @@ subsection Study
 end
 STUDY
 expect_code 2 "$debond" study.prm
-grep -qx "debond: study.prm: this is a study; run debond --study study.prm" \
+grep -qx "debond: study.prm: this is a study; run scripts/study study.prm" \
   errors || fail "a study: $(cat errors)"
+expect_code 2 "$debond" --study study.prm
+grep -q "scripts/study" errors || fail "--study: $(cat errors)"
 printf '\xef\xbb\xbfset Dimension = 3\n' >mark.prm
 expect_code 0 "$debond" mark.prm --print-parameters
 grep -qE '^set Dimension += 3 ' log ||
@@ -101,7 +103,6 @@ refused() {
 for name in ...prm ..prm $'a\nb.prm' $'a\x1b[31m.prm' $'a\xc2\x9b31m.prm'; do
   : >"$name"
   refused "no scene may have this name" "$name"
-  refused "no scene may have this name" --study "$name"
   rm -- "$name"
 done
 : >plain.prm

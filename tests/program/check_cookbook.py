@@ -131,8 +131,7 @@ def main(debond, directory):
     peel = directory + "/peel.prm"
     plateau, energies = [], []
     for cells in "160, 2", "320, 4", "640, 8":
-        run(debond, peel, ["Mesh/Cells=" + cells,
-                           "Output/Load path plots=false"])
+        run(debond, peel, ["Mesh/Cells=" + cells])
         rows = path_rows()
         half = rows[len(rows) // 2:]
         first, last = half[0], half[-1]
@@ -160,8 +159,7 @@ def main(debond, directory):
     tack = directory + "/tack.prm"
     openings, ends = [], []
     for cells in "8, 4", "16, 8", "32, 16":
-        summary = run(debond, tack, ["Mesh/Cells=" + cells,
-                                     "Output/Load path plots=false"])[0]
+        summary = run(debond, tack, ["Mesh/Cells=" + cells])[0]
         if summary["status"] != "comes off":
             failures.append("tack, status")
         openings.append(path_rows()[9]["largest_gap"])
@@ -180,8 +178,7 @@ def main(debond, directory):
              "Contact law/Bond threshold=0.0063246",
              "Boundary conditions/Displacement left=free; 1",
              "Load path/Displacement factors=0.8:0.8:2.4",
-             "Load path/Bonds heal=false",
-             "Output/Load path plots=false"])
+             "Load path/Bonds heal=false"])
         last = path_rows()[-1]
         products.append(last["reaction_left_y"] * last["broken_zone"])
     compare("double cantilever, force times crack length", crack_couple(),

@@ -13,9 +13,6 @@ cd work
 "$prefix/bin/debond" "$prefix/share/debond/prm/benchmark-40x4.prm" >log ||
   fail "The installed program fails: $(cat log)"
 grep -Eq "status +success" log || fail "no success: $(cat log)"
-"$prefix/bin/debond" --study --validate \
-  "$prefix/share/debond/prm/studies/table-1.prm" >log ||
-  fail "An installed study is not read: $(cat log)"
 "$tests/program/check_links.py" "$prefix/share/doc/debond"
 [ -s "$prefix/share/doc/debond/LICENSE" ] || fail "no licence"
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
-# check_lock.sh DEBOND SCENE.prm: two runs do not write into one directory, nor
-# do two studies; a lock that a killed run left behind is no obstacle.
+# check_lock.sh DEBOND SCENE.prm: two runs do not write into one directory; a
+# lock that a killed run left behind is no obstacle.
 . "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 scene=$2
 trap 'kill $(jobs -p) 2>/dev/null || true; rm -rf "$directory"' EXIT
@@ -59,26 +59,3 @@ for plant in "ln -s ../victim" "ln -s ../missing" "ln ../victim" mkfifo mkdir; d
   [ "$(cat victim)" = precious ] && [ ! -e missing ] || fail "$plant: followed"
   [ "$(ls -A planted)" = .lock ] || fail "$plant: $(ls -A planted)"
 done
-
-# A study.
-cp "$scene" scene.prm
-cat >study.prm <<'STUDY'
-subsection Study
-  set Scene            = scene.prm
-  set Settings         = Solver/Euclidean bundle/Stop tolerance=1e-300 | Solver/Euclidean bundle/Maximum iterations=1000000000
-  set Output directory = study
-end
-subsection Sweep 1
-  set Parameter = Solver/Euclidean bundle/Proximal weight
-  set Values    = 1 | 0.5
-end
-STUDY
-"$debond" --study study.prm --jobs 1 >first 2>&1 &
-process=$!
-wait_for "[ -e study/.lock ]"
-expect_code 5 "$debond" --study study.prm --jobs 1
-grep -q "^debond: study is being written by process $process " errors ||
-  fail "not the process: $(cat errors)"
-kill $process
-wait $process || true
-[ ! -e study/.lock ] || fail "The lock of the study is still there."

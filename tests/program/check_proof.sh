@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # check_proof.sh DEBOND SCENE.prm: a proof that is interrupted, or out of
-# nodes, leaves a solution and a valid gap; threads change nothing; pictures
-# only with gnuplot; what is printed as a bound is one.
+# nodes, leaves a solution and a valid gap; threads change nothing; what is
+# printed as a bound is one.
 . "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 scene=$2
 
@@ -34,17 +34,6 @@ for key in nodes lower_bound relative_gap functional; do
   [ "$(value one $key)" = "$(value two $key)" ] || fail "threads change $key"
 done
 [ "$(value one nodes)" -gt 8 ] || fail "one batch of nodes is too few to tell"
-for plot in proof_time proof_nodes; do
-  for ending in dat gp; do
-    [ -s one/$plot.$ending ] || fail "no $plot.$ending"
-  done
-done
-
-mkdir bin
-for program in "$debond" $(command -v env); do ln -s "$program" bin; done
-PATH=$directory/bin prove plain
-[ -s plain/proof_time.gp ] || fail "no script without gnuplot"
-[ ! -e plain/proof_time.png ] || fail "a picture without gnuplot"
 
 prove nodes --set "Solver/Proof/Maximum nodes=9"
 [ "$(value nodes nodes)" -eq 9 ] || fail "more than 9 nodes"

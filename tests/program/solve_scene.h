@@ -60,7 +60,7 @@ solve_scene(const Values &assignments)
   Debond::SceneTable table;
   for (const std::string &assignment : assignments)
     table.assign(assignment);
-  for (const char *file : {"Body VTU", "Contact VTU", "Load path plots"})
+  for (const char *file : {"Body VTU", "Contact VTU"})
     table.assign(std::string("Output/") + file + "=false");
   table.assign("Output/Directory=" + directory.string());
   std::ostringstream log;

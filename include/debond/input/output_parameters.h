@@ -16,7 +16,6 @@ namespace Debond
     bool        contact_profile  = true;
     bool        history          = true;
     bool        displacement     = false;
-    bool        path_plots       = true;
     bool        path_body_vtu    = false;
     bool        path_contact_vtu = true;
     bool        machine_details  = true;

@@ -5,12 +5,9 @@
 namespace Debond
 {
   /// Has OpenBLAS and OpenMP, which CHOLMOD uses, work with one thread, if they
-  /// are there: a second one gains little on factors as small as these and
-  /// costs much if the other cores are busy.
-  void
-  use_one_blas_thread();
-
-  /// The same, if neither OPENBLAS_NUM_THREADS nor OMP_NUM_THREADS is set.
+  /// are there and neither OPENBLAS_NUM_THREADS nor OMP_NUM_THREADS is set: a
+  /// second one gains little on factors as small as these and costs much if the
+  /// other cores are busy.
   void
   use_one_blas_thread_by_default();
 } // namespace Debond

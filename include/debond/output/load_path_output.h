@@ -23,12 +23,10 @@ namespace Debond
   {
   public:
     /// Keeps references: the @p steps and the @p arc need not be there yet.
-    /// What hinders gnuplot, if it is wanted, is told in @p note.
     LoadPathOutput(const OutputParameters               &output,
                    const ElasticProblem<dim>            &problem,
                    const std::vector<LoadPathStep<dim>> &steps,
-                   const std::vector<LoadPathStep<dim>> &arc,
-                   std::string                          &note);
+                   const std::vector<LoadPathStep<dim>> &arc);
 
     /// Those that an earlier run left in load_path/.
     void
@@ -41,8 +39,8 @@ namespace Debond
         const DofVector         &u,
         const Verification<dim> &verification);
 
-    /// All but those in load_path/: the table, the records of the files above
-    /// and the plots.
+    /// All but those in load_path/: the table and the records of the files
+    /// above.
     std::vector<OutputFile>
     files();
 
@@ -52,9 +50,6 @@ namespace Debond
 
     std::string
     name_of_step(const std::string &body, const unsigned int step) const;
-
-    void
-    draw() const;
 
     /// Times with the files that belong to them.
     using Series = std::vector<std::pair<double, std::string>>;
@@ -66,7 +61,6 @@ namespace Debond
     const ElasticProblem<dim>            &problem;
     const std::vector<LoadPathStep<dim>> &steps;
     const std::vector<LoadPathStep<dim>> &arc;
-    std::string                          &note;
     Series                                bodies;
     Series                                contacts;
     std::string                           error;

@@ -8,17 +8,15 @@
 
 namespace Debond
 {
-  /// A file that a run may write into its directory, or several that belong
-  /// together.
+  /// A file that a run may write into its directory.
   struct OutputFile
   {
-    std::vector<std::string> names;
+    std::string name;
 
     /// Whether the scene asks for it and the run has it.
     std::function<bool()> is_wanted;
 
-    /// Gets the path of the first one. Throws std::runtime_error naming what
-    /// cannot be written.
+    /// Gets the path. Throws std::runtime_error naming what cannot be written.
     std::function<void(const std::string &)> write;
   };
 

@@ -15,15 +15,13 @@ namespace Debond
   /**
    * The files of a run but those that are there before the end of the solve
    * (parameters.prm), those of a load path (LoadPathOutput) and
-   * summary.json. Keeps references: the @p result need not be there yet. What
-   * hinders gnuplot is told in @p note.
+   * summary.json. Keeps references: the @p result need not be there yet.
    */
   template <int dim>
   std::vector<OutputFile>
   output_files(const OutputParameters &output,
                const Scene<dim>       &scene,
-               const RunResult<dim>   &result,
-               std::string            &note);
+               const RunResult<dim>   &result);
 } // namespace Debond
 
 #endif

@@ -53,12 +53,9 @@ namespace Debond
               const double          peak_memory,
               Record               &record);
 
-  /// The paths of the files written, and why there are no pictures if there
-  /// should be.
+  /// The paths of the files written.
   void
-  report_files(const std::vector<std::string> &files,
-               const std::string              &no_pictures,
-               Record                         &record);
+  report_files(const std::vector<std::string> &files, Record &record);
 } // namespace Debond
 
 #endif
