@@ -28,7 +28,6 @@ namespace Debond
   void
   ElasticProblem<dim>::assemble(const ByRegion<Material> &materials,
                                 const Loads<dim>         &loads,
-                                const MatrixStorage       new_storage,
                                 const Loads<dim>         &dead_loads)
   {
     const dealii::DoFHandler<dim> &dofs = elastic_unknowns.dof_handler();
@@ -80,32 +79,18 @@ namespace Debond
                                             pattern,
                                             constraints,
                                             /*keep_constrained_dofs=*/false);
-    storage = new_storage;
     system_matrix.clear();
     distributed_matrix.reset();
-    if (storage == MatrixStorage::serial)
-      {
-        sparsity.copy_from(pattern);
-        system_matrix.reinit(sparsity);
-        add_cell_matrices(materials, system_matrix);
-      }
-    else
-      {
-        distributed_matrix =
-          std::make_unique<dealii::TrilinosWrappers::SparseMatrix>();
-        distributed_matrix->reinit(pattern);
-        add_cell_matrices(materials, *distributed_matrix);
-        distributed_matrix->compress(dealii::VectorOperation::add);
-      }
+    sparsity.copy_from(pattern);
+    system_matrix.reinit(sparsity);
+    add_cell_matrices(materials);
   }
 
 
 
   template <int dim>
-  template <typename MatrixType>
   void
-  ElasticProblem<dim>::add_cell_matrices(const ByRegion<Material> &materials,
-                                         MatrixType               &matrix) const
+  ElasticProblem<dim>::add_cell_matrices(const ByRegion<Material> &materials)
   {
     const auto stiffness = materials.transformed([](const Material &material) {
       return material.elasticity_tensor<dim>();
@@ -165,9 +150,8 @@ namespace Debond
                   cell_matrix(i, j) += weighted_stress * strains[j];
               }
           }
-        elastic_unknowns.constraints().distribute_local_to_global(cell_matrix,
-                                                                  cell_dofs,
-                                                                  matrix);
+        elastic_unknowns.constraints().distribute_local_to_global(
+          cell_matrix, cell_dofs, system_matrix);
       }
   }
 
@@ -196,7 +180,6 @@ namespace Debond
   const dealii::SparseMatrix<double> &
   ElasticProblem<dim>::matrix() const
   {
-    Assert(storage == MatrixStorage::serial, dealii::ExcInvalidState());
     return system_matrix;
   }
 
@@ -206,7 +189,12 @@ namespace Debond
   const dealii::TrilinosWrappers::SparseMatrix &
   ElasticProblem<dim>::trilinos_matrix() const
   {
-    Assert(storage == MatrixStorage::trilinos, dealii::ExcInvalidState());
+    if (!distributed_matrix)
+      {
+        distributed_matrix =
+          std::make_unique<dealii::TrilinosWrappers::SparseMatrix>();
+        distributed_matrix->reinit(system_matrix, /*drop_tolerance=*/0.);
+      }
     return *distributed_matrix;
   }
 
@@ -216,9 +204,7 @@ namespace Debond
   double
   ElasticProblem<dim>::diagonal_entry(const unsigned int i) const
   {
-    return storage == MatrixStorage::serial ?
-             system_matrix.diag_element(i) :
-             distributed_matrix->diag_element(i);
+    return system_matrix.diag_element(i);
   }
 
 

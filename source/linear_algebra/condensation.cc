@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/lapack_templates.h>
 
+#include <debond/base/memory.h>
 #include <debond/linear_algebra/condensation.h>
 
 #include <cholmod.h>
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -56,6 +58,38 @@ namespace Debond
 
     using Dense  = Owned<cholmod_dense, cholmod_free_dense>;
     using Sparse = Owned<cholmod_sparse, cholmod_free_sparse>;
+
+
+
+    /// The symbolic factorisation of the symmetric matrix with the last
+    /// @p n_kept unknowns last, the others by minimum degree.
+    cholmod_factor *
+    analyse(cholmod_sparse    *matrix,
+            const unsigned int n_kept,
+            cholmod_common    &common)
+    {
+      const int        n = static_cast<int>(matrix->nrow);
+      std::vector<int> group(n, 0), permutation(n);
+      // Numbers of groups are below n, which a single unknown has to heed.
+      if (n > static_cast<int>(n_kept))
+        std::fill(group.end() - n_kept, group.end(), 1);
+      if (!cholmod_camd(
+            matrix, nullptr, 0, group.data(), permutation.data(), &common))
+        throw std::bad_alloc();
+      // CAMD keeps the groups apart but not the order within the last one.
+      for (unsigned int k = 0; k < n_kept; ++k)
+        permutation[n - n_kept + k] = n - n_kept + k;
+
+      common.nmethods           = 1;
+      common.method[0].ordering = CHOLMOD_GIVEN;
+      // A postordering is free to mix the kept unknowns with the others.
+      common.postorder = 0;
+      cholmod_factor *const L =
+        cholmod_analyze_p(matrix, permutation.data(), nullptr, 0, &common);
+      if (L == nullptr)
+        throw std::bad_alloc();
+      return L;
+    }
   } // namespace
 
 
@@ -181,31 +215,9 @@ namespace Debond
         }
       starts[n] = static_cast<int>(next);
 
-      std::vector<int> group(n, 0), permutation(n);
-      // Numbers of groups are below n, which a single unknown has to heed.
-      if (n > static_cast<int>(n_kept))
-        std::fill(group.end() - n_kept, group.end(), 1);
-      if (!cholmod_camd(matrix.get(),
-                        nullptr,
-                        0,
-                        group.data(),
-                        permutation.data(),
-                        &common))
-        throw std::bad_alloc();
-      // CAMD keeps the groups apart but not the order within the last one.
-      for (unsigned int k = 0; k < n_kept; ++k)
-        permutation[n - n_kept + k] = n - n_kept + k;
-
-      common.nmethods           = 1;
-      common.method[0].ordering = CHOLMOD_GIVEN;
-      common.supernodal         = CHOLMOD_SUPERNODAL;
-      common.final_ll           = 1;
-      // A postordering is free to mix the kept unknowns with the others.
-      common.postorder = 0;
-      L                = cholmod_analyze_p(
-        matrix.get(), permutation.data(), nullptr, 0, &common);
-      if (L == nullptr)
-        throw std::bad_alloc();
+      common.supernodal = CHOLMOD_SUPERNODAL;
+      common.final_ll   = 1;
+      L                 = analyse(matrix.get(), n_kept, common);
       for (unsigned int k = 0; k < n_kept; ++k)
         if (static_cast<const int *>(L->Perm)[n - n_kept + k] !=
             static_cast<int>(n - n_kept + k))
@@ -213,6 +225,9 @@ namespace Debond
             "Condensation: the ordering did not keep the "
             "contact normals last.");
 
+      // What is more than that the system would end the program for.
+      if (8. * static_cast<double>(L->xsize) > memory_left(0.))
+        throw std::bad_alloc();
       cholmod_factorize(matrix.get(), L, &common);
       if (common.status == CHOLMOD_NOT_POSDEF)
         throw std::runtime_error(
@@ -228,6 +243,75 @@ namespace Debond
     cholmod_common  common;
     cholmod_factor *L = nullptr;
   };
+
+
+
+  FactorisationCost
+  factorisation_cost(const dealii::SparseMatrix<double> &A,
+                     const std::vector<unsigned int>    &kept,
+                     const unsigned int                  n_components)
+  {
+    const unsigned int        n = A.m() / n_components;
+    std::vector<unsigned int> order, position(n);
+    std::vector<char>         is_kept(n, 0);
+    for (const unsigned int i : kept)
+      is_kept[i / n_components] = 1;
+    for (const char last : {0, 1})
+      for (unsigned int node = 0; node < n; ++node)
+        if (is_kept[node] == last)
+          {
+            position[node] = static_cast<unsigned int>(order.size());
+            order.push_back(node);
+          }
+    const unsigned int n_kept =
+      static_cast<unsigned int>(std::count(is_kept.begin(), is_kept.end(), 1));
+
+    // The upper triangle by columns. A row of a held unknown has only its
+    // diagonal entry.
+    std::vector<int>       starts = {0}, rows;
+    std::set<unsigned int> column;
+    for (const unsigned int node : order)
+      {
+        column.clear();
+        for (unsigned int c = 0; c < n_components; ++c)
+          for (auto entry = A.begin(node * n_components + c);
+               entry != A.end(node * n_components + c);
+               ++entry)
+            if (const unsigned int row =
+                  position[entry->column() / n_components];
+                row <= position[node])
+              column.insert(row);
+        rows.insert(rows.end(), column.begin(), column.end());
+        starts.push_back(static_cast<int>(rows.size()));
+      }
+
+    cholmod_common common;
+    cholmod_start(&common);
+    common.print         = 0;
+    common.error_handler = nullptr;
+    common.supernodal    = CHOLMOD_SIMPLICIAL;
+    FactorisationCost cost;
+    try
+      {
+        const Sparse graph(
+          cholmod_allocate_sparse(
+            n, n, rows.size(), 1, 1, 1, CHOLMOD_PATTERN, &common),
+          common);
+        std::copy(starts.begin(), starts.end(), static_cast<int *>(graph->p));
+        std::copy(rows.begin(), rows.end(), static_cast<int *>(graph->i));
+        cholmod_factor *L = analyse(graph.get(), n_kept, common);
+        cholmod_free_factor(&L, &common);
+        cost.operations = std::pow(n_components, 3) * common.fl;
+        cost.entries    = std::pow(n_components, 2) * common.lnz;
+      }
+    catch (...)
+      {
+        cholmod_finish(&common);
+        throw;
+      }
+    cholmod_finish(&common);
+    return cost;
+  }
 
 
 

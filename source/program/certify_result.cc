@@ -10,16 +10,13 @@ namespace Debond
   template <int dim>
   std::unique_ptr<const Certifier<dim>>
   make_certifier(const CertificateKind                    kind,
-                 const std::shared_ptr<const Scene<dim>> &scene,
-                 const double                             memory_limit)
+                 const std::shared_ptr<const Scene<dim>> &scene)
   {
     if (kind == CertificateKind::none)
       return nullptr;
     try
       {
-        return std::make_unique<const Certifier<dim>>(kind,
-                                                      scene,
-                                                      memory_limit);
+        return std::make_unique<const Certifier<dim>>(kind, scene);
       }
     catch (const EquilibriumError &error)
       {
@@ -42,7 +39,6 @@ namespace Debond
                  const CertificateKind                    kind,
                  const bool                               is_refined,
                  const BranchAndBoundParameters          &proof,
-                 const double                             memory_limit,
                  const std::shared_ptr<const Scene<dim>> &scene,
                  RunResult<dim>                          &result)
   {
@@ -61,7 +57,7 @@ namespace Debond
       {
         if (certifier == nullptr ||
             (is_refined && !certifier->is_for_finer_meshes()))
-          certify(Certifier<dim>(kind, scene, memory_limit));
+          certify(Certifier<dim>(kind, scene));
         else
           certify(*certifier);
       }

@@ -63,7 +63,7 @@ namespace Debond
         ("version", "print versions and the build type") //
         ("print-parameters",
          "print all parameters with their documentation as a scene, with the "
-         "defaults or the values of SCENE.prm and --set") //
+         "defaults or the values of SCENE.prm and --set")   //
         ("validate", "read and check the scene, then stop") //
         ("set",
          po::value<std::vector<std::string>>()->value_name(
@@ -123,11 +123,10 @@ namespace Debond
       if (!only_validate)
         return run<dim>(parameters, std::cout, isatty(STDOUT_FILENO) == 1);
 
-      const MethodChoice choice =
+      MethodChoice choice =
         choose_method(parameters, parameters.solver, parameters.accuracy);
-      const Scene<dim> scene(parameters,
-                             MatrixStorage::serial,
-                             parameters.solver.start);
+      const Scene<dim> scene(parameters, parameters.solver.start);
+      choose_linear_solver(scene, parameters.solver, choice);
       check_supports_of_method(choice, parameters.solver, scene);
       std::cout << parameters.scene << ": valid" << std::endl;
       return ExitCode::success;

@@ -3,6 +3,7 @@
 
 #include <debond/base/append.h>
 #include <debond/base/directory_lock.h>
+#include <debond/base/memory.h>
 #include <debond/base/text.h>
 #include <debond/output/load_path_output.h>
 #include <debond/output/output_files.h>
@@ -13,7 +14,6 @@
 #include <debond/program/run.h>
 #include <debond/program/session.h>
 #include <debond/solve/load_path.h>
-#include <debond/solve/scene_size.h>
 
 #include <filesystem>
 #include <memory>
@@ -32,18 +32,19 @@ namespace Debond
     const OutputParameters   &output      = parameters.output;
     const AccuracyParameters &accuracy    = parameters.accuracy;
     MethodChoice choice = choose_method(parameters, solver, accuracy);
+    std::shared_ptr<const Scene<dim>> scene =
+      make_first_scene<dim>(parameters, accuracy, parameters.solver.start);
+    choose_linear_solver(*scene, solver, choice);
+    check_supports_of_method(choice, solver, *scene);
     // Trilinos needs MPI even in one process; others need not wait for it.
     if (choice.linear_solver == LinearSolver::multigrid)
       start_mpi();
-    std::shared_ptr<const Scene<dim>> scene = make_first_scene<dim>(
-      parameters, accuracy, matrix_storage(choice), parameters.solver.start);
-    check_supports_of_method(choice, solver, *scene);
     // Before the solve, so that nothing is lost if it is not finite somewhere.
     error_of(parameters.verification.exact_displacement,
              *scene,
              DofVector(scene->problem().unknowns().n_dofs()));
     const std::unique_ptr<const Certifier<dim>> certifier =
-      make_certifier(certificate, scene, solver.memory_limit);
+      make_certifier(certificate, scene);
 
     RunResult<dim>          result;
     std::vector<OutputFile> files = output_files(output, *scene, result);
@@ -110,14 +111,7 @@ namespace Debond
         result.solve       = std::move(adaptive.solve);
         shortfall          = adaptive.shortfall;
         result.certificate = std::move(adaptive.certificate);
-        // On the last mesh.
-        choice.memory =
-          memory_with_factorisation(scene_size(scene->body(),
-                                               dim,
-                                               parameters.contact_boundaries,
-                                               parameters.degree),
-                                    dim);
-        files = output_files(output, *scene, result);
+        files              = output_files(output, *scene, result);
         add_path_output();
       }
     else if (load_path.factors.empty())
@@ -168,17 +162,8 @@ namespace Debond
                      certificate,
                      accuracy.is_adaptive(),
                      solver.proof,
-                     solver.memory_limit,
                      scene,
                      result);
-    if (result.certificate)
-      choice.memory = std::max(
-        choice.memory,
-        memory_with_certificate(scene_size(scene->body(),
-                                           dim,
-                                           parameters.contact_boundaries,
-                                           parameters.degree),
-                                dim));
     report_result(*scene, choice, result, record);
 
     std::string output_error;

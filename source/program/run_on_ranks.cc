@@ -4,6 +4,7 @@
 
 #include <debond/base/append.h>
 #include <debond/base/directory_lock.h>
+#include <debond/base/memory.h>
 #include <debond/base/text.h>
 #include <debond/check/plausibility.h>
 #include <debond/mesh/box_piece.h>

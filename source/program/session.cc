@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/utilities.h>
-
 #include <debond/base/atomic_file.h>
 #include <debond/base/text.h>
 #include <debond/program/session.h>
@@ -23,16 +21,6 @@ namespace Debond
     const std::string path = output_path(directory, "parameters.prm");
     write_atomically(path, [&](std::ostream &file) { file << scene; });
     return path;
-  }
-
-
-
-  double
-  peak_memory()
-  {
-    dealii::Utilities::System::MemoryStats memory;
-    dealii::Utilities::System::get_memory_stats(memory);
-    return 1024. * static_cast<double>(memory.VmHWM);
   }
 
 

@@ -2,12 +2,12 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/base/interrupt.h>
+#include <debond/base/memory.h>
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/input/bad_input.h>
 #include <debond/mesh/bisected_body.h>
 #include <debond/solve/adaptive_loop.h>
 #include <debond/solve/load_path.h>
-#include <debond/solve/scene_size.h>
 
 #include <algorithm>
 #include <cmath>
@@ -158,6 +158,18 @@ namespace Debond
 
 
 
+    /// Estimate in bytes of what factorising @p n unknowns takes: mesh, A and
+    /// the fill of minimum degree orderings, about n log n in 2D and n^(4/3) in
+    /// 3D.
+    double
+    memory_of_factorisation(const double n, const int dim)
+    {
+      return dim == 2 ? (900. + 29. * std::log2(n)) * n :
+                        600. * n + 125. * std::pow(n, 4. / 3.);
+    }
+
+
+
     /// Why there can be no mesh as large as that of @p body; empty if there
     /// can. @p memory_limit: 0 for what is there.
     template <int dim>
@@ -167,18 +179,25 @@ namespace Debond
               const double              memory_limit,
               const Body<dim>          &body)
     {
-      const SceneSize size =
-        scene_size(body, dim, problem.contact_boundaries, problem.degree);
-      double memory = memory_with_factorisation(size, dim);
-      if (accuracy.certified_width > 0.)
-        memory = std::max(memory, memory_with_certificate(size, dim));
+      // Of degree 2 edges have unknowns as well, their number by Euler's
+      // formula for bodies without holes, in 3D about.
+      const double n_nodes    = problem.degree == 1 ?
+                                  body.n_vertices() :
+                                  2. * body.n_vertices() + body.n_cells() - 1.;
+      const double n_unknowns = dim * n_nodes;
+      // Four unknowns on each of 3/2 sides a triangle, or nine on each of two
+      // faces a tetrahedron, for stresses.
+      const double n =
+        accuracy.certified_width > 0. ?
+          std::max(n_unknowns, (dim == 2 ? 6. : 18.) * body.n_cells()) :
+          n_unknowns;
+      const double       memory = memory_of_factorisation(n, dim);
       std::ostringstream text;
       text << "the next mesh would have " << std::fixed << std::setprecision(0)
-           << size.unknowns << " unknowns, ";
-      const double limit =
-        memory_limit > 0. ? memory_limit : available_memory();
+           << n_unknowns << " unknowns, ";
+      const double limit = memory_left(memory_limit);
       if (accuracy.maximum_unknowns > 0 &&
-          size.unknowns > accuracy.maximum_unknowns)
+          n_unknowns > accuracy.maximum_unknowns)
         text << "Accuracy/Maximum unknowns is " << accuracy.maximum_unknowns;
       else if (memory > limit)
         text << "which need about " << std::setprecision(2)
@@ -283,7 +302,6 @@ namespace Debond
     certify_level(const CertificateKind                    kind,
                   const double                             target,
                   const BranchAndBoundParameters          &proof,
-                  const double                             memory_limit,
                   const std::shared_ptr<const Scene<dim>> &scene,
                   const DofVector                         &u,
                   const bool                               is_last,
@@ -292,14 +310,13 @@ namespace Debond
     {
       const auto certify = [&](const CertificateKind           kind_of_this,
                                const BranchAndBoundParameters &limits) {
-        Certificate certificate =
-          Certifier<dim>(kind_of_this, scene, memory_limit)
-            .certify(*scene,
-                     u,
-                     limits,
-                     may_go_on,
-                     global ? &*global : nullptr,
-                     !is_last);
+        Certificate certificate = Certifier<dim>(kind_of_this, scene)
+                                    .certify(*scene,
+                                             u,
+                                             limits,
+                                             may_go_on,
+                                             global ? &*global : nullptr,
+                                             !is_last);
         if (certificate.minimum == CertifiedMinimum::global)
           global = certificate;
         return certificate;
@@ -357,11 +374,10 @@ namespace Debond
   std::shared_ptr<const Scene<dim>>
   make_first_scene(const ProblemParameters  &problem,
                    const AccuracyParameters &accuracy,
-                   const MatrixStorage       storage,
                    const std::string        &start)
   {
     if (!accuracy.is_adaptive())
-      return std::make_shared<const Scene<dim>>(problem, storage, start);
+      return std::make_shared<const Scene<dim>>(problem, start);
     std::shared_ptr<const Body<dim>> body;
     try
       {
@@ -371,13 +387,13 @@ namespace Debond
     catch (const PartError &)
       {
         // The scene without refinement says which entry that is.
-        return std::make_shared<const Scene<dim>>(problem, storage, start);
+        return std::make_shared<const Scene<dim>>(problem, start);
       }
     catch (const std::invalid_argument &error)
       {
         throw BadInput({problem.scene + ": Accuracy: " + error.what()});
       }
-    return std::make_shared<const Scene<dim>>(problem, body, storage, start);
+    return std::make_shared<const Scene<dim>>(problem, body, start);
   }
 
 
@@ -436,10 +452,7 @@ namespace Debond
         if (!is_first && solution.status == SolverStatus::interrupted)
           {
             if (!scene)
-              scene =
-                std::make_shared<const Scene<dim>>(problem,
-                                                   finished,
-                                                   matrix_storage(choice));
+              scene = std::make_shared<const Scene<dim>>(problem, finished);
             interrupt(result.solve);
             return result;
           }
@@ -466,7 +479,6 @@ namespace Debond
                 certify_level<dim>(certificate,
                                    target,
                                    solver.proof,
-                                   solver.memory_limit,
                                    scene,
                                    result.solve.u,
                                    is_last,
@@ -549,9 +561,7 @@ namespace Debond
               }
             return result;
           }
-        next = std::make_shared<const Scene<dim>>(problem,
-                                                  body,
-                                                  matrix_storage(choice));
+        next = std::make_shared<const Scene<dim>>(problem, body);
         if (guard.requested())
           {
             interrupt(result.solve);

@@ -7,7 +7,6 @@
 #include <debond/optimization/global/rounded_branches.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/solve/certificate.h>
-#include <debond/solve/scene_size.h>
 
 #include <Eigen/SparseCore>
 
@@ -54,35 +53,6 @@ namespace Debond
                                      mean_thermal_stresses(triangulation,
                                                            scene.materials(),
                                                            scene.loads()));
-    }
-
-
-
-    /// The scene, if the stresses of its body will fit into memory; throws
-    /// EquilibriumError if not. In the plane they take about as much as a
-    /// displacement, in 3D many times that.
-    template <int dim>
-    const Scene<dim> &
-    fitting(const Scene<dim> &scene, const double memory_limit)
-    {
-      const double needed = memory_with_certificate(
-        scene_size(scene.body(),
-                   dim,
-                   scene.parameters().contact_boundaries,
-                   scene.parameters().degree),
-        dim);
-      const double limit =
-        memory_limit > 0. ? memory_limit : available_memory();
-      if (dim == 3 && needed > limit)
-        {
-          std::ostringstream text;
-          text << std::setprecision(2)
-               << "the equilibrated stresses need about " << needed / (1 << 30)
-               << " GiB of memory, the limit is " << limit / (1 << 30)
-               << " GiB";
-          throw EquilibriumError(text.str());
-        }
-      return scene;
     }
 
 
@@ -484,14 +454,13 @@ namespace Debond
 
   template <int dim>
   Certifier<dim>::Certifier(const CertificateKind                    kind,
-                            const std::shared_ptr<const Scene<dim>> &scene,
-                            const double memory_limit)
+                            const std::shared_ptr<const Scene<dim>> &scene)
     : scene(scene)
     , minimum(kind == CertificateKind::global ||
                   scene->law().branches().size() == 1 ?
                 CertifiedMinimum::global :
                 CertifiedMinimum::fixed_state)
-    , equilibrium(equilibrium_problem(fitting(*scene, memory_limit)))
+    , equilibrium(equilibrium_problem(*scene))
   {
     check_normals(scene->problem().unknowns().contact().boundary());
     if (scene->adhesion().has_field())

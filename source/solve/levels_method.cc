@@ -13,7 +13,6 @@
 #include <debond/solve/levels_method.h>
 #include <debond/solve/multigrid_method.h>
 #include <debond/solve/refine_result.h>
-#include <debond/solve/scene_size.h>
 #include <debond/solve/solve.h>
 
 #include <algorithm>
@@ -50,9 +49,7 @@ namespace Debond
     {
       std::shared_ptr<const Body<dim>> body  = scene.body().coarser();
       unsigned int                     level = 1;
-      for (;
-           body && scene_size(*body, dim, scene.parameters().contact_boundaries)
-                       .unknowns > largest_coarse_factorisation;
+      for (; body && dim * body->n_vertices() > largest_coarse_factorisation;
            ++level)
         body = body->coarser();
       return {body, level};
@@ -112,9 +109,7 @@ namespace Debond
         {
           SolverParameters coarse = parameters;
           coarse.prove            = false;
-          const Scene<dim> coarse_scene(scene.parameters(),
-                                        body,
-                                        MatrixStorage::serial);
+          const Scene<dim> coarse_scene(scene.parameters(), body);
           // A piece does not know what holds the whole.
           check_supports_of_method(choice, parameters, coarse_scene);
           Watch       watch(guard, fine_watch);

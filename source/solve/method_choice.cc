@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/utilities.h>
-
+#include <debond/base/memory.h>
 #include <debond/input/bad_input.h>
+#include <debond/linear_algebra/condensation.h>
 #include <debond/solve/method_choice.h>
-#include <debond/solve/scene_size.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 
@@ -23,18 +23,6 @@ namespace Debond
 
 
     std::string
-    in_gib(const double bytes)
-    {
-      const double       gib = bytes / (1 << 30);
-      std::ostringstream text;
-      text << std::fixed << std::setprecision(gib < 10. ? 1 : 0) << gib
-           << " GiB";
-      return text.str();
-    }
-
-
-
-    std::string
     rounded(const double number)
     {
       std::ostringstream text;
@@ -44,11 +32,63 @@ namespace Debond
 
 
 
+    /// For each unknown.
+    constexpr double bytes_of_mesh_and_matrix = 600.;
+
+    /// On one core as of 2024.
+    constexpr double seconds_per_operation = 1e-10;
+
+
+
+    /// How many times as many cycles as at nu = 1/3 the largest Poisson ratio
+    /// takes.
     double
-    memory_limit(const SolverParameters &parameters)
+    more_cycles(const ProblemParameters &problem)
     {
-      return parameters.memory_limit > 0. ? parameters.memory_limit :
-                                            available_memory();
+      const Material &everywhere = problem.materials.everywhere;
+      if (problem.dimension == 2 &&
+          everywhere.hypothesis == Material::Hypothesis::plane_stress)
+        return 1.;
+      double largest = everywhere.poisson_ratio;
+      for (const auto &[region, material] : problem.materials.of_regions())
+        largest = std::max(largest, material.poisson_ratio);
+      return std::pow(std::min(1., 3. * (1. - 2. * largest)), -0.4);
+    }
+
+
+
+    /// Of the solve of @p n unknowns, within a factor of about 3 on the bodies
+    /// measured.
+    double
+    seconds_with_multigrid(const ProblemParameters &problem, const double n)
+    {
+      const auto  &lengths = problem.body->shape().lengths;
+      const double slenderness =
+        *std::max_element(lengths.begin(),
+                          lengths.begin() + problem.dimension) /
+        *std::min_element(lengths.begin(), lengths.begin() + problem.dimension);
+      if (problem.body->has_coarse_levels())
+        return (problem.dimension == 2 ? 0.3 + 4e-6 * n : 1.5 + 1.2e-5 * n) *
+               more_cycles(problem) * std::max(1., slenderness / 50.);
+      if (problem.dimension == 2)
+        return 5e-6 * n;
+
+      // The cycle has no grip on the bending of thin bodies unless their
+      // contact side is held.
+      const double bending = problem.tangential_displacement_fixed ?
+                               1. :
+                               std::max(1., slenderness / 1.5);
+      return 1e-4 * n * bending;
+    }
+
+
+
+    /// Bytes for each unknown, beside mesh and A.
+    double
+    memory_with_multigrid(const unsigned int dim, const bool has_levels)
+    {
+      return has_levels ? (dim == 2 ? 500. : 1300.) :
+                          (dim == 2 ? 1200. : 3700.);
     }
 
 
@@ -90,94 +130,51 @@ namespace Debond
 
 
 
-  double
-  memory_left(const double limit)
-  {
-    if (limit == 0.)
-      return available_memory();
-    dealii::Utilities::System::MemoryStats memory;
-    dealii::Utilities::System::get_memory_stats(memory);
-    return std::max(0., limit - 1024. * static_cast<double>(memory.VmRSS));
-  }
-
-
-
   MethodChoice
   choose_method(const ProblemParameters  &problem,
                 const SolverParameters   &solver,
                 const AccuracyParameters &accuracy)
   {
-    const SceneSize    size = scene_size(problem);
-    const unsigned int dim  = problem.dimension;
-    // What fits in a TB is numbered in 31 bits.
-    const double limit         = std::min(1e12, memory_limit(solver));
-    const double direct_memory = memory_with_factorisation(size, dim);
+    // What would end the machine before anything is known of the factor.
+    const double n     = problem.dimension * problem.body->n_vertices();
+    const double bytes = bytes_of_mesh_and_matrix * n;
+    const double left  = memory_left(solver.memory_limit);
+    if (bytes > left)
+      throw BadInput({problem.scene + ": about " + rounded(n) +
+                      " unknowns need about " + in_gib(bytes) +
+                      " of memory for mesh and matrix alone, there are " +
+                      in_gib(left) +
+                      "; try fewer Mesh/Cells or a higher Solver/Memory limit"});
 
-    MethodChoice choice = {solver.method, solver.linear_solver, "", 0., false};
+    MethodChoice choice = {solver.method, solver.linear_solver, ""};
     if (choice.method == SolverMethod::euclidean_bundle)
+      choice.linear_solver = LinearSolver::none;
+    if (choice.method == SolverMethod::automatic)
       {
-        choice.linear_solver = LinearSolver::none;
-        choice.memory =
-          memory_with_bundle(size, dim, solver.bundle.bundle_size);
+        choice.method = SolverMethod::majorise_minimise;
+        choice.reason =
+          "it is exact after finitely many steps, at the price of about "
+          "one linear solve";
       }
-    else
-      {
-        if (choice.method == SolverMethod::automatic)
-          {
-            choice.method = SolverMethod::majorise_minimise;
-            choice.reason =
-              "it is exact after finitely many steps, at the price of about "
-              "one linear solve";
-          }
-        if (choice.method == SolverMethod::energy_bundle)
-          {
-            if (choice.linear_solver == LinearSolver::multigrid)
-              throw BadInput(
-                {problem.scene +
-                 ": Solver/Method = energy bundle needs the Schur complement "
-                 "of a factorisation; Solver/Linear solver must be direct or "
-                 "automatic"});
-            choice.linear_solver = LinearSolver::direct;
-          }
-        else if (choice.linear_solver == LinearSolver::automatic &&
-                 (accuracy.is_adaptive() || problem.degree == 2))
-          choice.linear_solver = LinearSolver::direct;
-        else if (choice.linear_solver == LinearSolver::automatic)
-          {
-            choice.linear_solver        = LinearSolver::direct;
-            const double direct_seconds = seconds_with_factorisation(problem);
-            const double multigrid_seconds = seconds_with_multigrid(problem);
-            std::string  reason;
-            if (direct_memory > limit)
-              reason = "a factorisation would take about " +
-                       in_gib(direct_memory) + ", there are " + in_gib(limit);
-            else if (direct_seconds > seconds_that_matter &&
-                     direct_seconds > factor_that_matters * multigrid_seconds)
-              reason = "it takes less time";
-            if (!reason.empty())
-              {
-                choice.linear_solver = LinearSolver::multigrid;
-                choice.reason += (choice.reason.empty() ? "" : "; ") +
-                                 ("by multigrid, since " + reason);
-              }
-            if (std::max(direct_seconds, multigrid_seconds) >
-                seconds_that_matter)
-              choice.reason +=
-                (choice.reason.empty() ? "" : "; ") +
-                ("estimated are " + rounded(direct_seconds) +
-                 " s with a factorisation, " + rounded(multigrid_seconds) +
-                 " s with multigrid");
-          }
-        choice.has_levels = choice.linear_solver == LinearSolver::multigrid &&
-                            problem.body->has_coarse_levels();
-        choice.memory = choice.linear_solver == LinearSolver::direct ?
-                          direct_memory :
-                          memory_with_multigrid(size, dim, choice.has_levels);
-      }
+    const bool searches     = solver.search == BondSearchChoice::full;
+    const bool needs_factor = choice.method == SolverMethod::energy_bundle ||
+                              accuracy.is_adaptive() || problem.degree == 2 ||
+                              !problem.load_path.factors.empty() || searches ||
+                              solver.prove;
+    if (choice.method == SolverMethod::energy_bundle &&
+        choice.linear_solver == LinearSolver::multigrid)
+      throw BadInput(
+        {problem.scene +
+         ": Solver/Method = energy bundle needs the Schur complement "
+         "of a factorisation; Solver/Linear solver must be direct or "
+         "automatic"});
+    if (choice.linear_solver == LinearSolver::automatic && needs_factor)
+      choice.linear_solver = LinearSolver::direct;
+    choice.has_levels = choice.linear_solver == LinearSolver::multigrid &&
+                        problem.body->has_coarse_levels();
 
     if (!problem.load_path.factors.empty())
       check_load_path(problem, solver.prove, choice);
-    const bool searches = solver.search == BondSearchChoice::full;
     if ((searches || solver.prove) &&
         choice.linear_solver != LinearSolver::direct)
       throw BadInput(
@@ -190,19 +187,86 @@ namespace Debond
                       ": Solver/Prove needs Contact law/Quadrature = nodal, "
                       "which gives each node a bond of its own"});
 
-    if (choice.memory > limit)
-      throw BadInput({problem.scene + ": about " + rounded(size.unknowns) +
-                      " unknowns need about " + in_gib(choice.memory) +
-                      " of memory with " + choice.method +
+    return choice;
+  }
+
+
+
+  template <int dim>
+  void
+  choose_linear_solver(const Scene<dim>       &scene,
+                       const SolverParameters &solver,
+                       MethodChoice           &choice)
+  {
+    const ProblemParameters    &problem      = scene.parameters();
+    const ElasticUnknowns<dim> &unknowns     = scene.problem().unknowns();
+    const double                n            = unknowns.n_dofs();
+    const double                n_c          = unknowns.contact().size();
+    const double                left         = memory_left(solver.memory_limit);
+    double                      direct_bytes = 0.;
+    if (choice.linear_solver == LinearSolver::automatic ||
+        choice.linear_solver == LinearSolver::direct)
+      {
+        const FactorisationCost cost =
+          factorisation_cost(scene.problem().matrix(),
+                             unknowns.contact().normals(),
+                             dim);
+        // The factor, A in it while it is made, S and what is made of it.
+        direct_bytes = 8. * cost.entries + 300. * n + 4. * 8. * n_c * n_c;
+        if (choice.linear_solver == LinearSolver::automatic)
+          {
+            // S is factorised a few times.
+            const double direct_seconds =
+              seconds_per_operation * (cost.operations + 3. * std::pow(n_c, 3));
+            const double multigrid_seconds = seconds_with_multigrid(problem, n);
+            std::string  reason;
+            // CHOLMOD counts in 31 bits.
+            if (direct_bytes > left || 8. * cost.entries > 1e12)
+              reason = "a factorisation would take about " +
+                       in_gib(direct_bytes) + " more, there are " +
+                       in_gib(left);
+            else if (direct_seconds > seconds_that_matter &&
+                     direct_seconds > factor_that_matters * multigrid_seconds)
+              reason = "it takes less time";
+            choice.linear_solver =
+              reason.empty() ? LinearSolver::direct : LinearSolver::multigrid;
+            choice.has_levels =
+              !reason.empty() && problem.body->has_coarse_levels();
+            if (!reason.empty())
+              choice.reason += (choice.reason.empty() ? "" : "; ") +
+                               ("by multigrid, since " + reason);
+            if (std::max(direct_seconds, multigrid_seconds) >
+                seconds_that_matter)
+              choice.reason +=
+                (choice.reason.empty() ? "" : "; ") +
+                ("estimated are " + rounded(direct_seconds) +
+                 " s with a factorisation, " + rounded(multigrid_seconds) +
+                 " s with multigrid");
+          }
+      }
+
+    const double bytes = choice.linear_solver == LinearSolver::none ?
+                           8. * solver.bundle.bundle_size * n :
+                         choice.linear_solver == LinearSolver::direct ?
+                           direct_bytes :
+                           memory_with_multigrid(dim, choice.has_levels) * n;
+    choice.memory      = used_memory() + bytes;
+    if (bytes > left)
+      throw BadInput({problem.scene + ": about " + rounded(n) +
+                      " unknowns need about " + in_gib(bytes) +
+                      " more of memory with " + choice.method +
                       (choice.linear_solver == LinearSolver::none ?
                          "" :
                          " and the linear solver " + choice.linear_solver) +
-                      ", the limit is " + in_gib(limit) +
-                      "; try fewer Mesh/Cells" +
+                      ", there are " + in_gib(left) + "; try fewer Mesh/Cells" +
                       (choice.linear_solver == LinearSolver::direct ?
                          ", Solver/Linear solver = multigrid," :
                          "") +
                       " or a higher Solver/Memory limit"});
-    return choice;
   }
+
+
+
+  template decltype(choose_linear_solver<2>) choose_linear_solver<2>;
+  template decltype(choose_linear_solver<3>) choose_linear_solver<3>;
 } // namespace Debond

@@ -9,7 +9,6 @@
 #include <debond/solve/method_choice.h>
 #include <debond/solve/multigrid_method.h>
 #include <debond/solve/refine_result.h>
-#include <debond/solve/scene_size.h>
 
 #include <functional>
 #include <memory>
@@ -42,21 +41,15 @@ namespace Debond
       SolverParameters coarse = parameters;
       coarse.prove            = false;
 
-      const std::set<std::string> &contact =
-        scene.parameters().contact_boundaries;
-      const bool factorised = scene_size(*coarse_body, dim, contact).unknowns <=
-                              largest_coarse_factorisation;
-      const Scene<dim> coarse_scene(scene.parameters(),
-                                    std::move(coarse_body),
-                                    factorised ? MatrixStorage::serial :
-                                                 MatrixStorage::trilinos);
+      const bool factorised =
+        dim * coarse_body->n_vertices() <= largest_coarse_factorisation;
+      const Scene<dim> coarse_scene(scene.parameters(), std::move(coarse_body));
       Watch            watch(guard, fine_watch);
       SolveResult      result;
       if (factorised)
         solve_condensed(SolverMethod::majorise_minimise,
                         coarse,
                         coarse_scene,
-                        nullptr,
                         nullptr,
                         watch,
                         result);

@@ -61,12 +61,9 @@ namespace Debond
 
 
   template <int dim>
-  Scene<dim>::Scene(const ProblemParameters &given,
-                    const MatrixStorage      storage,
-                    const std::string       &start)
+  Scene<dim>::Scene(const ProblemParameters &given, const std::string &start)
     : Scene(given,
             std::dynamic_pointer_cast<const Body<dim>>(given.body),
-            storage,
             start)
   {}
 
@@ -75,9 +72,8 @@ namespace Debond
   template <int dim>
   Scene<dim>::Scene(const ProblemParameters         &given,
                     std::shared_ptr<const Body<dim>> body,
-                    const MatrixStorage              storage,
                     const std::string               &start)
-    : Scene(given, std::move(body), storage, start, nullptr, MPI_COMM_NULL)
+    : Scene(given, std::move(body), start, nullptr, MPI_COMM_NULL)
   {}
 
 
@@ -86,7 +82,7 @@ namespace Debond
   Scene<dim>::Scene(const ProblemParameters              &given,
                     std::shared_ptr<const BodyPiece<dim>> piece,
                     const MPI_Comm                        ranks)
-    : Scene(given, piece, MatrixStorage::serial, "", piece.get(), ranks)
+    : Scene(given, piece, "", piece.get(), ranks)
   {}
 
 
@@ -94,7 +90,6 @@ namespace Debond
   template <int dim>
   Scene<dim>::Scene(const ProblemParameters         &given,
                     std::shared_ptr<const Body<dim>> body,
-                    const MatrixStorage              storage,
                     const std::string               &start,
                     const BodyPiece<dim>            *body_piece,
                     const MPI_Comm                   ranks)
@@ -152,7 +147,7 @@ namespace Debond
     };
 
     throw_error_of_any(
-      attempt([&]() { add_problem(storage, body_piece, boundaries, entry); }));
+      attempt([&]() { add_problem(body_piece, boundaries, entry); }));
     if (body_piece != nullptr)
       problem_piece =
         std::make_unique<const ProblemPiece<dim>>(*body_piece,
@@ -160,7 +155,7 @@ namespace Debond
                                                   ranks);
     throw_error_of_any(attempt([&]() {
       entry = "Contact law/Quadrature";
-      add_contact(storage);
+      add_contact();
       entry = "Solver/Euclidean bundle/Start";
       add_start(start);
     }));
@@ -172,8 +167,7 @@ namespace Debond
 
   template <int dim>
   void
-  Scene<dim>::add_problem(const MatrixStorage   storage,
-                          const BodyPiece<dim> *body_piece,
+  Scene<dim>::add_problem(const BodyPiece<dim> *body_piece,
                           BoundaryNames        &boundaries,
                           std::string          &entry)
   {
@@ -220,10 +214,7 @@ namespace Debond
                              " in one body are more than 1e12 apart, too far "
                              "for double precision; what is 1e6 times as stiff "
                              "as the rest is as good as rigid"));
-    elastic_problem->assemble(body_materials,
-                              body_loads,
-                              storage,
-                              body_dead_loads);
+    elastic_problem->assemble(body_materials, body_loads, body_dead_loads);
     piece_means = Probes<dim>(elastic_problem->unknowns(),
                               names,
                               means_of_pieces<dim>(names));
@@ -288,7 +279,7 @@ namespace Debond
 
   template <int dim>
   void
-  Scene<dim>::add_contact(const MatrixStorage storage)
+  Scene<dim>::add_contact()
   {
     adhesive_law = std::make_unique<AdhesiveLaw>(given.law.branches);
     quadrature   = std::make_unique<ContactQuadrature<dim>>(given.quadrature,
@@ -310,18 +301,12 @@ namespace Debond
                      0.);
     if (problem_piece)
       return;
-    const auto make_functional = [this](const auto &A) {
-      using MatrixType = std::decay_t<decltype(A)>;
-      energy           = std::make_unique<Functional<dim, MatrixType, Vector>>(
-        A,
+    energy =
+      std::make_unique<Functional<dim, dealii::SparseMatrix<double>, Vector>>(
+        elastic_problem->matrix(),
         elastic_problem->load(),
         elastic_problem->unknowns().contact(),
         *adhesion_integral);
-    };
-    if (storage == MatrixStorage::serial)
-      make_functional(elastic_problem->matrix());
-    else
-      make_functional(elastic_problem->trilinos_matrix());
   }
 
 

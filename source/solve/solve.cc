@@ -95,17 +95,6 @@ namespace Debond
 
 
 
-  MatrixStorage
-  matrix_storage(const MethodChoice &choice)
-  {
-    return choice.linear_solver == LinearSolver::multigrid &&
-               !choice.has_levels ?
-             MatrixStorage::trilinos :
-             MatrixStorage::serial;
-  }
-
-
-
   template <int dim>
   SolveResult
   solve(const MethodChoice     &choice,
@@ -129,8 +118,7 @@ namespace Debond
         is_logged ? std::make_unique<Watch>(guard, *out, terminal, ranks) :
                     std::make_unique<Watch>(guard, ranks);
       if (choice.method == SolverMethod::euclidean_bundle)
-        solve_by_euclidean_bundle(
-          parameters.bundle, scene, *watch, result);
+        solve_by_euclidean_bundle(parameters.bundle, scene, *watch, result);
       else if (choice.has_levels)
         solve_by_levels(choice, parameters, scene, guard, *watch, result);
       else if (choice.linear_solver == LinearSolver::multigrid)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/memory.h>
 #include <debond/base/run_watch.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
@@ -8,7 +9,6 @@
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/global_branch.h>
-#include <debond/solve/method_choice.h>
 #include <debond/solve/which_minimum.h>
 
 #include <cmath>

@@ -32,7 +32,7 @@ namespace
   std::optional<ComingOff<dim>>
   of(const Values &assignments, const double load_factor = 1.)
   {
-    const Scene<dim> scene(parameters_of(assignments), MatrixStorage::serial);
+    const Scene<dim> scene(parameters_of(assignments));
     return coming_off(scene.problem(), scene.law(), load_factor);
   }
 

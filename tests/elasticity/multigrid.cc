@@ -31,7 +31,7 @@ namespace
   template <int dim>
   struct BodyProblem
   {
-    BodyProblem(const BoxParameters &box, const MatrixStorage storage)
+    BodyProblem(const BoxParameters &box)
     {
       make_box(box, mesh);
       BoundaryConditions conditions;
@@ -55,7 +55,7 @@ namespace
       Material material;
       material.young_modulus = 69.;
       material.poisson_ratio = 0.33;
-      problem->assemble(material, loads, storage);
+      problem->assemble(material, loads);
     }
 
     dealii::Triangulation<dim>           mesh;
@@ -83,8 +83,8 @@ namespace
   {
     const BoxParameters    coarse_box = box_of(1, rotation);
     const BoxParameters    fine_box   = box_of(2, rotation);
-    const BodyProblem<dim> coarse(coarse_box, MatrixStorage::serial);
-    const BodyProblem<dim> fine(fine_box, MatrixStorage::serial);
+    const BodyProblem<dim> coarse(coarse_box);
+    const BodyProblem<dim> fine(fine_box);
 
     DofVector u(coarse.problem->unknowns().n_dofs());
     for (unsigned int i = 0; i < u.size(); ++i)
@@ -122,8 +122,7 @@ namespace
   test_multigrid(const unsigned int n, const double rotation)
   {
     const BoxParameters    box = box_of(n, rotation);
-    const BodyProblem<dim> body(box, MatrixStorage::trilinos);
-    const BodyProblem<dim> serial(box, MatrixStorage::serial);
+    const BodyProblem<dim> body(box);
 
     // Modes are in the null space except next to the supports: the elastic
     // energy of a mode that is cut off there is no larger than that of a
@@ -162,16 +161,16 @@ namespace
         const ContactQuadrature<dim> quadrature(
           ContactQuadratureParameters::parse(rule), law.kinks());
         const AdhesionIntegral<dim> adhesion(
-          serial.problem->unknowns().contact().boundary(), law, quadrature);
+          body.problem->unknowns().contact().boundary(), law, quadrature);
         std::vector<unsigned int> normals;
-        for (const auto normal : serial.problem->unknowns().contact().normals())
+        for (const auto normal : body.problem->unknowns().contact().normals())
           normals.push_back(normal);
         const Condensation condensed(
-          serial.problem->matrix(),
-          serial.problem->load(),
+          body.problem->matrix(),
+          body.problem->load(),
           normals,
           [&](const unsigned int i) {
-            return serial.problem->unknowns().is_constrained(i);
+            return body.problem->unknowns().is_constrained(i);
           });
         Eigen::VectorXd  s = Eigen::VectorXd::Zero(normals.size());
         CondensedProblem small(condensed.schur_complement(),

@@ -464,9 +464,7 @@ $EndElements
                            "Accuracy/Target=1e-2"};
     print_error([&] {
       const Parameters parameters = parameters_of(values);
-      make_first_scene<3>(parameters,
-                          parameters.accuracy,
-                          MatrixStorage::serial);
+      make_first_scene<3>(parameters, parameters.accuracy);
     });
   }
 } // namespace
@@ -494,10 +492,6 @@ main(int argc, char **)
             "success");
   check_run(with(small,
                  {"Accuracy/Target=1e-3", "Accuracy/Maximum unknowns=1000"}),
-            ExitCode::not_converged,
-            "not accurate enough");
-  // For about 8000 unknowns.
-  check_run(with(small, {"Accuracy/Target=1e-6", "Solver/Memory limit=0.165"}),
             ExitCode::not_converged,
             "not accurate enough");
 }

@@ -13,7 +13,6 @@
 #include <debond/mesh/crossed_mesh.h>
 #include <debond/program/run.h>
 #include <debond/solve/method_choice.h>
-#include <debond/solve/scene_size.h>
 
 #include <filesystem>
 #include <iostream>
@@ -527,11 +526,12 @@ subsection Loads
           choose_method(parameters, parameters.solver, parameters.accuracy);
         ++counts.read;
         is_read = true;
-        if (scene_size(parameters).unknowns > largest_scene_to_solve)
+        if (parameters.dimension * parameters.body->n_vertices() >
+            largest_scene_to_solve)
           return;
         // Which is chosen for large scenes only.
         if (counts.read % 4 == 0 &&
-            choice.linear_solver == LinearSolver::direct)
+            choice.linear_solver == LinearSolver::automatic)
           {
             parameters.solver.method        = SolverMethod::majorise_minimise;
             parameters.solver.linear_solver = LinearSolver::multigrid;

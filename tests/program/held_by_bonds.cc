@@ -103,9 +103,8 @@ namespace
     const auto       is_off     = [&](const auto &scene) {
       return coming_off(scene.problem(), scene.law(), 1.).has_value();
     };
-    return parameters.dimension == 2 ?
-             is_off(Scene<2>(parameters, MatrixStorage::serial)) :
-             is_off(Scene<3>(parameters, MatrixStorage::serial));
+    return parameters.dimension == 2 ? is_off(Scene<2>(parameters)) :
+                                       is_off(Scene<3>(parameters));
   }
 
 

@@ -102,8 +102,8 @@ cut_scene(const Debond::Parameters        &parameters,
   std::vector<unsigned int> of_cells;
   for (unsigned int k = 0; k < whole.n_cells(); ++k)
     of_cells.push_back(random.choice(times));
-  return std::make_shared<const Debond::Scene<dim>>(
-    parameters, whole.refined(of_cells), Debond::MatrixStorage::serial);
+  return std::make_shared<const Debond::Scene<dim>>(parameters,
+                                                    whole.refined(of_cells));
 }
 
 

@@ -24,8 +24,7 @@ template <int dim>
 Debond::Scene<dim>
 scene_of(const Debond::Parameters &parameters)
 {
-  return Debond::Scene<dim>(parameters,
-                            Debond::matrix_storage(choice_of(parameters)));
+  return Debond::Scene<dim>(parameters);
 }
 
 
@@ -37,12 +36,9 @@ solved(const Debond::Parameters &parameters,
        const Debond::Scene<dim> &scene,
        const Debond::DofVector  *start = nullptr)
 {
-  return Debond::solve(choice_of(parameters),
-                       parameters.solver,
-                       scene,
-                       nullptr,
-                       false,
-                       start);
+  Debond::MethodChoice choice = choice_of(parameters);
+  Debond::choose_linear_solver(scene, parameters.solver, choice);
+  return Debond::solve(choice, parameters.solver, scene, nullptr, false, start);
 }
 
 
@@ -65,9 +61,8 @@ refined(const Debond::Parameters  &parameters,
 {
   const Debond::MethodChoice choice = choice_of(parameters);
   Refined<dim>               refined;
-  refined.scene  = Debond::make_first_scene<dim>(parameters,
-                                                parameters.accuracy,
-                                                Debond::matrix_storage(choice));
+  refined.scene =
+    Debond::make_first_scene<dim>(parameters, parameters.accuracy);
   refined.result = Debond::solve_adaptively<dim>(
     choice,
     parameters.solver,

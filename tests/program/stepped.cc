@@ -94,7 +94,7 @@ namespace
   void
   test_methods()
   {
-    const Scene<2> scene(parameters_of(small), MatrixStorage::serial);
+    const Scene<2> scene(parameters_of(small));
     const double   least = least_functional(scene, 1.);
     for (const std::vector<std::string> &settings :
          std::vector<std::vector<std::string>>{
@@ -176,7 +176,7 @@ namespace
       {
         const Values scene =
           small + Values{"Contact law/Stepped/Factor=" + text};
-        const Scene<2> nodal(parameters_of(scene), MatrixStorage::serial);
+        const Scene<2> nodal(parameters_of(scene));
         const double   least = least_functional(nodal, 1., place);
         std::cout << "times " << text << ":";
         for (const std::vector<std::string> &settings :

@@ -240,7 +240,7 @@ namespace
     double largest, stiffness;
     {
       const Parameters   parameters = parameters_of(c.entries);
-      const Scene<dim>   scene(parameters, MatrixStorage::serial);
+      const Scene<dim>   scene(parameters);
       const Condensation condensed =
         condense_to_contact(scene.problem(), scene.adhesion());
       const unsigned int n = condensed.load().size();
@@ -262,7 +262,7 @@ namespace
       text("Contact law/Bond stiffness=", stiffness * random.log10(-2.5, 1.)));
 
     const Parameters  parameters = parameters_of(c.entries);
-    const Scene<dim>  scene(parameters, MatrixStorage::serial);
+    const Scene<dim>  scene(parameters);
     const SolveResult result = solved(parameters, scene);
     ++counts.scenes;
     if (result.status != SolverStatus::success)
@@ -383,7 +383,7 @@ namespace
         std::vector<std::string> more = entries;
         more.push_back(entry);
         const Parameters   parameters = parameters_of(more);
-        const Scene<2>     scene(parameters, MatrixStorage::serial);
+        const Scene<2>     scene(parameters);
         const Condensation condensed =
           condense_to_contact(scene.problem(), scene.adhesion());
         Eigen::VectorXd s = Eigen::VectorXd::Zero(condensed.load().size());
@@ -438,7 +438,7 @@ namespace
            "Contact law/Bond threshold=0.00697278",
            "Contact law/Bond stiffness=1372.05",
            "Solver/Search=" + search});
-        const Scene<2>    scene(parameters, MatrixStorage::serial);
+        const Scene<2>    scene(parameters);
         const SolveResult result = solved(parameters, scene);
         std::cout << "a pad with five patches, " << search << ": "
                   << verdict(std::abs(result.functional / minimum - 1.), 1e-9)
@@ -455,7 +455,7 @@ namespace
     const Parameters parameters =
       parameters_of({"Contact law/Bond stiffness=690",
                      "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)"});
-    const Scene<2>     scene(parameters, MatrixStorage::serial);
+    const Scene<2>     scene(parameters);
     const Condensation condensed =
       condense_to_contact(scene.problem(), scene.adhesion());
     for (const double seconds : {0., std::numeric_limits<double>::infinity()})

@@ -18,16 +18,6 @@
 
 namespace Debond
 {
-  /// Where A is kept: as direct factorisations and the bundle method read it,
-  /// or as Trilinos' multigrid does.
-  enum class MatrixStorage
-  {
-    serial,
-    trilinos
-  };
-
-
-
   /**
    * Linear elasticity on simplices of degree 1 or 2: the operator A and the
    * load f on the unknowns of ElasticUnknowns.
@@ -53,7 +43,6 @@ namespace Debond
     void
     assemble(const ByRegion<Material> &materials,
              const Loads<dim>         &loads,
-             const MatrixStorage       storage    = MatrixStorage::serial,
              const Loads<dim>         &dead_loads = {});
 
     const ElasticUnknowns<dim> &
@@ -63,15 +52,16 @@ namespace Debond
     const ElasticFields<dim> &
     fields() const;
 
-    /// A, if its storage is serial.
+    /// A.
     const dealii::SparseMatrix<double> &
     matrix() const;
 
-    /// A, if its storage is Trilinos'.
+    /// A as Trilinos' multigrid reads it, made when it is asked for first.
+    /// Needs MPI.
     const dealii::TrilinosWrappers::SparseMatrix &
     trilinos_matrix() const;
 
-    /// Of A, in either storage.
+    /// Of A.
     double
     diagonal_entry(const unsigned int i) const;
 
@@ -100,21 +90,19 @@ namespace Debond
     lifting_energy(const LoadFactors factors = 1.) const;
 
   private:
-    template <typename MatrixType>
     void
-    add_cell_matrices(const ByRegion<Material> &materials,
-                      MatrixType               &matrix) const;
+    add_cell_matrices(const ByRegion<Material> &materials);
 
     const ElasticUnknowns<dim>                elastic_unknowns;
     std::unique_ptr<const ElasticFields<dim>> elastic_fields;
 
-    MatrixStorage                storage = MatrixStorage::serial;
     dealii::SparsityPattern      sparsity;
     dealii::SparseMatrix<double> system_matrix;
     // An empty one would need MPI already.
-    std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix> distributed_matrix;
-    DofVector                                               system_load;
-    DofVector                                               load_without_factor;
+    mutable std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix>
+              distributed_matrix;
+    DofVector system_load;
+    DofVector load_without_factor;
     DofVector load_of_displacements;
   };
 } // namespace Debond

@@ -26,6 +26,22 @@ namespace Debond
 
 
 
+  /// What the factorisation of a Condensation takes.
+  struct FactorisationCost
+  {
+    double operations; ///< floating point
+    double entries;    ///< of the factor, 8 bytes each
+  };
+
+  /// By the symbolic factorisation of the graph of nodes, each of which has @p
+  /// n_components successive rows of A. Throws std::bad_alloc.
+  FactorisationCost
+  factorisation_cost(const dealii::SparseMatrix<double> &A,
+                     const std::vector<unsigned int>    &kept,
+                     const unsigned int                  n_components);
+
+
+
   /**
    * The elastic problem condensed onto some of its unknowns s, here the normal
    * displacements of the contact nodes: with all others at equilibrium,

@@ -13,23 +13,21 @@
 namespace Debond
 {
   /// What certifies results of the scene, null if that is not asked for or if
-  /// rounding or memory do not allow it. Throws BadInput if the scene does not.
+  /// rounding does not allow it. Throws BadInput if the scene does not.
   template <int dim>
   std::unique_ptr<const Certifier<dim>>
   make_certifier(const CertificateKind                    kind,
-                 const std::shared_ptr<const Scene<dim>> &scene,
-                 const double                             memory_limit);
+                 const std::shared_ptr<const Scene<dim>> &scene);
 
   /// @p certifier: of the scene as it was before its mesh was refined, if it
-  /// was; null if there is none. @p kind and @p memory_limit are for a
-  /// certificate on the last mesh. A note says why there is none.
+  /// was; null if there is none. @p kind is for a certificate on
+  /// the last mesh. A note says why there is none.
   template <int dim>
   void
   certify_result(const Certifier<dim>                    *certifier,
                  const CertificateKind                    kind,
                  const bool                               is_refined,
                  const BranchAndBoundParameters          &proof,
-                 const double                             memory_limit,
                  const std::shared_ptr<const Scene<dim>> &scene,
                  RunResult<dim>                          &result);
 } // namespace Debond

@@ -21,10 +21,6 @@ namespace Debond
   std::string
   write_effective_scene(const std::string &scene, const std::string &directory);
 
-  /// Of this process so far, in bytes.
-  double
-  peak_memory();
-
   /// Says on std::cerr what did not go well, and returns how the program ends.
   template <int dim>
   ExitCode

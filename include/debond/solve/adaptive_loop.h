@@ -63,7 +63,6 @@ namespace Debond
   std::shared_ptr<const Scene<dim>>
   make_first_scene(const ProblemParameters  &problem,
                    const AccuracyParameters &accuracy,
-                   const MatrixStorage       storage,
                    const std::string        &start = "");
 
   /// Solves the scene of make_first_scene(), and again and again on a mesh that

@@ -114,14 +114,11 @@ namespace Debond
   class Certifier
   {
   public:
-    /// @p memory_limit: in bytes, 0 for what is there; it is for 3D. Throws
-    /// EquilibriumError if there is no certificate for the scene: with gaps,
-    /// prescribed displacements, bonds that vary, contact boundaries whose
-    /// corners are rounded by a mean normal, and in 3D with stresses that do
-    /// not fit into memory.
+    /// Throws EquilibriumError if there is no certificate for the scene: with
+    /// gaps, prescribed displacements, bonds that vary, contact boundaries
+    /// whose corners are rounded by a mean normal.
     Certifier(const CertificateKind                    kind,
-              const std::shared_ptr<const Scene<dim>> &scene,
-              const double                             memory_limit = 0.);
+              const std::shared_ptr<const Scene<dim>> &scene);
 
     /// Whether certify() takes displacements of finer meshes as well.
     bool

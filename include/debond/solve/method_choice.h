@@ -5,6 +5,7 @@
 #include <debond/input/accuracy_parameters.h>
 #include <debond/input/problem_parameters.h>
 #include <debond/input/solver_parameters.h>
+#include <debond/solve/scene.h>
 
 #include <string>
 
@@ -40,27 +41,27 @@ namespace Debond
     std::string reason; ///< empty if the scene leaves no choice
 
     /// Estimate of the program's peak, in bytes.
-    double memory;
+    double memory = 0.;
 
     /// Whether multigrid has the coarser meshes of the body, not only A.
     bool has_levels = false;
   };
 
-  /// Chooses by the numbers of unknowns and contact nodes, the dimension and
-  /// the memory, without building anything. Throws BadInput if the scene
-  /// asks for a method and a linear solver that do not go together, or if the
-  /// memory that is needed exceeds the limit.
+  /// What the scene says of the method, or what follows from that; the linear
+  /// solver may stay automatic. Throws BadInput if the scene asks for a method
+  /// and a linear solver that do not go together.
   MethodChoice
   choose_method(const ProblemParameters  &problem,
                 const SolverParameters   &solver,
                 const AccuracyParameters &accuracy = {});
 
-
-
-  /// What the program may still take of a memory limit, 0 for what is there, in
-  /// bytes.
-  double
-  memory_left(const double limit);
+  /// Completes the choice by what a factorisation of A would take. Throws
+  /// BadInput if the memory that is needed exceeds the limit.
+  template <int dim>
+  void
+  choose_linear_solver(const Scene<dim>       &scene,
+                       const SolverParameters &solver,
+                       MethodChoice           &choice);
 } // namespace Debond
 
 #endif

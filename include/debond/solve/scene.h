@@ -27,14 +27,12 @@ namespace Debond
   public:
     /// @p start: a file with start(), empty for the body at rest.
     explicit Scene(const ProblemParameters &given,
-                   const MatrixStorage      storage = MatrixStorage::serial,
-                   const std::string       &start   = "");
+                   const std::string       &start = "");
 
     /// On another mesh: that of @p body, which has the boundaries that the
     /// problem names.
     Scene(const ProblemParameters         &given,
           std::shared_ptr<const Body<dim>> body,
-          const MatrixStorage              storage,
           const std::string               &start = "");
 
     /// The piece that one of several ranks has. To be called by all of them; an
@@ -127,7 +125,6 @@ namespace Debond
   private:
     Scene(const ProblemParameters         &given,
           std::shared_ptr<const Body<dim>> body,
-          const MatrixStorage              storage,
           const std::string               &start,
           const BodyPiece<dim>            *body_piece,
           const MPI_Comm                   ranks);
@@ -135,8 +132,7 @@ namespace Debond
     /// All but what belongs to the contact boundary; @p entry is that of
     /// errors.
     void
-    add_problem(const MatrixStorage   storage,
-                const BodyPiece<dim> *body_piece,
+    add_problem(const BodyPiece<dim> *body_piece,
                 BoundaryNames        &boundaries,
                 std::string          &entry);
 
@@ -144,7 +140,7 @@ namespace Debond
     add_start(const std::string &file);
 
     void
-    add_contact(const MatrixStorage storage);
+    add_contact();
 
     /// What is unusual about the contact boundary and its unknowns.
     void

@@ -12,19 +12,18 @@
 
 namespace Debond
 {
-  /// Minimises the functional of the scene, whose matrix must be stored as
-  /// matrix_storage() says, by the given method. Iterations are printed to @p out unless
-  /// it is null. Methods with a factorisation begin at @p start, if there is
-  /// one. Ranks that share a scene call it together, with a method that has
-  /// levels; the first one has J and the notes.
+  /// Minimises the functional of the scene, by the given method. Iterations are
+  /// printed to @p out unless it is null. Methods with a factorisation begin at
+  /// @p start, if there is one. Ranks that share a scene call it together, with
+  /// a method that has levels; the first one has J and the notes.
   template <int dim>
   SolveResult
   solve(const MethodChoice     &choice,
         const SolverParameters &parameters,
         const Scene<dim>       &scene,
-        std::ostream           *out         = nullptr,
-        const bool              terminal    = false,
-        const DofVector        *start       = nullptr);
+        std::ostream           *out      = nullptr,
+        const bool              terminal = false,
+        const DofVector        *start    = nullptr);
 
   /// Throws BadInput if the method cannot do with a body that only its bonds
   /// and the foundation hold.
@@ -33,10 +32,6 @@ namespace Debond
   check_supports_of_method(const MethodChoice     &choice,
                            const SolverParameters &parameters,
                            const Scene<dim>       &scene);
-
-  /// How a method needs A.
-  MatrixStorage
-  matrix_storage(const MethodChoice &choice);
 } // namespace Debond
 
 #endif

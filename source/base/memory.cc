@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
+#include <debond/base/memory.h>
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+
+namespace Debond
+{
+  namespace
+  {
+    dealii::Utilities::System::MemoryStats
+    memory_of_process()
+    {
+      dealii::Utilities::System::MemoryStats memory; // in kB
+      dealii::Utilities::System::get_memory_stats(memory);
+      return memory;
+    }
+
+
+
+    /// The number that the first word after @p label in a file is, infinity
+    /// if there is no such file or number.
+    double
+    read_limit(const std::string &file_name, const std::string &label)
+    {
+      std::ifstream file(file_name);
+      std::string   word;
+      double        value = 0.;
+      while (!label.empty() && file >> word && word != label)
+        ;
+      return file >> value ? value : std::numeric_limits<double>::infinity();
+    }
+  } // namespace
+
+
+
+  double
+  used_memory()
+  {
+    return 1024. * static_cast<double>(memory_of_process().VmRSS);
+  }
+
+
+
+  double
+  peak_memory()
+  {
+    return 1024. * static_cast<double>(memory_of_process().VmHWM);
+  }
+
+
+
+  double
+  memory_left(const double limit)
+  {
+    if (limit > 0.)
+      return std::max(0., limit - used_memory());
+    double left = 1024. * read_limit("/proc/meminfo", "MemAvailable:");
+    // Containers, by the two versions of control groups.
+    for (const char *file : {"/sys/fs/cgroup/memory.max",
+                             "/sys/fs/cgroup/memory/memory.limit_in_bytes"})
+      left = std::min(left, read_limit(file, ""));
+    rlimit address_space;
+    if (getrlimit(RLIMIT_AS, &address_space) == 0 &&
+        address_space.rlim_cur != RLIM_INFINITY)
+      left = std::min(left, static_cast<double>(address_space.rlim_cur));
+    return left;
+  }
+
+
+
+  std::string
+  in_gib(const double bytes)
+  {
+    const double       gib = bytes / (1 << 30);
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(gib < 10. ? 1 : 0) << gib << " GiB";
+    return text.str();
+  }
+} // namespace Debond
