@@ -250,7 +250,7 @@ namespace Debond
   EquilibriumProblem<dim>::condense(const std::vector<double> &weights) const
   {
     const Eigen::VectorXd &loads = mesh.loads_on_sides();
-    DofVector              f(loads.size());
+    DofVector f(static_cast<unsigned int>(loads.size()));
     std::copy(loads.begin(), loads.end(), f.begin());
     dealii::DynamicSparsityPattern pattern(f.size());
     for (const Place &place : mesh.places())

@@ -1,189 +1,207 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/data_out_base.h>
 #include <deal.II/base/mpi.h>
+#include <deal.II/fe/fe_simplex_p.h>
+#include <deal.II/fe/mapping_fe.h>
+#include <deal.II/numerics/data_out.h>
 
 #include <debond/base/atomic_file.h>
-#include <debond/elasticity/cell_nodes.h>
+#include <debond/mesh/bernstein.h>
 #include <debond/output/vtu.h>
-#include <debond/output/vtu_grid.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace Debond
 {
   namespace
   {
-    /// Appends a number or, of a vector, three.
-    void
-    add(const double number, VtuGrid::Field &field)
+    /// More effort takes several times longer for files that are a few per cent
+    /// smaller; the same results give the same file.
+    dealii::DataOutBase::VtkFlags
+    vtk_flags()
     {
-      field.numbers.push_back(static_cast<float>(number));
+      dealii::DataOutBase::VtkFlags flags;
+      flags.compression_level   = dealii::DataOutBase::VtkFlags::best_speed;
+      flags.print_date_and_time = false;
+      return flags;
     }
 
 
 
+    /// The numbers of the cells with their names.
     template <int dim>
-    void
-    add(const dealii::Tensor<1, dim> &vector, VtuGrid::Field &field)
+    class CellFields
     {
-      for (unsigned int d = 0; d < 3; ++d)
-        add(d < dim ? vector[d] : 0., field);
+    public:
+      CellFields(const ElasticProblem<dim>    &problem,
+                 const DofVector              &displacement,
+                 const LoadFactors             factors,
+                 const ErrorEstimate          *estimate,
+                 const std::vector<CellField> &more)
+      {
+        const auto &dofs   = problem.unknowns().dof_handler();
+        const auto &first  = *dofs.begin_active();
+        const auto &fields = problem.fields();
+        std::vector<dealii::SymmetricTensor<2, 3>> stresses;
+        bool                                       has_regions = false;
+        for (const auto &cell : dofs.active_cell_iterators())
+          {
+            stresses.push_back(
+              fields.solid_stress(cell, displacement, factors));
+            has_regions |= cell->material_id() != first.material_id();
+          }
+        const auto add = [&](const std::string &name, const auto &value) {
+          all.emplace_back(name, stresses.size());
+          for (const auto &cell : dofs.active_cell_iterators())
+            all.back().second(cell->active_cell_index()) =
+              value(cell, stresses[cell->active_cell_index()]);
+        };
+
+        const std::string axes = "xyz";
+        for (unsigned int c = 0;
+             c < dealii::SymmetricTensor<2, dim>::n_independent_components;
+             ++c)
+          {
+            const auto ij =
+              dealii::SymmetricTensor<2, dim>::unrolled_to_component_indices(c);
+            add(std::string("stress_") + axes[ij[0]] + axes[ij[1]],
+                [&](const auto &, const auto &stress) { return stress[ij]; });
+          }
+        if (dim == 2 && fields.material(dofs.begin_active()).hypothesis ==
+                          Material::Hypothesis::plane_strain)
+          add("stress_zz",
+              [](const auto &, const auto &stress) { return stress[2][2]; });
+        if (has_regions)
+          add("region", [](const auto &cell, const auto &) {
+            return cell->material_id();
+          });
+        add("von_mises",
+            [](const auto &, const auto &stress) { return von_mises(stress); });
+        add("strain_energy_density", [&](const auto &cell, const auto &stress) {
+          return fields.material(cell).energy_density(stress);
+        });
+        if (estimate != nullptr)
+          add("error_density", [&](const auto &cell, const auto &) {
+            return estimate->cells[cell->active_cell_index()] / cell->measure();
+          });
+        for (const auto &[name, numbers] : more)
+          add(name, [&numbers = numbers](const auto &cell, const auto &) {
+            return numbers[cell->active_cell_index()];
+          });
+      }
+
+      std::vector<std::pair<std::string, dealii::Vector<double>>> all;
+    };
+
+
+
+    /// Writes the cells of the body, of @p piece its own ones; returns the file
+    /// that joins those of @p pieces, if there are any.
+    template <int dim>
+    std::string
+    write_body(const ElasticProblem<dim>      &problem,
+               const DofVector                &u,
+               const LoadFactors               factors,
+               const CellFields<dim>          &fields,
+               const std::string              &file_name,
+               const ProblemPiece<dim>        *piece  = nullptr,
+               const std::vector<std::string> &pieces = {})
+    {
+      namespace Interpretation     = dealii::DataComponentInterpretation;
+      const DofVector displacement = problem.unknowns().nodal_values(
+        problem.unknowns().cartesian_displacement(u, factors));
+
+      dealii::DataOut<dim> out;
+      out.set_flags(vtk_flags());
+      out.attach_dof_handler(problem.unknowns().dof_handler());
+      out.add_data_vector(
+        displacement,
+        std::vector<std::string>(dim, "displacement"),
+        dealii::DataOut<dim>::type_dof_data,
+        std::vector<Interpretation::DataComponentInterpretation>(
+          dim, Interpretation::component_is_part_of_vector));
+      for (const auto &[name, numbers] : fields.all)
+        out.add_data_vector(numbers,
+                            name,
+                            dealii::DataOut<dim>::type_cell_data);
+      if (piece != nullptr)
+        out.set_cell_selection([piece](const auto &cell) {
+          return cell->is_active() &&
+                 piece->body().owns_cell(cell->active_cell_index());
+        });
+      out.build_patches(dealii::MappingFE<dim>(dealii::FE_SimplexP<dim>(1)),
+                        problem.unknowns().degree());
+      write_atomically(file_name,
+                       [&out](std::ostream &file) { out.write_vtu(file); });
+      std::ostringstream joined;
+      if (!pieces.empty())
+        out.write_pvtu_record(joined, pieces);
+      return joined.str();
     }
 
 
 
-    template <int dim>
-    VtuGrid::CellType
-    cell_type(const unsigned int degree)
+    /// A number at the nodes of the contact boundary.
+    struct ContactScalar
     {
-      using Type = VtuGrid::CellType;
-      if (dim == 2)
-        return degree == 1 ? Type::triangle : Type::quadratic_triangle;
-      return degree == 1 ? Type::tetrahedron : Type::quadratic_tetrahedron;
-    }
+      std::string name;
 
+      /// Of a node and its measure.
+      std::function<double(const ContactNodeState &, double)> value;
 
+      /// Held nodes do not move; what a clamp bears there is not the
+      /// foundation's.
+      bool is_zero_where_held = false;
 
-    /// The cells of the body, of @p piece its own ones, and their fields.
-    template <int dim>
-    VtuGrid
-    body_grid(const ElasticProblem<dim>    &problem,
-              const DofVector              &u,
-              const LoadFactors             factors,
-              const ErrorEstimate          *estimate,
-              const std::vector<CellField> &more,
-              const ProblemPiece<dim>      *piece)
-    {
-      const auto &dofs     = problem.unknowns().dof_handler();
-      const auto &mesh     = dofs.get_triangulation();
-      const auto  material = [&problem](const auto &cell) -> const Material  &{
-        return problem.fields().material(cell);
-      };
-      const unsigned int degree = problem.unknowns().degree();
-      const DofVector    displacement =
-        problem.unknowns().cartesian_displacement(u, factors);
-      const DofVector at_nodes = problem.unknowns().nodal_values(displacement);
+      /// As the displacement, of which edges have coefficients of degree 2.
+      bool is_displacement = false;
+    };
 
-      VtuGrid grid;
-      grid.type      = cell_type<dim>(degree);
-      grid.at_points = {{"displacement", 3, {}}};
-      grid.points.reserve(3UL * n_nodes<dim>(mesh, degree));
-      grid.at_points[0].numbers.reserve(3UL * n_nodes<dim>(mesh, degree));
-      grid.cells.reserve(static_cast<std::size_t>(n_points(grid.type)) *
-                         mesh.n_active_cells());
+    const std::vector<ContactScalar> contact_scalars = {
+      {"u_nu",
+       [](const auto &node, const double) { return node.u_nu; },
+       true,
+       true},
+      {"gap",
+       [](const auto &node, const double) { return -node.s; },
+       true,
+       true},
+      {"normal_force_density",
+       [](const auto &node, const double measure) {
+         return node.normal_force / measure;
+       }},
+      {"law_violation",
+       [](const auto &node, const double) { return node.violation; }},
+      {"bond_stiffness",
+       [](const auto &node, const double) { return node.bond_stiffness; }},
+      {"bond_threshold",
+       [](const auto &node, const double) { return node.bond_threshold; }},
+      {"initial_gap",
+       [](const auto &node, const double) { return node.u_nu - node.s; }}};
 
-      const auto add_field = [&](const std::string &name) {
-        grid.in_cells.push_back({name, 1, {}});
-        grid.in_cells.back().numbers.reserve(mesh.n_active_cells());
-      };
-      constexpr unsigned int n_components =
-        dealii::SymmetricTensor<2, dim>::n_independent_components;
-      const std::string axes = "xyz";
-      for (unsigned int c = 0; c < n_components; ++c)
-        {
-          const auto ij =
-            dealii::SymmetricTensor<2, dim>::unrolled_to_component_indices(c);
-          add_field(std::string("stress_") + axes[ij[0]] + axes[ij[1]]);
-        }
-      bool has_regions = false;
-      for (const auto &cell : dofs.active_cell_iterators())
-        has_regions |=
-          cell->material_id() != dofs.begin_active()->material_id();
-      const bool plane_strain =
-        dim == 2 && material(dofs.begin_active()).hypothesis ==
-                      Material::Hypothesis::plane_strain;
-      if (plane_strain)
-        add_field("stress_zz");
-      if (has_regions)
-        add_field("region");
-      add_field("von_mises");
-      add_field("strain_energy_density");
-      if (estimate != nullptr)
-        add_field("error_density");
-      for (const auto &[name, unused] : more)
-        add_field(name);
-
-      constexpr std::uint32_t    none = -1;
-      std::vector<std::uint32_t> point_of_node(n_nodes<dim>(mesh, degree),
-                                               none);
-      for (const auto &cell : dofs.active_cell_iterators())
-        {
-          if (piece != nullptr &&
-              !piece->body().owns_cell(cell->active_cell_index()))
-            continue;
-          const CellNodes<dim> nodes(cell);
-          for (unsigned int n = 0; n < nodes.size; ++n)
-            {
-              std::uint32_t &point = point_of_node[nodes.indices[n]];
-              if (point == none)
-                {
-                  point = grid.add_point(node_position<dim>(cell, n));
-                  dealii::Tensor<1, dim> value;
-                  for (unsigned int d = 0; d < dim; ++d)
-                    value[d] = at_nodes(nodes.dofs[n][d]);
-                  add(value, grid.at_points[0]);
-                }
-              grid.cells.push_back(point);
-            }
-
-          const dealii::SymmetricTensor<2, 3> stress =
-            problem.fields().solid_stress(cell, displacement, factors);
-          auto       field    = grid.in_cells.begin();
-          const auto add_next = [&field](const double number) {
-            add(number, *field++);
-          };
-          for (unsigned int c = 0; c < n_components; ++c)
-            add_next(stress[dealii::SymmetricTensor<2, dim>::
-                              unrolled_to_component_indices(c)]);
-          if (plane_strain)
-            add_next(stress[2][2]);
-          if (has_regions)
-            add_next(cell->material_id());
-          add_next(von_mises(stress));
-          add_next(material(cell).energy_density(stress));
-          if (estimate != nullptr)
-            add_next(estimate->cells[cell->active_cell_index()] /
-                     cell->measure());
-          for (const auto &[unused, numbers] : more)
-            add_next(numbers[cell->active_cell_index()]);
-        }
-      return grid;
-    }
-
-
-
-    /// The fields at points of the contact boundary, after two vectors.
-    const std::vector<std::string> contact_scalars = {"u_nu",
-                                                      "gap",
-                                                      "normal_force_density",
-                                                      "law_violation",
-                                                      "bond_stiffness",
-                                                      "bond_threshold",
-                                                      "initial_gap"};
-
-    template <int dim>
-    using ContactValues = std::array<double, 2 * dim + 7>;
+    /// Displacement, tangential force density and the numbers above.
+    using ContactValues = std::vector<double>;
 
 
 
     /// Between points, without those at which a value is not known.
-    template <int dim>
-    ContactValues<dim>
-    mean(const ContactValues<dim>              &own,
-         const std::vector<ContactValues<dim>> &others)
+    ContactValues
+    mean(const ContactValues &own, const std::vector<ContactValues> &others)
     {
-      ContactValues<dim> result;
+      ContactValues result;
       for (unsigned int c = 0; c < own.size(); ++c)
         {
           double       sum = own[c];
           unsigned int n   = 1;
-          for (const ContactValues<dim> &other : others)
+          for (const ContactValues &other : others)
             if (!std::isnan(other[c]))
               {
                 sum += other[c];
                 ++n;
               }
-          result[c] = sum / n;
+          result.push_back(sum / n);
         }
       return result;
     }
@@ -220,10 +238,13 @@ namespace Debond
                  const ErrorEstimate          *estimate,
                  const std::vector<CellField> &more)
   {
-    const VtuGrid grid =
-      body_grid<dim>(problem, u, factors, estimate, more, nullptr);
-    write_atomically(file_name,
-                     [&grid](std::ostream &out) { write_vtu(grid, out); });
+    const DofVector displacement =
+      problem.unknowns().cartesian_displacement(u, factors);
+    write_body(problem,
+               u,
+               factors,
+               CellFields<dim>(problem, displacement, factors, estimate, more),
+               file_name);
   }
 
 
@@ -236,27 +257,28 @@ namespace Debond
                     const ErrorEstimate       *estimate,
                     const std::string         &directory)
   {
-    const VtuGrid grid = body_grid<dim>(problem, u, 1., estimate, {}, &piece);
-
-    const MPI_Comm ranks = piece.nodes().communicator();
-    const auto     name  = [](const unsigned int rank) {
-      return "body.rank" + std::to_string(rank) + ".vtu";
-    };
+    const MPI_Comm           ranks = piece.nodes().communicator();
+    std::vector<std::string> names;
+    for (unsigned int k = 0; k < dealii::Utilities::MPI::n_mpi_processes(ranks);
+         ++k)
+      names.push_back("body.rank" + std::to_string(k) + ".vtu");
     const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(ranks);
-    std::vector<std::string> written = {directory + "/" + name(rank)};
-    write_atomically(written[0],
-                     [&grid](std::ostream &out) { write_vtu(grid, out); });
+    std::vector<std::string> written = {directory + "/" + names[rank]};
+    const DofVector          displacement =
+      problem.unknowns().cartesian_displacement(u, 1.);
+    const std::string joined =
+      write_body(problem,
+                 u,
+                 1.,
+                 CellFields<dim>(problem, displacement, 1., estimate, {}),
+                 written[0],
+                 &piece,
+                 names);
     if (rank == 0)
       {
-        std::vector<std::string> names;
-        for (unsigned int k = 0;
-             k < dealii::Utilities::MPI::n_mpi_processes(ranks);
-             ++k)
-          names.push_back(name(k));
         written.push_back(directory + "/body.pvtu");
-        write_atomically(written[1], [&](std::ostream &out) {
-          write_pvtu(grid, names, out);
-        });
+        write_atomically(written[1],
+                         [&joined](std::ostream &out) { out << joined; });
       }
     return written;
   }
@@ -270,83 +292,46 @@ namespace Debond
                     const std::string            &file_name,
                     const std::vector<CellField> &more)
   {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-    const auto values_of = [&](const unsigned int node) {
-      ContactValues<dim> values = {};
-      if (node == dealii::numbers::invalid_unsigned_int)
-        {
-          // What a clamp bears there is not the foundation's.
-          std::fill(values.begin() + dim, values.begin() + 2 * dim, nan);
-          std::fill(values.begin() + 2 * dim + 2, values.end(), nan);
-          return values;
-        }
-      const ContactNodeState &state   = verification.nodes[node];
-      const double            measure = boundary.nodes[node].measure;
+    constexpr double nan       = std::numeric_limits<double>::quiet_NaN();
+    const auto       values_of = [&](const unsigned int node) {
+      const bool    is_held = node == dealii::numbers::invalid_unsigned_int;
+      const double  measure = is_held ? 1. : boundary.nodes[node].measure;
+      ContactValues values;
       for (unsigned int d = 0; d < dim; ++d)
-        {
-          values[d]       = verification.displacements[node][d];
-          values[dim + d] = verification.tangential_forces[node][d] / measure;
-        }
-      values[2 * dim]     = state.u_nu;
-      values[2 * dim + 1] = -state.s;
-      values[2 * dim + 2] = state.normal_force / measure;
-      values[2 * dim + 3] = state.violation;
-      values[2 * dim + 4] = state.bond_stiffness;
-      values[2 * dim + 5] = state.bond_threshold;
-      values[2 * dim + 6] = state.u_nu - state.s;
+        values.push_back(is_held ? 0. : verification.displacements[node][d]);
+      for (unsigned int d = 0; d < dim; ++d)
+        values.push_back(
+          is_held ? nan : verification.tangential_forces[node][d] / measure);
+      for (const ContactScalar &scalar : contact_scalars)
+        values.push_back(is_held ?
+                           (scalar.is_zero_where_held ? 0. : nan) :
+                           scalar.value(verification.nodes[node], measure));
       return values;
     };
 
     // In the middle of an edge displacements are not its coefficients.
     const auto values_at = [&](const auto &face, const unsigned int k) {
-      ContactValues<dim> values = values_of(face.node(k));
+      ContactValues values = values_of(face.node(k));
       if (k < dim)
         return values;
-      const ContactValues<dim> a =
-        values_of(face.node(simplex_edges[k - dim][0]));
-      const ContactValues<dim> b =
-        values_of(face.node(simplex_edges[k - dim][1]));
-      const auto interpolate = [&](const unsigned int c) {
-        values[c] = 0.5 * values[c] + 0.25 * (a[c] + b[c]);
-      };
-      for (unsigned int d = 0; d < dim; ++d)
-        interpolate(d);
-      interpolate(2 * dim);
-      interpolate(2 * dim + 1);
+      const ContactValues a = values_of(face.node(simplex_edges[k - dim][0]));
+      const ContactValues b = values_of(face.node(simplex_edges[k - dim][1]));
+      for (unsigned int c = 0; c < values.size(); ++c)
+        if (c < dim ||
+            (c >= 2 * dim && contact_scalars[c - 2 * dim].is_displacement))
+          values[c] = 0.5 * values[c] + 0.25 * (a[c] + b[c]);
       return values;
     };
 
     // Each vertex has its share of the face, so that its state can be shown
     // without a transition to that of its neighbours.
-    VtuGrid grid;
-    grid.type =
-      dim == 2 ? VtuGrid::CellType::line : VtuGrid::CellType::quadrilateral;
-    grid.at_points = {{"displacement", 3, {}},
-                      {"tangential_force_density", 3, {}}};
-    for (const std::string &name : contact_scalars)
-      grid.at_points.push_back({name, 1, {}});
-    grid.in_cells = {{"bond_state", 1, {}}};
-    for (const auto &[name, unused] : more)
-      grid.in_cells.push_back({name, 1, {}});
-    const auto add_point = [&grid](const dealii::Point<dim> &position,
-                                   const ContactValues<dim> &values) {
-      grid.cells.push_back(grid.add_point(position));
-      for (unsigned int v = 0; v < 2; ++v)
-        {
-          dealii::Tensor<1, dim> vector;
-          for (unsigned int d = 0; d < dim; ++d)
-            vector[d] = values[v * dim + d];
-          add(vector, grid.at_points[v]);
-        }
-      for (unsigned int c = 0; c < contact_scalars.size(); ++c)
-        add(values[2 * dim + c], grid.at_points[2 + c]);
-    };
+    using Patch = dealii::DataOutBase::Patch<dim - 1, dim>;
+    std::vector<Patch> patches;
     for (unsigned int f = 0; f < boundary.faces.size(); ++f)
       for (const auto &part : parts_of_face<dim>(boundary.degree))
         {
           const auto                         &face = boundary.faces[f];
-          std::array<ContactValues<dim>, dim> values;
+          std::array<ContactValues, dim>      values;
           std::array<dealii::Point<dim>, dim> corners;
           for (unsigned int k = 0; k < dim; ++k)
             {
@@ -361,9 +346,31 @@ namespace Debond
 
           for (unsigned int k = 0; k < dim; ++k)
             {
+              ContactValues of_share = {static_cast<double>(
+                face.is_held(part[k]) ?
+                  BondState::held :
+                  verification.nodes[face.node(part[k])].state)};
+              for (const auto &[unused, numbers] : more)
+                of_share.push_back(numbers[f]);
+
+              Patch patch;
+              patch.n_subdivisions = 1;
+              patch.patch_index    = static_cast<unsigned int>(patches.size());
+              patch.data.reinit(values[k].size() + of_share.size(),
+                                patch.vertices.size());
+              unsigned int n         = 0;
+              const auto   add_point = [&](const dealii::Point<dim> &position,
+                                         const ContactValues      &at_point) {
+                patch.vertices[n] = position;
+                for (unsigned int c = 0; c < patch.data.size(0); ++c)
+                  patch.data(c, n) = static_cast<float>(
+                    c < at_point.size() ? at_point[c] :
+                                            of_share[c - at_point.size()]);
+                ++n;
+              };
               const auto add_middle = [&](const unsigned int other) {
                 add_point(corners[k] + 0.5 * (corners[other] - corners[k]),
-                          mean<dim>(values[k], {values[other]}));
+                          mean(values[k], {values[other]}));
               };
               const unsigned int next = (k + 1) % dim,
                                  last = (k + dim - 1) % dim;
@@ -371,23 +378,39 @@ namespace Debond
               add_middle(next);
               if constexpr (dim == 3)
                 {
+                  add_middle(last);
                   add_point(corners[0] + (corners[1] - corners[0]) / 3. +
                               (corners[2] - corners[0]) / 3.,
-                            mean<dim>(values[k], {values[next], values[last]}));
-                  add_middle(last);
+                            mean(values[k], {values[next], values[last]}));
                 }
-
-              add(static_cast<double>(
-                    face.is_held(part[k]) ?
-                      BondState::held :
-                      verification.nodes[face.node(part[k])].state),
-                  grid.in_cells[0]);
-              for (unsigned int m = 0; m < more.size(); ++m)
-                add(more[m].second[f], grid.in_cells[m + 1]);
+              patches.push_back(patch);
             }
         }
-    write_atomically(file_name,
-                     [&grid](std::ostream &out) { write_vtu(grid, out); });
+
+    std::vector<std::string> names;
+    std::vector<std::tuple<
+      unsigned int,
+      unsigned int,
+      std::string,
+      dealii::DataComponentInterpretation::DataComponentInterpretation>>
+      vectors;
+    for (const char *const name : {"displacement", "tangential_force_density"})
+      {
+        vectors.emplace_back(
+          names.size(),
+          names.size() + dim - 1,
+          name,
+          dealii::DataComponentInterpretation::component_is_part_of_vector);
+        names.insert(names.end(), dim, name);
+      }
+    for (const ContactScalar &scalar : contact_scalars)
+      names.push_back(scalar.name);
+    names.emplace_back("bond_state");
+    for (const auto &[name, unused] : more)
+      names.push_back(name);
+    write_atomically(file_name, [&](std::ostream &out) {
+      dealii::DataOutBase::write_vtu(patches, names, vectors, vtk_flags(), out);
+    });
   }
 
 

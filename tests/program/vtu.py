@@ -1,54 +1,56 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads VTU files whose numbers are appended, raw and compressed by zlib."""
+"""Reads VTU files as deal.II writes them: each cell has points of its own, numbers are
+compressed by zlib in base64."""
+import base64
 import struct
 import xml.etree.ElementTree as xml
 import zlib
 
-LETTERS = {"Float32": "f", "Int32": "i", "UInt8": "B"}
+LETTERS = {"Float32": "f", "Float64": "d", "Int32": "i", "UInt32": "I", "UInt8": "B",
+           "Int64": "q", "UInt64": "Q"}
 
 
 class Piece:
     def __init__(self, path):
-        with open(path, "rb") as file:
-            text, data = file.read().split(b'<AppendedData encoding="raw">\n_')
-        assert data.endswith(b"\n</AppendedData>\n</VTKFile>\n")
-        self.data = data
-        root = xml.fromstring(text.decode() + "</VTKFile>")
-        assert root.get("header_type") == "UInt64"
+        root = xml.parse(path).getroot()
+        assert root.get("compressor") == "vtkZLibDataCompressor"
         piece = root.find(".//Piece")
         self.n_points = int(piece.get("NumberOfPoints"))
         self.n_cells = int(piece.get("NumberOfCells"))
         self.points = self.numbers(piece.find("Points/DataArray"))
-        self.cells, self.at_points, self.in_cells = (
+        self.cells, self.at_points = (
             {array.get("Name"): self.numbers(array)
              for array in piece.find(kind).iter("DataArray")}
-            for kind in ("Cells", "PointData", "CellData"))
+            for kind in ("Cells", "PointData"))
         n = self.cells["offsets"][0]
         assert self.cells["offsets"] == tuple(
             n * (cell + 1) for cell in range(self.n_cells))
         assert len(self.points) == 3 * self.n_points
-        assert len(self.cells["connectivity"]) == n * self.n_cells
         assert set(self.cells["connectivity"]) == set(range(self.n_points))
+        # Fields that are constant in each cell, there.
+        self.in_cells = {}
         for name, field in self.at_points.items():
             assert len(field) in (self.n_points, 3 * self.n_points), name
-        for name, field in self.in_cells.items():
-            assert len(field) == self.n_cells, name
+            if len(field) == self.n_points:
+                of_cells = [{repr(field[i]) for i in
+                             self.cells["connectivity"][n * cell:n * (cell + 1)]}
+                            for cell in range(self.n_cells)]
+                if all(len(values) == 1 for values in of_cells):
+                    self.in_cells[name] = tuple(
+                        field[self.cells["connectivity"][n * cell]]
+                        for cell in range(self.n_cells))
 
     def numbers(self, array):
-        """Number of blocks, size of all but the last one, and of that if it is
-        smaller, sizes when compressed; the blocks."""
-        at = int(array.get("offset"))
-        n_blocks, size, last = struct.unpack_from("<3Q", self.data, at)
-        compressed = struct.unpack_from("<%dQ" % n_blocks, self.data, at + 24)
-        at += 24 + 8 * n_blocks
-        numbers = b""
-        for block, length in enumerate(compressed):
-            numbers += zlib.decompress(self.data[at:at + length])
-            at += length
-            assert len(numbers) == (block + 1) * size or (
-                block == n_blocks - 1 and
-                len(numbers) == block * size + last)
+        """Of the header the number of blocks, their size, that of the last one, and the
+        compressed one of each."""
+        text = "".join(array.text.split())
+        (n_blocks,) = struct.unpack("<I", base64.b64decode(text[:8])[:4])
+        length = 4 * ((4 * (3 + n_blocks) + 2) // 3)
+        header = struct.unpack("<%dI" % (3 + n_blocks), base64.b64decode(text[:length]))
+        data, numbers, at = base64.b64decode(text[length:]), b"", 0
+        for size in header[3:]:
+            numbers += zlib.decompress(data[at:at + size])
+            at += size
         letter = LETTERS[array.get("type")]
         return struct.unpack(
-            "<%d%s" % (len(numbers) // struct.calcsize(letter), letter),
-            numbers)
+            "<%d%s" % (len(numbers) // struct.calcsize(letter), letter), numbers)
