@@ -256,7 +256,7 @@ namespace Debond
     std::vector<char>         is_kept(n, 0);
     for (const unsigned int i : kept)
       is_kept[i / n_components] = 1;
-    for (const char last : {0, 1})
+    for (const int last : {0, 1})
       for (unsigned int node = 0; node < n; ++node)
         if (is_kept[node] == last)
           {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/data_out_base.h>
+#include <deal.II/base/geometry_info.h>
 #include <deal.II/base/mpi.h>
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/mapping_fe.h>
@@ -357,7 +358,7 @@ namespace Debond
               patch.n_subdivisions = 1;
               patch.patch_index    = static_cast<unsigned int>(patches.size());
               patch.data.reinit(values[k].size() + of_share.size(),
-                                patch.vertices.size());
+                                dealii::GeometryInfo<dim - 1>::vertices_per_cell);
               unsigned int n         = 0;
               const auto   add_point = [&](const dealii::Point<dim> &position,
                                          const ContactValues      &at_point) {

@@ -448,18 +448,22 @@ namespace Debond
     };
 
     const Eigen::VectorXd given = s;
-    NodeSet all;
-    for (unsigned int i = 0; i < s.size(); ++i)
-      all.insert(all.end(), i);
-    std::vector<Trial> starts;
-    for (unsigned int piece = n_pieces; piece-- > 1;)
-      starts.push_back({BranchMove::start, piece, all, {}});
-    starts.push_back({BranchMove::start, 1, {}, all});
-    for (const Trial &trial : starts)
+    if (parameters.starts)
       {
-        Eigen::VectorXd point = given;
-        if (search.may_go_on(monitor) && search.attempt(trial, monitor, point))
-          descend(point);
+        NodeSet all;
+        for (unsigned int i = 0; i < s.size(); ++i)
+          all.insert(all.end(), i);
+        std::vector<Trial> starts;
+        for (unsigned int piece = n_pieces; piece-- > 1;)
+          starts.push_back({BranchMove::start, piece, all, {}});
+        starts.push_back({BranchMove::start, 1, {}, all});
+        for (const Trial &trial : starts)
+          {
+            Eigen::VectorXd point = given;
+            if (search.may_go_on(monitor) &&
+                search.attempt(trial, monitor, point))
+              descend(point);
+          }
       }
     search.restart();
     descend(given);

@@ -21,6 +21,9 @@ namespace Debond
 
   struct BranchSearchParameters
   {
+    /// Start from rest and from all unknowns on each further branch as well.
+    bool starts = true;
+
     /// Nodes by which the edge of a patch moves, 0 for no such moves.
     unsigned int maximum_shift = 4;
 
