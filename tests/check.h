@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the tests print: what holds without its figure, which rounding would
-// change, and what does not hold by how much.
+// What the tests print: what does not hold and by how much, and at the end the
+// number of all checks, so that none is left out. With an argument, which sets
+// print_figures, all of them.
 #ifndef debond_tests_check_h
 #define debond_tests_check_h
 
@@ -40,21 +41,41 @@ verdict(const double value, const double bound)
 
 
 
-/// Prints a line with the name and the verdict.
+/// Prints how many there were, when the program ends.
+struct NumberOfChecks
+{
+  unsigned int n = 0;
+
+  ~NumberOfChecks()
+  {
+    if (n > 0)
+      std::cout << n << " checks" << std::endl;
+  }
+};
+
+inline NumberOfChecks number_of_checks;
+
+
+
+/// Prints a line with the name if it does not hold.
 inline void
 check(const std::string &name, const bool holds)
 {
-  std::cout << name << ": " << verdict(holds) << std::endl;
+  ++number_of_checks.n;
+  if (!holds || print_figures)
+    std::cout << name << ": " << verdict(holds) << std::endl;
 }
 
 
 
-/// Prints a line with the name, the bound and the verdict.
+/// Prints a line with the name, the value and the bound if it does not hold.
 inline void
 check(const std::string &name, const double value, const double bound)
 {
-  std::cout << name << ", at most " << bound << ": " << verdict(value, bound)
-            << std::endl;
+  ++number_of_checks.n;
+  if (!(value <= bound) || print_figures)
+    std::cout << name << ", at most " << bound << ": " << verdict(value, bound)
+              << std::endl;
 }
 
 
