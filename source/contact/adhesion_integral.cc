@@ -64,8 +64,7 @@ namespace Debond
     };
     const auto at = [this](const auto               &face,
                            const dealii::Point<dim> &position) {
-      return quadrature.depends_on_trace() ? bonds_of(face, {}) :
-                                             field->at(position, face.id);
+      return field->at(position, face.id);
     };
     for (const auto &face : boundary.faces)
       for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
@@ -97,14 +96,10 @@ namespace Debond
   void
   AdhesionIntegral<dim>::update_points()
   {
-    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(boundary.nodes.size());
-    if (!quadrature.depends_on_trace())
-      {
-        collect_points(zero);
-        lump_nodal_points();
-      }
+    collect_points();
+    lump_nodal_points();
     if (!boundary.held_vertices.empty() || !least_of_nodes.empty())
-      phi_at_zero = energy(zero);
+      phi_at_zero = energy(Eigen::VectorXd::Zero(boundary.nodes.size()));
   }
 
 
@@ -113,7 +108,6 @@ namespace Debond
   void
   AdhesionIntegral<dim>::break_for_good(const VectorView &s)
   {
-    Assert(!quadrature.depends_on_trace(), dealii::ExcInternalError());
     if (!quadrature.is_nodal())
       {
         least_of_points.resize(point_list.size(), 0);
@@ -176,15 +170,6 @@ namespace Debond
 
   template <int dim>
   unsigned int
-  AdhesionIntegral<dim>::n_fixed_points() const
-  {
-    return static_cast<unsigned int>(quadrature.points_of({}).size());
-  }
-
-
-
-  template <int dim>
-  unsigned int
   AdhesionIntegral<dim>::least_piece_at(
     const typename ContactBoundary<dim>::Face &face,
     const std::array<double, dim>             &barycentric) const
@@ -197,7 +182,7 @@ namespace Debond
                               std::max_element(barycentric.begin(),
                                                barycentric.end()) -
                               barycentric.begin()));
-    const auto  &points  = quadrature.points_of({});
+    const auto  &points  = quadrature.points();
     unsigned int nearest = 0;
     double       least   = std::numeric_limits<double>::infinity();
     for (unsigned int q = 0; q < points.size(); ++q)
@@ -233,7 +218,7 @@ namespace Debond
   {
     const BranchMinimum &branches = law.branches();
     double               sum      = 0.;
-    for (const Point &point : points(s))
+    for (const Point &point : point_list)
       {
         const double trace = point.trace(s) / point.bonds.stretch;
         if (trace < 0. &&
@@ -248,71 +233,31 @@ namespace Debond
 
 
   template <int dim>
-  std::optional<double>
+  double
   AdhesionIntegral<dim>::first_change(const VectorView &s,
                                       const VectorView &ds,
                                       const double      limit) const
   {
     const BranchMinimum &branches = law.branches();
     double               first    = limit;
-    if (!quadrature.depends_on_trace())
-      {
-        for (const Point &point : points(s))
-          if (point.bonds.energy > 0.)
-            {
-              const double trace = point.trace(s) / point.bonds.stretch;
-              const double speed =
-                (point.trace(ds) - point.offset) / point.bonds.stretch;
-              const unsigned int k =
-                std::max(point.least_piece, branches.index(trace));
-              const bool changes = speed < 0. ?
-                                     k + 1 < branches.size() :
-                                     speed > 0. && k > point.least_piece;
-              if (changes)
-                first = std::min(first,
-                                 std::max(0.,
-                                          ((speed < 0. ? branches[k].lower :
-                                                         branches[k].upper) -
-                                           trace) /
-                                            speed));
-            }
-        return first;
-      }
-
-    for (const auto &face : boundary.faces)
-      {
-        const BondScale bonds = bonds_of(face, {});
-        if (bonds.energy == 0.)
-          continue;
-        const Trace trace = trace_on(face, s);
-        Trace       speed = {};
-        for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
-          if (!face.is_held(k))
-            speed[k] = ds(face.node(k));
-        const auto range_at = [&](const double t) {
-          Trace there = {};
-          for (unsigned int k = 0; k < there.size(); ++k)
-            there[k] = (trace[k] + t * speed[k]) / bonds.stretch;
-          return range_on_simplex<dim>(there, boundary.degree);
-        };
-        const auto [lowest, highest] = range_at(0.);
-        const unsigned int k         = branches.index(lowest);
-        if (k != branches.index(highest))
-          return {};
-        const auto stays = [&](const double t) {
-          const auto [low, high] = range_at(t);
-          return low >= branches[k].lower &&
-                 (k == 0 || high <= branches[k].upper);
-        };
-        // The range's ends are a concave and a convex function of t.
-        if (stays(first))
-          continue;
-        double before = 0., after = first;
-        for (double middle = 0.5 * after; middle > before && middle < after;
-             middle        = 0.5 * (before + after))
-          (stays(middle) ? before : after) = middle;
-        first = before;
-      }
+    for (const Point &point : point_list)
+      if (point.bonds.energy > 0.)
+        {
+          const double trace = point.trace(s) / point.bonds.stretch;
+          const double speed =
+            (point.trace(ds) - point.offset) / point.bonds.stretch;
+          const unsigned int k =
+            std::max(point.least_piece, branches.index(trace));
+          const bool changes = speed < 0. ? k + 1 < branches.size() :
+                                            speed > 0. && k > point.least_piece;
+          if (changes)
+            first = std::min(first,
+                             std::max(0.,
+                                      ((speed < 0. ? branches[k].lower :
+                                                     branches[k].upper) -
+                                       trace) /
+                                        speed));
+        }
     return first;
   }
 
@@ -395,7 +340,7 @@ namespace Debond
   AdhesionIntegral<dim>::energy(const VectorView &s) const
   {
     double sum = 0.;
-    for (const Point &point : points(s))
+    for (const Point &point : point_list)
       sum += point.weight * point.bonds.energy *
              law.value(point.trace(s) / point.bonds.stretch, point.least_piece);
     return sum;
@@ -417,7 +362,7 @@ namespace Debond
   AdhesionIntegral<dim>::subgradient(const VectorView &s) const
   {
     Eigen::VectorXd xi = Eigen::VectorXd::Zero(s.size());
-    for (const Point &point : points(s))
+    for (const Point &point : point_list)
       {
         const double force =
           point.weight * point.bonds.energy / point.bonds.stretch *
@@ -436,7 +381,7 @@ namespace Debond
   AdhesionIntegral<dim>::curvature(const VectorView &s) const
   {
     std::vector<Eigen::Triplet<double>> entries;
-    for (const Point &point : points(s))
+    for (const Point &point : point_list)
       {
         const double stretch = point.bonds.stretch;
         const double curvature =
@@ -452,15 +397,6 @@ namespace Debond
     Eigen::SparseMatrix<double> result(s.size(), s.size());
     result.setFromTriplets(entries.begin(), entries.end());
     return result;
-  }
-
-
-
-  template <int dim>
-  bool
-  AdhesionIntegral<dim>::has_moving_points() const
-  {
-    return quadrature.is_split_at_kinks();
   }
 
 
@@ -484,7 +420,7 @@ namespace Debond
     AssertDimension(delta.size(), boundary.nodes.size());
 
     std::vector<Interval> forces(boundary.nodes.size(), Interval{0., 0.});
-    for (const Point &point : points(s))
+    for (const Point &point : point_list)
       {
         const double stretch = point.bonds.stretch;
         const double trace   = point.trace(s) / stretch;
@@ -519,47 +455,14 @@ namespace Debond
 
 
   template <int dim>
-  const std::vector<typename AdhesionIntegral<dim>::Point> &
-  AdhesionIntegral<dim>::points(const VectorView &s) const
-  {
-    AssertDimension(static_cast<std::size_t>(s.size()), boundary.nodes.size());
-
-    if (quadrature.depends_on_trace())
-      collect_points(s);
-    return point_list;
-  }
-
-
-
-  template <int dim>
-  const std::vector<typename ContactQuadrature<dim>::QuadraturePoint> &
-  AdhesionIntegral<dim>::rule_on(
-    const typename ContactBoundary<dim>::Face &face,
-    const Trace                               &trace) const
-  {
-    if (field == nullptr || !quadrature.depends_on_trace())
-      return quadrature.points_of(trace);
-
-    // The kinks are those of the face's bonds.
-    const double stretch  = bonds_of(face, {}).stretch;
-    Trace        relative = trace;
-    for (double &coefficient : relative)
-      coefficient /= stretch;
-    return quadrature.points_of(relative);
-  }
-
-
-
-  template <int dim>
   void
-  AdhesionIntegral<dim>::collect_points(const VectorView &s) const
+  AdhesionIntegral<dim>::collect_points()
   {
     const unsigned int n_face_nodes = boundary.n_face_nodes();
     point_list.clear();
     for (const auto &face : boundary.faces)
       {
-        const Trace trace = trace_on(face, s);
-        for (const auto &quadrature_point : rule_on(face, trace))
+        for (const auto &quadrature_point : quadrature.points())
           {
             const Trace shape =
               bernstein(quadrature_point.barycentric, boundary.degree);
@@ -577,7 +480,7 @@ namespace Debond
               point.least_piece = least_of_points[point_list.size()];
             for (unsigned int k = 0; k < n_face_nodes; ++k)
               if (face.is_held(k))
-                point.offset += shape[k] * trace[k];
+                point.offset += shape[k] * held_trace(face, k);
               else if (shape[k] != 0.)
                 {
                   point.nodes[point.n_nodes] = face.node(k);
@@ -605,8 +508,7 @@ namespace Debond
   AdhesionIntegral<dim>::is_separable() const
   {
     // Points on clamped vertices have no node.
-    return !quadrature.depends_on_trace() &&
-           std::all_of(point_list.begin(),
+    return std::all_of(point_list.begin(),
                        point_list.end(),
                        [](const Point &point) {
                          return point.n_nodes == 0 || point.is_on_a_node();
@@ -671,12 +573,9 @@ namespace Debond
   {
     if (field == nullptr)
       return {};
-    // Where pieces between kinks are integrated exactly bonds are constant on
-    // each face.
     dealii::Point<dim> position;
     for (unsigned int k = 0; k < dim; ++k)
-      position += (quadrature.depends_on_trace() ? 1. / dim : barycentric[k]) *
-                  face.vertices[k];
+      position += barycentric[k] * face.vertices[k];
     return field->at(position, face.id);
   }
 
@@ -761,9 +660,10 @@ namespace Debond
         if (!is_held)
           continue;
         const Trace trace = trace_on(face, s);
-        std::size_t index = (&face - boundary.faces.data()) *
-                            (least_of_points.empty() ? 0 : n_fixed_points());
-        for (const auto &point : rule_on(face, trace))
+        std::size_t index =
+          (&face - boundary.faces.data()) *
+          (least_of_points.empty() ? 0 : quadrature.points().size());
+        for (const auto &point : quadrature.points())
           {
             BondScale   bonds = bonds_of(face, point.barycentric);
             const Trace shape = bernstein(point.barycentric, boundary.degree);

@@ -48,9 +48,9 @@ namespace Debond
       table.declare(
         "Contact law/Quadrature",
         p.quadrature_name,
-        parsed_by("nodal, midpoint, gauss N with N from 1 to 99, or exact",
+        parsed_by("nodal, midpoint, or gauss N with N from 1 to 99",
                   ContactQuadratureParameters::parse),
-        "The quadrature of the adhesion energy on each face: at the vertices, at the midpoint, Gauss' rule with N points, at most 99 (in 3D for each direction, at most 7), or exact for the piecewise polynomial displacement, split at the kinks of the law; bonds that vary have on each face the stiffness and the threshold of its centre",
+        "The quadrature of the adhesion energy on each face: at the vertices, at the midpoint, Gauss' rule with N points, at most 99 (in 3D for each direction, at most 7)",
         "none",
         [&p](const std::string &text) {
           p.quadrature_name = text;
@@ -103,7 +103,7 @@ namespace Debond
       "Mesh/Degree",
       p.degree,
       whole_number(1, 2),
-      "Degree of the displacement on each triangle or tetrahedron: linear, as in the paper, or quadratic, which has a much smaller error for as many unknowns and no locking; it needs Contact law/Quadrature = gauss N (in 2D: or exact)",
+      "Degree of the displacement on each triangle or tetrahedron: linear, as in the paper, or quadratic, which has a much smaller error for as many unknowns and no locking; it needs Contact law/Quadrature = gauss N",
       "none");
     bind_parts(parts, *this);
     bind_probes(p.probes, *this);
@@ -210,11 +210,6 @@ namespace Debond
             check(threshold + " " + name, bonds.threshold);
         }
       using Rule = ContactQuadratureParameters::Rule;
-      if (!p.load_path.bonds_heal && p.quadrature.rule == Rule::exact)
-        table.reject("Load path/Bonds heal",
-                     "needs bonds that stay where they are: Contact "
-                     "law/Quadrature = nodal, midpoint or gauss N",
-                     {"Contact law/Quadrature"});
       if (p.load_path.arc && p.degree == 1 && p.quadrature.rule != Rule::nodal)
         table.reject("Load path/Arc",
                      "needs Contact law/Quadrature = nodal, which gives each "
@@ -361,11 +356,10 @@ namespace Debond
         if (is_set)
           table.reject(entry, reason, {"Mesh/Degree"});
       };
-      refuse(p.quadrature.rule != Rule::gauss &&
-               !(p.dimension == 2 && p.quadrature.rule == Rule::exact),
+      refuse(p.quadrature.rule != Rule::gauss,
              "Contact law/Quadrature",
              "Mesh/Degree = 2 needs gauss N, N from 1 to " +
-               std::string(p.dimension == 2 ? "99, or exact" : "7"));
+               std::string(p.dimension == 2 ? "99" : "7"));
       refuse(!p.supports.gap.empty() || !p.supports.gaps.empty(),
              "Contact law/Initial gap",
              "there is none with Mesh/Degree = 2");

@@ -2,6 +2,7 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/timer.h>
 
+#include <debond/contact/exact_energy.h>
 #include <debond/elasticity/temperature_load.h>
 #include <debond/mesh/positive_part.h>
 #include <debond/optimization/global/rounded_branches.h>
@@ -535,16 +536,13 @@ namespace Debond
     if constexpr (dim == 2)
       if (!trace_constants.empty())
         {
-          ContactQuadratureParameters exact;
-          exact.rule = ContactQuadratureParameters::Rule::exact;
-          const ContactQuadrature<2> quadrature(exact, scene->law().kinks());
-          const ContactSpace<2>     &contact =
+          const ContactSpace<2> &contact =
             solved.problem().unknowns().contact();
-          certificate.upper =
-            elastic +
-            AdhesionIntegral<2>(contact.boundary(), scene->law(), quadrature)
-              .energy(contact.trace(u));
-          const double own = rounding();
+          certificate.upper = elastic + exact_energy(solved.adhesion(),
+                                                     contact.boundary(),
+                                                     scene->law(),
+                                                     contact.trace(u));
+          const double own  = rounding();
           certificate.upper += own;
           std::vector<double> side_energies(certificate.n_sides, 0.);
           if (is_own)

@@ -524,13 +524,12 @@ namespace Debond
           return {};
         if (is_proportional)
           {
-            const double whole = factors.loads / last_factors.loads - 1.;
-            const Eigen::VectorXd       way = whole * start;
-            const std::optional<double> part =
-              adhesion.first_change(start, way, 1.);
-            if (!part || *part == 1.)
+            const double whole        = factors.loads / last_factors.loads - 1.;
+            const Eigen::VectorXd way = whole * start;
+            const double          part = adhesion.first_change(start, way, 1.);
+            if (part == 1.)
               return {};
-            return factor_between(last_factors, factors, *part);
+            return factor_between(last_factors, factors, part);
           }
 
         const Eigen::VectorXd             load  = load_at(last_factors);
@@ -561,14 +560,12 @@ namespace Debond
             event                        = path.advance(0., 1.);
             if (event != Event::contact && event != Event::end)
               return {};
-            const std::optional<double> part =
+            const double part =
               adhesion.first_change(before, path.point() - before, 1.);
-            if (!part)
-              return {};
-            if (*part < 1.)
+            if (part < 1.)
               return factor_between(last_factors,
                                     factors,
-                                    t + *part * (path.t() - t));
+                                    t + part * (path.t() - t));
           }
         return {};
       }

@@ -282,9 +282,8 @@ namespace Debond
   Scene<dim>::add_contact()
   {
     adhesive_law = std::make_unique<AdhesiveLaw>(given.law.branches);
-    quadrature   = std::make_unique<ContactQuadrature<dim>>(given.quadrature,
-                                                          adhesive_law->kinks(),
-                                                          given.degree);
+    quadrature =
+      std::make_unique<ContactQuadrature<dim>>(given.quadrature, given.degree);
     if (given.law.has_field())
       bond_field =
         make_bond_field<dim>(given, *adhesive_law, boundary_conditions);

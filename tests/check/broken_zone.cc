@@ -71,7 +71,7 @@ namespace
   {
     const ContactBoundary<dim>   boundary = one_face<dim>();
     const AdhesiveLaw            law(winkler_law(5., M).branches);
-    const ContactQuadrature<dim> nodal({}, law.kinks());
+    const ContactQuadrature<dim> nodal({});
     std::mt19937                 random(7);
     double                       error = 0., error_for_good = 0.;
     for (unsigned int k = 0; k < 50; ++k)

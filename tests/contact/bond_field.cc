@@ -210,28 +210,20 @@ namespace
     std::cout << "Bonds that vary, " << dim << "D\n";
     const AdhesiveLaw            law(winkler_law(a_1, M_1).branches);
     const BondField<dim>         field = varying_field<dim>();
-    const ContactQuadrature<dim> exact(
-      ContactQuadratureParameters::parse("exact"), law.kinks());
-    double last_error = 0.;
-    bool   falls      = true;
+    const ContactQuadrature<dim> gauss(
+      ContactQuadratureParameters::parse("gauss 7"));
+    double error = 0.;
     for (const unsigned int n : {4u, 8u, 16u})
       {
         const ContactBoundary<dim>  boundary = uniform_boundary<dim>(n);
-        const AdhesionIntegral<dim> phi(boundary, law, exact, &field);
+        const AdhesionIntegral<dim> phi(boundary, law, gauss, &field);
         const Eigen::VectorXd       s     = varying_trace(boundary);
         const double                value = phi.value(s);
         // The trace is linear, and the sum that of the bonds themselves.
-        const double error = std::abs(
-          value - sampled(boundary, s, (dim == 2 ? 32000 : 512) / n, false));
-        falls      = falls && (n == 4 || error < last_error / 3.);
-        last_error = error;
+        error = std::abs(
+          value / sampled(boundary, s, (dim == 2 ? 32000 : 512) / n) - 1.);
         if (n > 4)
           continue;
-        check("bonds of the centres beside sampling",
-              std::abs(value /
-                         sampled(boundary, s, dim == 2 ? 20000 : 400, true) -
-                       1.),
-              dim == 2 ? 1e-8 : 1e-5);
         const Eigen::VectorXd xi         = phi.subgradient(s);
         double                difference = 0., largest = 0.;
         for (unsigned int i = 0; i < s.size(); ++i)
@@ -249,7 +241,7 @@ namespace
           }
         check("derivative beside differences", difference / largest, 1e-6);
       }
-    check("the error falls to a third with each halving at least", falls);
+    check("error beside sampling on the finest", error, 1e-3);
   }
 } // namespace
 
@@ -263,10 +255,9 @@ main(int argc, char **)
   const AdhesiveLaw        law(winkler_law(a_1, M_1).branches);
   const BondField<2>       two = field(a_2, M_2), equal = field(a_1, M_1);
   const auto               rule = [&](const std::string &name) {
-    return ContactQuadrature<2>(ContactQuadratureParameters::parse(name),
-                                law.kinks());
+    return ContactQuadrature<2>(ContactQuadratureParameters::parse(name));
   };
-  const ContactQuadrature<2> nodal = rule("nodal"), exact = rule("exact");
+  const ContactQuadrature<2> nodal = rule("nodal");
 
   Eigen::VectorXd s(3);
   const auto      traces = [&](const double scale) {
@@ -309,39 +300,6 @@ main(int argc, char **)
     const AdhesionIntegral<2> one(boundary, law, nodal);
     traces(0.3);
     check("equal bonds, to the last bit", phi.value(s) == one.value(s));
-  }
-  {
-    // From below to above both thresholds.
-    s(0) = -0.05;
-    s(1) = -0.7;
-    s(2) = -0.1;
-    const AdhesionIntegral<2> phi(boundary, law, exact, &two);
-    const unsigned int        n   = 200000;
-    double                    sum = 0.;
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        const double t = (i + 0.5) / n;
-        sum += (length_1 * j(a_1, M_1, (1. - t) * s(0) + t * s(1)) +
-                length_2 * j(a_2, M_2, (1. - t) * s(1) + t * s(2))) /
-               n;
-      }
-    check("exact quadrature beside sampling",
-          relative(phi.value(s), sum),
-          1e-9);
-    const Eigen::VectorXd xi    = phi.subgradient(s);
-    double                error = 0.;
-    for (unsigned int i = 0; i < 3; ++i)
-      {
-        constexpr double step  = 1e-6;
-        Eigen::VectorXd  above = s, below = s;
-        above(i) += step;
-        below(i) -= step;
-        error = std::max(error,
-                         std::abs((phi.value(above) - phi.value(below)) /
-                                    (2. * step) -
-                                  xi(i)));
-      }
-    check("its derivative beside differences", error, 1e-8);
   }
   test_varying_bonds<2>();
   test_varying_bonds<3>();

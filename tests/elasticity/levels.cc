@@ -217,7 +217,7 @@ namespace
     const auto        levels = ElasticLevels<dim>::make(body.box, body.problem);
     const AdhesiveLaw law(winkler_law(69., 0.002).branches);
     const ContactQuadrature<dim> quadrature(
-      ContactQuadratureParameters::parse("nodal"), law.kinks());
+      ContactQuadratureParameters::parse("nodal"));
     const AdhesionIntegral<dim> adhesion(
       body.problem.unknowns().contact().boundary(), law, quadrature);
     bool ended = true, kept = true;

@@ -159,7 +159,7 @@ namespace
     for (const std::string rule : {"nodal", "gauss 2"})
       {
         const ContactQuadrature<dim> quadrature(
-          ContactQuadratureParameters::parse(rule), law.kinks());
+          ContactQuadratureParameters::parse(rule));
         const AdhesionIntegral<dim> adhesion(
           body.problem->unknowns().contact().boundary(), law, quadrature);
         std::vector<unsigned int> normals;

@@ -207,7 +207,7 @@ namespace
     const BodyProblem<dim> whole(body, sides, nullptr);
     const AdhesiveLaw      law(winkler_law(stiffness, threshold).branches);
     const ContactQuadrature<dim> quadrature(
-      {ContactQuadratureParameters::Rule::nodal}, law.kinks());
+      {ContactQuadratureParameters::Rule::nodal});
     const ContactBoundary<dim> &boundary =
       whole.problem->unknowns().contact().boundary();
     const AdhesionIntegral<dim> adhesion(boundary, law, quadrature);

@@ -99,7 +99,7 @@ namespace
     problem.assemble(Material(), loads);
 
     const ContactQuadrature<dim> quadrature(
-      ContactQuadratureParameters::parse("nodal"), law.kinks());
+      ContactQuadratureParameters::parse("nodal"));
     const AdhesionIntegral<dim> adhesion(
       problem.unknowns().contact().boundary(), law, quadrature);
     std::vector<unsigned int> normals;

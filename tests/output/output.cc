@@ -323,7 +323,7 @@ namespace
       const AdhesiveLaw law(
         (name == "none" ? no_adhesion() : winkler_law(a, M)).branches);
       const ContactQuadrature<dim> quadrature(
-        ContactQuadratureParameters::parse(rule), law.kinks());
+        ContactQuadratureParameters::parse(rule));
       const AdhesionIntegral<dim> adhesion(
         problem->unknowns().contact().boundary(), law, quadrature);
       return verify(*problem, adhesion, law, u);
@@ -600,7 +600,7 @@ namespace
     // Every rule of quadrature: the graph is left by the error of nothing but
     // the rule's own force.
     bool finite = true;
-    for (const std::string rule : {"nodal", "midpoint", "gauss 2", "exact"})
+    for (const std::string rule : {"nodal", "midpoint", "gauss 2"})
       finite &= body.check_law(u, "winkler", a, M, rule).law_violation > 0. &&
                 body.check_law(u, "winkler", a, M, rule).law_violation < 10.;
     check("each rule gives a distance", finite);

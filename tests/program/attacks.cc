@@ -381,7 +381,7 @@ namespace
       random.chance(0.5) ?
         "nodal" :
         random.choice<std::string>(
-          {"midpoint", "gauss 1", "gauss 2", "gauss 3", "exact"});
+          {"midpoint", "gauss 1", "gauss 2", "gauss 3"});
     attack.set("Contact law/Quadrature", own.quadrature);
 
     const double size =

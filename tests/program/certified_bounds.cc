@@ -105,7 +105,7 @@ namespace
                random.choice<std::string>({"plane stress", "plane strain"}),
              "Contact law/Tangential displacement=" +
                random.choice<std::string>({"fixed", "free"}),
-             "Contact law/Quadrature=exact",
+             "Contact law/Quadrature=gauss 8",
              "Loads/Traction top=",
              "Loads/Traction " + (from_top ? sides[1] : sides[3]) + '=' +
                text(load()) + "; " + text(load()) + '+' +

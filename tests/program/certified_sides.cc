@@ -373,7 +373,7 @@ main()
   test_intersection();
   test_parts();
   const Values benchmark = {"Loads/Traction top=0; if(x<0.2,0.69,-0.345)",
-                            "Contact law/Quadrature=exact",
+                            "Contact law/Quadrature=gauss 8",
                             "Solver/Method=automatic"};
   const Values loads     = {"Loads/Body force=0; 0",
                             "Loads/Body force=0; 2",
@@ -402,7 +402,7 @@ main()
                               "Contact law/Bond stiffness=100",
                               "Contact law/Bond threshold=0.1",
                               "Contact law/Tangential displacement=free",
-                              "Contact law/Quadrature=exact",
+                              "Contact law/Quadrature=gauss 8",
                               "Loads/Traction top=",
                               "Loads/Traction right=0; 3",
                               "Solver/Method=automatic"};

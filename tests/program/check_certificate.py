@@ -178,7 +178,7 @@ def main(debond, n, first):
         for target in ("2e-2", "1e-4"):
             result, summary = run(debond, [
                 "Certificate/Kind=global", f"Certificate/Target={target}",
-                f"Mesh/Degree={degree}", "Contact law/Quadrature=exact",
+                f"Mesh/Degree={degree}", "Contact law/Quadrature=gauss 8",
                 "Loads/Traction top=0; if(x<0.2,0.69,-0.345)",
                 "Accuracy/Maximum unknowns=3000"])
             if summary is None:
@@ -207,10 +207,10 @@ def main(debond, n, first):
     jump = ["Loads/Traction top=0; if(x<0.4*7/24,0.5,-0.4)",
             "Certificate/Kind=global"]
     fine = run(debond, jump + ["Mesh/Cells=48, 4", "Mesh/Degree=2",
-                               "Contact law/Quadrature=exact"])[1]
+                               "Contact law/Quadrature=gauss 8"])[1]
     if not fine["certificate"]["loads_are_exact"]:
         failures.append(f"jump at a vertex: {fine['certificate']}")
-    for degree, quadrature in (("1", "nodal"), ("1", "exact"), ("2", "exact")):
+    for degree, quadrature in (("1", "nodal"), ("1", "gauss 8"), ("2", "gauss 8")):
         for cells in ("8, 1", "16, 2", "32, 2"):
             for target in ("", "0.02"):
                 result, summary = run(debond, jump + [

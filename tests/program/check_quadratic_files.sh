@@ -14,7 +14,7 @@ subsection Loads
   set Traction top = 0; if(x < 0.2, 0.69, -0.345)
 end
 subsection Contact law
-  set Quadrature = exact
+  set Quadrature = gauss 8
 end
 SCENE
 cat >solid.prm <<'SCENE'

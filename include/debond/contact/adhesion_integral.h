@@ -9,7 +9,6 @@
 #include <debond/optimization/piecewise_quadratic.h>
 
 #include <array>
-#include <optional>
 #include <vector>
 
 namespace Debond
@@ -20,7 +19,7 @@ namespace Debond
    * s is ordered as ContactBoundary::nodes; s of vertices that are none is
    * prescribed, and grows with the load.
    *
-   * Keeps references to its arguments. Use from one thread at a time.
+   * Keeps references to its arguments.
    */
   template <int dim>
   class AdhesionIntegral : public PiecewiseQuadratic
@@ -41,8 +40,7 @@ namespace Debond
     scale_load(const double factor);
 
     /// From now on bonds do not return to pieces of the law that they have left
-    /// at @p s or before: those of each point of the rule, which must not
-    /// depend on the trace.
+    /// at @p s or before: those of each point of the rule.
     void
     break_for_good(const VectorView &s);
 
@@ -68,10 +66,8 @@ namespace Debond
 
     /// How far on the way from s to s + @p limit ds bonds come before some
     /// leave their piece of the law, as a multiple of ds: @p limit if none do.
-    /// What is prescribed stays as it is. Nothing where a rule that depends on
-    /// the trace has two pieces on a face already: there bonds change
-    /// continuously.
-    std::optional<double>
+    /// What is prescribed stays as it is.
+    double
     first_change(const VectorView &s,
                  const VectorView &ds,
                  const double      limit) const;
@@ -121,10 +117,6 @@ namespace Debond
     /// couples the nodes of a face (diagonal for nodal quadrature).
     Eigen::SparseMatrix<double>
     curvature(const VectorView &s) const override;
-
-    /// Where the rule is split at the kinks of the law.
-    bool
-    has_moving_points() const override;
 
     /// For each node the forces that the law allows: the quadrature of the
     /// Goldstein intervals of j_1 over s +- delta. With delta = 0 this is
@@ -201,30 +193,17 @@ namespace Debond
     bonds_of(const typename ContactBoundary<dim>::Face &face,
              const std::array<double, dim>             &barycentric) const;
 
-    /// The quadrature points for the trace s.
-    const std::vector<Point> &
-    points(const VectorView &s) const;
-
-    /// Those of the rule on a face for the trace there.
-    const std::vector<typename ContactQuadrature<dim>::QuadraturePoint> &
-    rule_on(const typename ContactBoundary<dim>::Face &face,
-            const Trace                               &trace) const;
-
     /// Makes bonds_of_nodes and bonds_of_held.
     void
     collect_bonds();
 
     /// Writes the points of all faces to point_list.
     void
-    collect_points(const VectorView &s) const;
+    collect_points();
 
-    /// Makes point_list unless the rule depends on the trace.
+    /// Makes point_list.
     void
     update_points();
-
-    /// Of a rule that does not depend on the trace: on each face.
-    unsigned int
-    n_fixed_points() const;
 
     /// Replaces the points of point_list that are on a node by one for each
     /// node.
@@ -250,8 +229,7 @@ namespace Debond
     /// The same by point, face by face, unless points are nodes.
     std::vector<unsigned int> least_of_points;
 
-    /// Made once unless the rule depends on the trace.
-    mutable std::vector<Point> point_list;
+    std::vector<Point> point_list;
   };
 } // namespace Debond
 

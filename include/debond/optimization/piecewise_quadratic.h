@@ -31,14 +31,6 @@ namespace Debond
     /// The second derivative of these branches, positive semidefinite.
     virtual Eigen::SparseMatrix<double>
     curvature(const VectorView &s) const = 0;
-
-    /// Whether the branches' parts change continuously with s, so that a
-    /// majorant is not the one of before however close s is to its limit.
-    virtual bool
-    has_moving_points() const
-    {
-      return false;
-    }
   };
 
 

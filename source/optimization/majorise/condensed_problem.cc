@@ -206,37 +206,8 @@ namespace Debond
     const BoundQPResult qp =
       solve_bound_qp(M, r, Eigen::VectorXd::Zero(s.size()), active);
     if (qp.status != SolverStatus::interrupted)
-      s = can_be_verified(qp.status) && phi.has_moving_points() ?
-            accelerated(qp.x) :
-            qp.x;
+      s = qp.x;
     return {qp.status, qp.steps, 0};
-  }
-
-
-
-  Eigen::VectorXd
-  CondensedProblem::accelerated(const Eigen::VectorXd &image)
-  {
-    if (accelerated_set != active)
-      acceleration.restart();
-    accelerated_set      = active;
-    Eigen::VectorXd next = acceleration.next(s, image).cwiseMin(0.);
-    for (Eigen::Index i = 0; i < next.size(); ++i)
-      if (image(i) == 0.)
-        next(i) = 0.;
-    if (next == image)
-      return image;
-    const auto functional = [this](const Eigen::VectorXd &point) {
-      const double energy = 0.5 * point.dot(S * point), work = g.dot(point),
-                   adhesion = phi.value(point);
-      return std::make_pair(energy - work + adhesion,
-                            energy + std::abs(work) + adhesion);
-    };
-    const double of_next         = functional(next).first;
-    const auto [of_image, terms] = functional(image);
-    const double rounding =
-      16. * std::numeric_limits<double>::epsilon() * terms;
-    return of_next <= of_image + rounding ? next : image;
   }
 
 

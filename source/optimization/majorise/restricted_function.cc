@@ -33,12 +33,4 @@ namespace Debond
   {
     return P.transpose() * phi.curvature(P * s) * P;
   }
-
-
-
-  bool
-  RestrictedFunction::has_moving_points() const
-  {
-    return phi.has_moving_points();
-  }
 } // namespace Debond

@@ -4,7 +4,6 @@
 
 #include <debond/optimization/majorise/active_set_guess.h>
 #include <debond/optimization/majorise/bound_qp.h>
-#include <debond/optimization/majorise/fixed_point_acceleration.h>
 #include <debond/optimization/majorise/majorant_problem.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
@@ -86,14 +85,6 @@ namespace Debond
     /// By proximal steps along the columns of Z.
     Minimisation
     minimise_along(const Eigen::MatrixXd &Z);
-
-    /// The point after @p image, the minimum of the majorant at s: what
-    /// FixedPointAcceleration says, if J is not higher there.
-    Eigen::VectorXd
-    accelerated(const Eigen::VectorXd &image);
-
-    FixedPointAcceleration acceleration;
-    ActiveSet              accelerated_set; ///< of the images it knows
 
     /// The majorant 1/2 s'M s - r's + const, M = S + E, once there is one.
     bool                        majorised = false;

@@ -23,9 +23,6 @@ namespace Debond
     Eigen::SparseMatrix<double>
     curvature(const VectorView &s) const override;
 
-    bool
-    has_moving_points() const override;
-
   private:
     const PiecewiseQuadratic          &phi;
     const Eigen::SparseMatrix<double> &P;
