@@ -160,15 +160,11 @@ namespace
   double
   sampled(const ContactBoundary<dim> &boundary,
           const Eigen::VectorXd      &s,
-          const unsigned int          n,
-          const bool                  by_face)
+          const unsigned int          n)
   {
     double sum = 0.;
     for (const auto &face : boundary.faces)
       {
-        dealii::Point<dim> centre;
-        for (const auto &vertex : face.vertices)
-          centre += vertex / dim;
         const auto add = [&](const std::array<double, 3> &shape,
                              const double                 weight) {
           double             trace = 0.;
@@ -178,8 +174,6 @@ namespace
               trace += shape[k] * s(face.nodes[k]);
               point += shape[k] * face.vertices[k];
             }
-          if (by_face)
-            point = centre;
           sum += face.measure * weight *
                  j(stiffness_at(point), threshold_at(point), trace);
         };
