@@ -1,48 +1,47 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
 #include <debond/base/atomic_file.h>
 #include <debond/base/directory_lock.h>
 
 #include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
-#include <system_error>
 
 namespace Debond
 {
   namespace
   {
+    using boost::interprocess::interprocess_exception;
+
     /// Of the latest lock of this process, as long as it exists.
     std::string name_of_lock;
 
 
 
-    std::string
-    host_name()
+    /// Creates a file that boost can open by its name: a link is not followed.
+    void
+    create_plain_file(const std::string &file_name)
     {
-      char name[256] = "";
-      return gethostname(name, sizeof(name) - 1) == 0 ? name :
-                                                        "an unknown host";
-    }
-
-
-
-    /// Whether the name still belongs to the open file.
-    bool
-    is_named(const int descriptor, const std::string &file_name)
-    {
-      struct stat opened = {}, named = {};
-      return fstat(descriptor, &opened) == 0 &&
-             stat(file_name.c_str(), &named) == 0 &&
-             opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+      const int descriptor =
+        open(file_name.c_str(),
+             O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
+             0666);
+      std::error_code error;
+      const bool      is_plain =
+        std::filesystem::is_regular_file(file_name, error) &&
+        std::filesystem::hard_link_count(file_name, error) == 1;
+      const std::string reason = descriptor < 0 ? std::strerror(errno) :
+                                                  "it is no plain file, or has "
+                                                  "another name";
+      close(descriptor);
+      if (descriptor < 0 || !is_plain)
+        throw std::runtime_error("Cannot write " + file_name + ": " + reason);
     }
   } // namespace
 
@@ -61,50 +60,38 @@ namespace Debond
       throw std::runtime_error("cannot create the output directory " +
                                directory + ": " + error.message());
 
-    // Who had it may remove the file between its opening and locking.
-    while (descriptor < 0)
+    bool is_refused = false;
+    try
       {
-        descriptor =
-          open(file_name.c_str(),
-               O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
-               0666);
-        struct stat status = {};
-        if (descriptor < 0 || fstat(descriptor, &status) != 0 ||
-            !S_ISREG(status.st_mode) || status.st_nlink > 1)
+        // Who had it may remove the file between its opening and locking.
+        do
           {
-            const std::string reason =
-              descriptor < 0 ? std::strerror(errno) :
-                               "it is no plain file, or has another name";
-            close(descriptor);
-            throw std::runtime_error("Cannot write " + file_name + ": " +
-                                     reason);
+            create_plain_file(file_name);
+            lock       = boost::interprocess::file_lock(file_name.c_str());
+            is_refused = !lock.try_lock();
           }
-        const bool locked = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
-        if (!locked && errno == EWOULDBLOCK)
-          {
-            close(descriptor);
-            std::ifstream file = open_plain_file(file_name);
-            std::string   holder;
-            std::getline(file, holder);
-            throw std::runtime_error(
-              directory + " is being written by " +
-              (holder.empty() ? "another process" : holder) +
-              "; wait for its end, or give another Output/Directory");
-          }
+        while (!is_refused && !std::filesystem::exists(file_name, error));
+      }
+    catch (const interprocess_exception &)
+      {
         // A file system without locks is no reason not to run.
-        if (locked && !is_named(descriptor, file_name))
-          {
-            close(descriptor);
-            descriptor = -1;
-          }
+      }
+    if (is_refused)
+      {
+        std::ifstream file = open_plain_file(file_name);
+        std::string   other;
+        std::getline(file, other);
+        throw std::runtime_error(
+          directory + " is being written by " +
+          (other.empty() ? "another process" : other) +
+          "; wait for its end, or give another Output/Directory");
       }
 
-    // What the file says is only for the message of another process.
-    if (ftruncate(descriptor, 0) == 0)
-      dprintf(descriptor,
-              "process %d on %s\n",
-              static_cast<int>(getpid()),
-              host_name().c_str());
+    // Only for the message above. The system takes a lock off a file that its
+    // process closes, so this stays open as long as the lock.
+    holder.open(file_name);
+    holder << "process " << getpid() << " on "
+           << dealii::Utilities::System::get_hostname() << std::endl;
     name_of_lock = file_name;
     std::at_quick_exit([]() { unlink(name_of_lock.c_str()); });
   }
@@ -113,11 +100,8 @@ namespace Debond
 
   DirectoryLock::~DirectoryLock()
   {
-    if (descriptor < 0)
-      return;
     name_of_lock.clear();
     unlink(file_name.c_str());
-    close(descriptor);
   }
 
 
@@ -125,11 +109,8 @@ namespace Debond
   void
   DirectoryLock::withdraw()
   {
-    if (descriptor < 0)
-      return;
     unlink(file_name.c_str());
-    close(descriptor);
-    descriptor = -1;
+    file_name.clear();
     std::error_code not_empty;
     for (const std::string &directory : created)
       std::filesystem::remove(directory, not_empty);

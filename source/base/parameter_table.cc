@@ -2,83 +2,121 @@
 #include <deal.II/base/utilities.h>
 
 #include <debond/base/atomic_file.h>
-#include <debond/base/nearest_name.h>
 #include <debond/base/number_text.h>
 #include <debond/base/parameter_table.h>
 #include <debond/base/text.h>
 
+#include <boost/algorithm/string.hpp>
+
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <regex>
 #include <stdexcept>
+#include <tuple>
 
 namespace Debond
 {
+  using boost::starts_with;
+  using dealii::Utilities::split_string_list;
+  using dealii::Utilities::trim;
+
+  Pattern::Pattern(const std::string &words, const Property &property)
+    : words(words)
+    , property(property)
+  {}
+
+
+
+  bool
+  Pattern::match(const std::string &value) const
+  {
+    return printable(value) == value && (!property || property(value));
+  }
+
+
+
+  std::string
+  Pattern::description(const OutputStyle /*style*/) const
+  {
+    return words;
+  }
+
+
+
+  std::unique_ptr<dealii::Patterns::PatternBase>
+  Pattern::clone() const
+  {
+    return std::make_unique<Pattern>(*this);
+  }
+
+
+
+  Pattern
+  number(const std::string &range, bool (*const property)(double))
+  {
+    return Pattern("a number" + (range.empty() ? "" : " " + range),
+                   [property](const std::string &value) {
+                     double result;
+                     return read_number(value, result) && property(result);
+                   });
+  }
+
+
+
+  Pattern
+  positive_number()
+  {
+    return number("> 0", [](double x) { return x > 0; });
+  }
+
+
+
+  Pattern
+  quantity(const bool may_be_zero)
+  {
+    const std::string range = "from 1e-100 to 1e100";
+    const auto is_positive = [](double x) { return x >= 1e-100 && x <= 1e100; };
+    const auto is_zero_or_positive = [](double x) {
+      return x == 0. || (x >= 1e-100 && x <= 1e100);
+    };
+    return may_be_zero ? number(range + ", or 0", is_zero_or_positive) :
+                         number(range, is_positive);
+  }
+
+
+
+  Pattern
+  whole_number(const int smallest, const int largest)
+  {
+    const dealii::Patterns::Integer whole(smallest, largest);
+    return Pattern(words("a whole number from ", smallest, " to ", largest),
+                   [whole](const std::string &value) {
+                     return whole.match(value);
+                   });
+  }
+
+
+
+  Pattern
+  one_of(const std::vector<std::string> &names)
+  {
+    const dealii::Patterns::Selection selection(join(names, "|"));
+    return Pattern((names.size() == 1 ? "" : "one of ") + join(names, ", "),
+                   [selection](const std::string &value) {
+                     return selection.match(value);
+                   });
+  }
+
+
+
   namespace
   {
-    using dealii::Utilities::trim;
-
-    /// "A/B/C" as {"A", "B"} and "C".
-    std::pair<std::vector<std::string>, std::string>
-    split_path(const std::string &path)
-    {
-      std::vector<std::string> parts =
-        dealii::Utilities::split_string_list(path, '/');
-      const std::string name = parts.back();
-      parts.pop_back();
-      return {parts, name};
-    }
-
-
-
-    bool
-    starts_with(const std::string &text, const std::string &start)
-    {
-      return text.compare(0, start.size(), start) == 0;
-    }
-
-
-
-    /// "; did you mean ...?", or what there is in the same section, or that
-    /// there is no such thing.
+    /// A text for a message.
     std::string
-    suggestion(const std::string &path, const std::vector<std::string> &known)
-    {
-      static const std::map<std::string, std::string> absent = {
-        {"friction|coulomb", "friction"},
-        {"plastic|yield|hardening", "plasticity"},
-        {"visc|creep|damping", "viscosity"},
-        {"density|\\bmass|veloc|accelerat|time step", "inertia"},
-        {"(large|finite) (displ|strain|rot|def)", "large displacements"},
-        {"orthotrop|anisotrop", "directions of the material"},
-        {"soften|damage|fatigue", "damage"}};
-      for (const auto &[words, what] : absent)
-        if (std::regex_search(path, std::regex(words, std::regex::icase)))
-          return "; Debond has no " + what +
-                 ", see 'What the model does not contain' in "
-                 "doc/guide/manual.md";
-      const std::vector<std::string> near = nearest_names(path, known);
-      if (!near.empty())
-        return "; did you mean " + join(near, " or ") + "?";
-
-      const std::string        section = path.substr(0, path.rfind('/') + 1);
-      std::vector<std::string> siblings;
-      for (const std::string &candidate : known)
-        if (starts_with(candidate, section) &&
-            candidate.find('/', section.size()) == std::string::npos)
-          siblings.push_back(candidate);
-      return siblings.empty() ? "" : "; known are " + join(siblings, ", ");
-    }
-
-
-
-    /// A value for a message.
-    std::string
-    shortened(const std::string &value)
+    shortened(const std::string &text)
     {
       constexpr std::size_t longest = 100;
-      return value.size() <= longest ? value : value.substr(0, longest) + "...";
+      return text.size() <= longest ? text : text.substr(0, longest) + "...";
     }
 
 
@@ -92,17 +130,151 @@ namespace Debond
 
 
 
-    std::vector<std::string>
-    sections_of(const std::vector<std::string> &paths)
+    /// How many insertions, deletions, substitutions and transpositions of
+    /// neighbours turn one word into the other (Damerau's distance in its
+    /// restricted form, in which no part is edited twice).
+    std::size_t
+    edit_distance(const std::string &s, const std::string &t)
     {
-      std::set<std::string> sections;
-      for (const std::string &path : paths)
-        for (std::size_t slash = path.find('/'); slash != std::string::npos;
-             slash             = path.find('/', slash + 1))
-          sections.insert(path.substr(0, slash));
-      return {sections.begin(), sections.end()};
+      // That of the first i letters of s and j of t.
+      std::vector<std::vector<std::size_t>> distance(
+        s.size() + 1, std::vector<std::size_t>(t.size() + 1));
+      for (std::size_t i = 0; i <= s.size(); ++i)
+        for (std::size_t j = 0; j <= t.size(); ++j)
+          {
+            std::size_t &d = distance[i][j] = i + j;
+            if (i == 0 || j == 0)
+              continue;
+            d = std::min({distance[i - 1][j] + 1,
+                          distance[i][j - 1] + 1,
+                          distance[i - 1][j - 1] + (s[i - 1] != t[j - 1])});
+            if (i > 1 && j > 1 && s[i - 1] == t[j - 2] && s[i - 2] == t[j - 1])
+              d = std::min(d, distance[i - 2][j - 2] + 1);
+          }
+      return distance[s.size()][t.size()];
+    }
+
+
+
+    /// The known paths that a misspelt one may have meant, best first, at most
+    /// three: no more than a third of the letters (or two) differ, or one name
+    /// is a part of the other. Names are compared before sections, so that the
+    /// right name in the wrong section is found.
+    std::vector<std::string>
+    nearest(const std::string &path, const std::vector<std::string> &known)
+    {
+      const auto split = [](std::string text) {
+        boost::to_lower(text);
+        const std::size_t name = text.rfind('/') + 1; // 0 without a section
+        return std::make_pair(text.substr(0, name), text.substr(name));
+      };
+      const auto has = [](const std::string &word, const std::string &part) {
+        return part.size() > 2 && word.find(part) != std::string::npos;
+      };
+      const auto [section, name] = split(path);
+      std::vector<std::tuple<std::size_t, std::size_t, std::string>> near;
+      for (const std::string &other : known)
+        {
+          const auto [its_section, its_name] = split(other);
+          const std::size_t distance         = edit_distance(name, its_name);
+          if (distance <= std::max<std::size_t>(2, name.size() / 3) ||
+              has(its_name, name) || has(name, its_name))
+            near.emplace_back(distance,
+                              edit_distance(section, its_section),
+                              other);
+        }
+      std::sort(near.begin(), near.end());
+
+      std::vector<std::string> names;
+      for (std::size_t i = 0; i < std::min<std::size_t>(3, near.size()); ++i)
+        names.push_back(std::get<2>(near[i]));
+      return names;
+    }
+
+
+
+    /// "; did you mean ...?", or what there is in the same section, or that
+    /// there is no such thing.
+    std::string
+    suggestion(const std::string &path, const std::vector<std::string> &known)
+    {
+      if (path == "Study")
+        return "; this is a study: run scripts/study";
+      static const std::map<std::string, std::string> absent = {
+        {"friction|coulomb", "friction"},
+        {"plastic|yield|hardening", "plasticity"},
+        {"visc|creep|damping", "viscosity"},
+        {"density|\\bmass|veloc|accelerat|time step", "inertia"},
+        {"(large|finite) (displ|strain|rot|def)", "large displacements"},
+        {"orthotrop|anisotrop", "directions of the material"},
+        {"soften|damage|fatigue", "damage"}};
+      for (const auto &[words, what] : absent)
+        if (std::regex_search(path, std::regex(words, std::regex::icase)))
+          return "; Debond has no " + what +
+                 ", see 'What the model does not contain' in "
+                 "doc/guide/manual.md";
+      const std::vector<std::string> near = nearest(path, known);
+      if (!near.empty())
+        return "; did you mean " + join(near, " or ") + "?";
+
+      const std::string        section = path.substr(0, path.rfind('/') + 1);
+      std::vector<std::string> siblings;
+      for (const std::string &other : known)
+        if (starts_with(other, section) &&
+            other.find('/', section.size()) == std::string::npos)
+          siblings.push_back(other);
+      return siblings.empty() ? "" : "; known are " + join(siblings, ", ");
     }
   } // namespace
+
+
+
+  std::string
+  ParameterTable::text(const std::string &documentation,
+                       const Pattern     &pattern,
+                       const std::string &units)
+  {
+    return documentation + ". Allowed: " + pattern.description() +
+           ". Units: " + units + ".";
+  }
+
+
+
+  /// Has @p action done in the entry's section, with the entry's name.
+  void
+  ParameterTable::in_section(
+    const std::string                              &path,
+    const std::function<void(const std::string &)> &action)
+  {
+    std::vector<std::string> sections = split_string_list(path, '/');
+    const std::string        name     = sections.back();
+    sections.pop_back();
+    for (const std::string &section : sections)
+      handler.enter_subsection(section);
+    action(name);
+    for (std::size_t i = 0; i < sections.size(); ++i)
+      handler.leave_subsection();
+  }
+
+
+
+  void
+  ParameterTable::bind(const std::string &path,
+                       bool              &variable,
+                       const std::string &documentation)
+  {
+    bind(path, variable, one_of({"true", "false"}), documentation);
+  }
+
+
+
+  void
+  ParameterTable::bind(const std::string     &path,
+                       std::set<std::string> &variable,
+                       const std::string     &documentation)
+  {
+    bind(path, variable, Pattern("a list of names"), documentation);
+  }
 
 
 
@@ -112,151 +284,16 @@ namespace Debond
                           const Pattern     &pattern,
                           const std::string &documentation,
                           const std::string &units,
-                          const Reader      &reader,
-                          const AtRestart    restart)
+                          const Reader      &reader)
   {
-    const std::string expected = pattern.description();
-    entries[path]              = {expected, default_value, restart};
-    if (reader)
-      readers.emplace_back(path, reader);
-
-    const auto [sections, name] = split_path(path);
-    for (const std::string &section : sections)
-      handler.enter_subsection(section);
-    handler.declare_entry(name,
-                          default_value,
-                          pattern,
-                          documentation + ". Allowed: " + expected +
-                            ". Units: " + units + ".");
-    for (std::size_t i = 0; i < sections.size(); ++i)
-      handler.leave_subsection();
-  }
-
-
-
-  void
-  ParameterTable::bind(const std::string &path,
-                       double            &variable,
-                       const Pattern     &pattern,
-                       const std::string &documentation,
-                       const std::string &units,
-                       const AtRestart    restart)
-  {
-    declare(
-      path,
-      shortest_text(variable),
-      pattern,
-      documentation,
-      units,
-      [&variable](const std::string &text) { read_number(text, variable); },
-      restart);
-  }
-
-
-
-  void
-  ParameterTable::bind(const std::string &path,
-                       unsigned int      &variable,
-                       const Pattern     &pattern,
-                       const std::string &documentation,
-                       const std::string &units,
-                       const AtRestart    restart)
-  {
-    declare(
-      path,
-      std::to_string(variable),
-      pattern,
-      documentation,
-      units,
-      [&variable](const std::string &text) {
-        variable = static_cast<unsigned int>(std::stoul(text));
-      },
-      restart);
-  }
-
-
-
-  void
-  ParameterTable::bind(const std::string &path,
-                       std::string       &variable,
-                       const Pattern     &pattern,
-                       const std::string &documentation,
-                       const std::string &units,
-                       const AtRestart    restart)
-  {
-    declare(
-      path,
-      variable,
-      pattern,
-      documentation,
-      units,
-      [&variable](const std::string &text) { variable = text; },
-      restart);
-  }
-
-
-
-  void
-  ParameterTable::bind(const std::string   &path,
-                       std::vector<double> &variable,
-                       const Pattern       &pattern,
-                       const std::string   &documentation,
-                       const std::string   &units,
-                       const AtRestart      restart)
-  {
-    std::vector<std::string> words;
-    for (const double number : variable)
-      words.push_back(shortest_text(number));
-    declare(
-      path,
-      join(words, ", "),
-      pattern,
-      documentation,
-      units,
-      [&variable](const std::string &text) {
-        variable.clear();
-        for (const std::string &word :
-             dealii::Utilities::split_string_list(text, ','))
-          read_number(word, variable.emplace_back());
-      },
-      restart);
-  }
-
-
-
-  void
-  ParameterTable::bind(const std::string     &path,
-                       std::set<std::string> &variable,
-                       const std::string     &documentation,
-                       const AtRestart        restart)
-  {
-    declare(
-      path,
-      join({variable.begin(), variable.end()}, ", "),
-      list_of_names(),
-      documentation,
-      "none",
-      [&variable](const std::string &text) {
-        const std::vector<std::string> names =
-          dealii::Utilities::split_string_list(text, ',');
-        variable = {names.begin(), names.end()};
-      },
-      restart);
-  }
-
-
-
-  void
-  ParameterTable::bind(const std::string &path,
-                       bool              &variable,
-                       const std::string &documentation,
-                       const AtRestart    restart)
-  {
-    bind_choice(path,
-                variable,
-                {{"true", true}, {"false", false}},
-                documentation,
-                restart);
+    in_section(path, [&](const std::string &name) {
+      handler.declare_entry(name,
+                            default_value,
+                            pattern,
+                            text(documentation, pattern, units));
+      handler.add_action(name, reader);
+    });
+    entries.emplace(path, Entry{default_value, default_value, pattern});
   }
 
 
@@ -273,18 +310,30 @@ namespace Debond
                              [pattern](const std::string &value) {
                                return value.empty() || pattern.match(value);
                              });
-    families.emplace(path, Family{or_nothing, documentation, units, &variable});
+    families.emplace(path, Family{&variable, or_nothing, documentation, units});
   }
 
 
 
   bool
-  ParameterTable::declare_member(const std::string &path)
+  ParameterTable::declare_member(const std::string &path,
+                                 const std::string &documentation)
   {
     for (const auto &[start, family] : families)
       if (starts_with(path, prefix_of(start)) && printable(path) == path)
         {
-          declare(path, "", family.pattern, family.documentation, family.units);
+          declare(path,
+                  "",
+                  family.pattern,
+                  documentation.empty() ? family.documentation : documentation,
+                  family.units,
+                  [name = path.substr(prefix_of(start).size()),
+                   map  = family.variable](const std::string &value) {
+                    if (value.empty())
+                      map->erase(name);
+                    else
+                      (*map)[name] = value;
+                  });
           return true;
         }
     return false;
@@ -299,29 +348,36 @@ namespace Debond
   {
     if (entries.count(path) == 0 && !declare_member(path))
       {
-        lines.push_back(location + ": unknown parameter " + shortened(path) +
-                        suggestion(shortened(path), known_entries()));
+        std::vector<std::string> known;
+        for (const auto &[other, unused] : entries)
+          known.push_back(other);
+        errors.push_back(location + ": unknown parameter " + shortened(path) +
+                         suggestion(shortened(path), known));
         return;
       }
-    set_at[path] = location;
-
-    const auto [sections, name] = split_path(path);
-    for (const std::string &section : sections)
-      handler.enter_subsection(section);
-    try
-      {
-        handler.set(name, value);
-        rejected.erase(path);
-      }
-    catch (const dealii::ParameterHandler::ExcValueDoesNotMatchPattern &)
-      {
-        lines.push_back(location + ": " + path + " = " + shortened(value) +
-                        ": expected " + entries[path].expected +
-                        comma_hint(value));
-        rejected.insert(path);
-      }
-    for (std::size_t i = 0; i < sections.size(); ++i)
-      handler.leave_subsection();
+    Entry      &entry = entries.at(path);
+    std::string reason;
+    in_section(path, [&](const std::string &name) {
+      try
+        {
+          handler.set(name, value);
+          entry.value = value;
+        }
+      catch (const dealii::ParameterHandler::ExcValueDoesNotMatchPattern &)
+        {
+          reason =
+            "expected " + entry.pattern.description() + comma_hint(value);
+        }
+      catch (const std::invalid_argument &error)
+        {
+          reason = error.what();
+        }
+    });
+    entry.set_at      = location;
+    entry.is_rejected = !reason.empty();
+    if (entry.is_rejected)
+      errors.push_back(location + ": " + path + " = " + shortened(value) +
+                       ": " + reason);
   }
 
 
@@ -331,114 +387,77 @@ namespace Debond
   {
     file_name = file;
     reading.push_back(file);
+    const std::vector<std::string> sections = known_sections();
+    const auto                     is_known = [&](const std::string &section) {
+      return section.empty() ||
+             std::binary_search(sections.begin(), sections.end(), section);
+    };
 
-    std::vector<std::string> known_paths = known_entries();
-    for (const auto &[path, unused] : families)
-      known_paths.push_back(path);
-    const std::vector<std::string> known_sections = sections_of(known_paths);
+    // Paths of sections that are open, and where they were opened.
+    std::vector<std::pair<std::string, std::string>> open = {{"", ""}};
+    std::map<std::string, std::string>               set_here;
 
-    // The sections that are open, and where they were opened. What is in an
-    // unknown section is skipped, since the section is reported already.
-    std::vector<std::string> open;
-    std::vector<std::string> opened_at;
-    std::size_t              known_depth = 0;
-
-    std::map<std::string, std::string> set_here;
-
-    std::string  logical_line;
-    unsigned int line_number       = 0;
-    unsigned int first_line_number = 1;
+    std::string  text;
+    unsigned int n_lines = 0, first_line = 1;
     for (std::string line; std::getline(input, line);)
       {
         // Some editors begin a file with the mark of UTF-8.
-        if (line_number == 0 && starts_with(line, "\xef\xbb\xbf"))
+        if (n_lines++ == 0 && starts_with(line, "\xef\xbb\xbf"))
           line.erase(0, 3);
-        ++line_number;
         line                 = trim(line);
-        const bool continued = !line.empty() && line.back() == '\\';
-        if (continued)
-          line.pop_back();
-        logical_line += line;
+        const bool continued = boost::ends_with(line, "\\");
+        text += line.substr(0, line.size() - (continued ? 1 : 0));
         if (continued)
           continue;
 
-        std::string text = trim(logical_line.substr(0, logical_line.find('#')));
-        const std::string location =
-          file + ":" + std::to_string(first_line_number);
-        logical_line.clear();
-        first_line_number = line_number + 1;
+        text = trim(text.substr(0, text.find('#')));
         std::replace(text.begin(), text.end(), '\t', ' ');
-        if (text.empty())
-          continue;
-
-        std::string keyword = text.substr(0, text.find(' '));
-        for (char &letter : keyword)
-          letter =
-            static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-        const std::string rest = trim(text.substr(keyword.size()));
-
+        const std::string at      = words(file, ':', first_line);
+        const std::string section = open.back().first;
+        const std::string prefix  = section.empty() ? "" : section + '/';
+        const std::string keyword =
+          boost::to_lower_copy(text.substr(0, text.find(' ')));
+        const std::string rest   = trim(text.substr(keyword.size()));
+        const std::size_t equals = rest.find('=');
         if (keyword == "subsection" && !rest.empty())
           {
-            const bool inside_known = known_depth == open.size();
-            open.push_back(rest);
-            opened_at.push_back(location);
-            if (!inside_known)
-              continue;
-            const std::string path = join(open, "/");
-            if (std::find(known_sections.begin(), known_sections.end(), path) !=
-                known_sections.end())
-              ++known_depth;
-            else
-              {
-                unknown_sections.insert(path);
-                lines.push_back(location + ": unknown subsection " +
-                                shortened(path) +
-                                suggestion(shortened(path), known_sections));
-              }
+            const std::string path = prefix + rest;
+            open.emplace_back(path, at);
+            if (is_known(section) && !is_known(path))
+              errors.push_back(at + ": unknown subsection " + shortened(path) +
+                               suggestion(shortened(path), sections));
           }
+        else if (keyword == "end" && rest.empty() && open.size() > 1)
+          open.pop_back();
         else if (keyword == "end" && rest.empty())
+          errors.push_back(at + ": 'end' without an open subsection");
+        else if (keyword == "set" && equals != std::string::npos)
           {
-            if (open.empty())
-              {
-                lines.push_back(location +
-                                ": 'end' without an open subsection");
-                continue;
-              }
-            open.pop_back();
-            opened_at.pop_back();
-            known_depth = std::min(known_depth, open.size());
+            // What is in an unknown section is not told again.
+            const std::string path = prefix + trim(rest.substr(0, equals));
+            const auto [earlier, is_first] = set_here.emplace(path, at);
+            if (!is_first)
+              errors.push_back(at + ": " + path + " is set already, at " +
+                               earlier->second);
+            else if (is_known(section))
+              set(path, trim(rest.substr(equals + 1)), at);
           }
-        else if (keyword == "set" && rest.find('=') != std::string::npos)
-          {
-            if (known_depth != open.size())
-              continue;
-            const std::size_t equals = rest.find('=');
-            const std::string name   = trim(rest.substr(0, equals));
-            const std::string path =
-              (open.empty() ? "" : join(open, "/") + "/") + name;
-            const auto [earlier, is_first] = set_here.emplace(path, location);
-            if (is_first)
-              set(path, trim(rest.substr(equals + 1)), location);
-            else
-              lines.push_back(location + ": " + path + " is set already, at " +
-                              earlier->second);
-          }
-        else if (keyword == "include" && !rest.empty() && open.empty())
-          read_included(rest, file, location);
-        else
-          lines.push_back(
-            location + ": cannot read '" + text +
-            "': expected 'subsection NAME', "
-            "'set NAME = VALUE', 'end' or, outside of subsections, "
-            "'include FILE'");
+        else if (keyword == "include" && !rest.empty() && section.empty())
+          read_included(rest, file, at);
+        else if (!text.empty())
+          errors.push_back(at + ": cannot read '" + text +
+                           "': expected 'subsection NAME', 'set NAME = "
+                           "VALUE', 'end' or, outside of subsections, "
+                           "'include FILE'");
+        text.clear();
+        first_line = n_lines + 1;
       }
-
-    if (!logical_line.empty())
-      lines.push_back(file + ":" + std::to_string(first_line_number) +
-                      ": the file ends in a continued line");
-    for (std::size_t i = 0; i < open.size(); ++i)
-      lines.push_back(opened_at[i] + ": subsection " + open[i] +
-                      " is not closed by 'end'");
+    if (!text.empty())
+      errors.push_back(
+        words(file, ':', first_line, ": the file ends in a continued line"));
+    for (std::size_t i = 1; i < open.size(); ++i)
+      errors.push_back(open[i].second + ": subsection " + open[i].first +
+                       " is not closed by 'end'");
     reading.pop_back();
   }
 
@@ -455,21 +474,18 @@ namespace Debond
       std::error_code unreadable;
       return std::filesystem::equivalent(path, other, unreadable);
     };
-
     // Files that each include others twice have no end.
     constexpr unsigned int most_included = 100;
     std::ifstream          input         = open_plain_file(path);
     if (n_included == most_included)
       return;
+    const std::string error = location + ": include " + name + ": ";
     if (!input)
-      lines.push_back(location + ": include " + name +
-                      ": there is no such file, or it cannot be read");
+      errors.push_back(error + "there is no such file, or it cannot be read");
     else if (std::any_of(reading.begin(), reading.end(), is_this_file))
-      lines.push_back(location + ": include " + name +
-                      ": the file includes itself");
+      errors.push_back(error + "the file includes itself");
     else if (++n_included == most_included)
-      lines.push_back(location + ": include " + name +
-                      ": it is one of more than 100 files");
+      errors.push_back(error + "it is one of more than 100 files");
     else
       read(input, path.string());
     file_name = file;
@@ -482,14 +498,12 @@ namespace Debond
   {
     const std::size_t equals = assignment.find('=');
     if (equals == std::string::npos)
-      {
-        lines.push_back("--set: cannot read '" + assignment +
-                        "': expected Section/Parameter=value");
-        return;
-      }
-    set(trim(assignment.substr(0, equals)),
-        trim(assignment.substr(equals + 1)),
-        "--set");
+      errors.push_back("--set: cannot read '" + assignment +
+                       "': expected Section/Parameter=value");
+    else
+      set(trim(assignment.substr(0, equals)),
+          trim(assignment.substr(equals + 1)),
+          "--set");
   }
 
 
@@ -499,33 +513,7 @@ namespace Debond
                          const std::string &value,
                          const std::string &source)
   {
-    set(path, value, location(source));
-  }
-
-
-
-  void
-  ParameterTable::parse()
-  {
-    for (const auto &[path, reader] : readers)
-      try
-        {
-          reader(get(path));
-        }
-      catch (const std::invalid_argument &error)
-        {
-          reject(path, error.what());
-        }
-
-    for (const auto &[path, family] : families)
-      {
-        family.variable->clear();
-        for (const std::string &member : known_entries())
-          if (const std::string prefix = prefix_of(path);
-              starts_with(member, prefix))
-            if (const std::string value = get(member); !value.empty())
-              (*family.variable)[member.substr(prefix.size())] = value;
-      }
+    set(path, value, locations().at(source));
   }
 
 
@@ -533,25 +521,15 @@ namespace Debond
   bool
   ParameterTable::is_set(const std::string &path) const
   {
-    return set_at.count(path) > 0;
+    return entries.count(path) > 0 && !entries.at(path).set_at.empty();
   }
 
 
 
-  std::string
+  const std::string &
   ParameterTable::get(const std::string &path) const
   {
-    const auto [sections, name] = split_path(path);
-    return handler.get(sections, name);
-  }
-
-
-
-  std::string
-  ParameterTable::location(const std::string &path) const
-  {
-    const auto location = set_at.find(path);
-    return location != set_at.end() ? location->second : file_name;
+    return entries.at(path).value;
   }
 
 
@@ -560,37 +538,28 @@ namespace Debond
   ParameterTable::locations() const
   {
     std::map<std::string, std::string> result;
-    for (const std::string &path : known_entries())
-      result[path] = location(path);
+    for (const auto &[path, entry] : entries)
+      result[path] = entry.set_at.empty() ? file_name : entry.set_at;
     return result;
   }
 
 
 
+  /// In alphabetical order.
   std::vector<std::string>
-  ParameterTable::known_entries() const
+  ParameterTable::known_sections() const
   {
-    std::vector<std::string> paths;
-    for (const auto &[path, unused] : entries)
-      paths.push_back(path);
-    return paths;
-  }
-
-
-
-  void
-  ParameterTable::add_error(const std::string              &path,
-                            const std::string              &message,
-                            const std::vector<std::string> &others)
-  {
-    const auto is_rejected = [&](const std::string &entry) {
-      return rejected.count(entry) > 0;
+    std::set<std::string> sections;
+    const auto            add = [&sections](const std::string &path) {
+      for (std::size_t slash = path.find('/'); slash != std::string::npos;
+           slash             = path.find('/', slash + 1))
+        sections.insert(path.substr(0, slash));
     };
-    if (is_rejected(path) ||
-        std::any_of(others.begin(), others.end(), is_rejected))
-      return;
-
-    lines.push_back(location(path) + ": " + message);
+    for (const auto &[path, unused] : entries)
+      add(path);
+    for (const auto &[path, unused] : families)
+      add(path);
+    return {sections.begin(), sections.end()};
   }
 
 
@@ -600,11 +569,13 @@ namespace Debond
                          const std::string              &reason,
                          const std::vector<std::string> &others)
   {
-    const bool is_default = set_at.count(path) == 0;
-    add_error(path,
-              path + " = " + shortened(get(path)) +
-                (is_default ? " (default): " : ": ") + reason,
-              others);
+    bool is_known = entries.at(path).is_rejected;
+    for (const std::string &other : others)
+      is_known |= entries.count(other) > 0 && entries.at(other).is_rejected;
+    if (!is_known)
+      errors.push_back(locations().at(path) + ": " + path + " = " +
+                       shortened(get(path)) +
+                       (is_set(path) ? ": " : " (default): ") + reason);
   }
 
 
@@ -614,51 +585,24 @@ namespace Debond
                                  const std::string &reason,
                                  const std::string &rejected_for)
   {
-    const auto is_default = [this](const std::string &path) {
-      const std::string &value = this->entries.at(path).default_value;
-      double             a, b;
-      return get(path) == value ||
-             (read_number(get(path), a) && read_number(value, b) && a == b);
+    const auto is_default = [](const Entry &entry) {
+      double a, b;
+      return entry.value == entry.default_value ||
+             (read_number(entry.value, a) &&
+              read_number(entry.default_value, b) && a == b);
     };
     std::set<std::string> names;
-    for (const std::string &start :
-         dealii::Utilities::split_string_list(entries, ','))
-      for (const auto &[path, unused] : set_at)
+    for (const std::string &start : split_string_list(entries, ','))
+      for (const auto &[path, entry] : this->entries)
         if ((path == start || starts_with(path, prefix_of(start))) &&
-            !is_default(path))
-          {
-            names.insert(path);
-            if (!rejected_for.empty())
-              reject(path, reason, {rejected_for});
-          }
-    if (!names.empty() && rejected_for.empty())
-      note_lines.push_back("no effect of " +
-                           join({names.begin(), names.end()}, ", ") + ": " +
-                           reason);
-  }
-
-
-
-  const std::vector<std::string> &
-  ParameterTable::notes() const
-  {
-    return note_lines;
-  }
-
-
-
-  const std::vector<std::string> &
-  ParameterTable::errors() const
-  {
-    return lines;
-  }
-
-
-
-  bool
-  ParameterTable::has_unknown_section(const std::string &path) const
-  {
-    return unknown_sections.count(path) > 0;
+            !is_default(entry))
+          names.insert(path);
+    if (!rejected_for.empty())
+      for (const std::string &path : names)
+        reject(path, reason, {rejected_for});
+    else if (!names.empty())
+      notes.push_back("no effect of " +
+                      join({names.begin(), names.end()}, ", ") + ": " + reason);
   }
 
 
@@ -666,23 +610,18 @@ namespace Debond
   void
   ParameterTable::print(std::ostream &out, const bool documentation) const
   {
-    using Handler = dealii::ParameterHandler;
-    handler.print_parameters(out,
-                             (documentation ? Handler::PRM :
-                                              Handler::ShortPRM) |
-                               Handler::KeepDeclarationOrder);
+    using Handler    = dealii::ParameterHandler;
+    const auto style = documentation ? Handler::PRM : Handler::ShortPRM;
+    handler.print_parameters(out, style | Handler::KeepDeclarationOrder);
     if (!documentation || families.empty())
       return;
     out << "\n# Entries with a name in place of NAME, as many as one needs\n"
         << "# ---------------------\n";
     for (const auto &[path, family] : families)
       {
-        const std::string text = family.documentation +
-                                 ". Allowed: " + family.pattern.description() +
-                                 ". Units: " + family.units + ".";
         out << "# " << prefix_of(path) << "NAME\n";
-        for (const std::string &line :
-             dealii::Utilities::break_text_into_lines(text, 76))
+        for (const std::string &line : dealii::Utilities::break_text_into_lines(
+               text(family.documentation, family.pattern, family.units), 76))
           out << "# " << line << '\n';
         out << '\n';
       }

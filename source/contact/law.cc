@@ -247,8 +247,7 @@ namespace Debond
     table.bind("Contact law/Law",
                name,
                one_of(law_names()),
-               "The adhesive law: " + join(descriptions, "; "),
-               "none");
+               "The adhesive law: " + join(descriptions, "; "));
     for (const LawKind &kind : kinds())
       makers[kind.name] = kind.bind(table);
   }

@@ -38,27 +38,31 @@ namespace Debond
 
 
 
-    /// Reads "a = 1, b = 2". Returns false if the text is not such a list.
-    bool
-    read_constants(const std::string             &text,
-                   std::map<std::string, double> &constants)
+    const std::string list_of_constants =
+      "a list NAME=NUMBER, NAME=NUMBER, ... of names other than x, y and z";
+
+
+
+    /// Reads "a = 1, b = 2". Throws std::invalid_argument.
+    std::map<std::string, double>
+    parse_constants(const std::string &text)
     {
+      std::map<std::string, double> constants;
       for (const std::string &item :
            dealii::Utilities::split_string_list(text, ','))
         {
           const std::size_t equals = item.find('=');
-          if (equals == std::string::npos)
-            return false;
           const std::string name =
             dealii::Utilities::trim(item.substr(0, equals));
           double value;
-          if (!is_constant_name(name) ||
+          if (equals == std::string::npos || !is_constant_name(name) ||
               !read_number(dealii::Utilities::trim(item.substr(equals + 1)),
                            value) ||
               !constants.emplace(name, value).second)
-            return false;
+            throw std::invalid_argument("expected " + list_of_constants +
+                                        comma_hint(text));
         }
-      return true;
+      return constants;
     }
   } // namespace
 
@@ -68,8 +72,7 @@ namespace Debond
   vector_expression()
   {
     return Pattern(
-      "nothing, or an expression for each component, separated by ';'",
-      [](const std::string & /*value*/) { return true; });
+      "nothing, or an expression for each component, separated by ';'");
   }
 
 
@@ -92,32 +95,22 @@ namespace Debond
                       "force per area");
     for (const std::string side :
          {"left", "right", "bottom", "top", "front", "back"})
-      table.declare("Loads/Traction " + side,
-                    "",
-                    expression,
-                    traction + "side " + side + ", as the body force",
-                    "force per area");
+      table.declare_member("Loads/Traction " + side,
+                           traction + "side " + side + ", as the body force");
     table.bind(
       "Loads/Temperature change",
       loads.temperature_change,
-      Pattern("nothing, or an expression",
-              [](const std::string & /*value*/) { return true; }),
+      Pattern("nothing, or an expression"),
       "The change of temperature from the state without stresses, an expression as in the body force; see Material/Thermal expansion",
       "temperature");
     table.declare(
       "Loads/Constants",
       "",
-      Pattern(
-        "a list NAME=NUMBER, NAME=NUMBER, ... of names other than x, y and z",
-        [](const std::string &value) {
-          std::map<std::string, double> constants;
-          return read_constants(value, constants);
-        }),
+      Pattern(list_of_constants),
       "Names that the expressions may use, such as 'q=0.69, L=0.4'. pi is known, and unless they are given here, so are the material's E, nu, lambda and mu (in plane stress the lambda of the plane problem)",
       "those that the expressions need",
       [&loads](const std::string &text) {
-        loads.constants.clear();
-        read_constants(text, loads.constants);
+        loads.constants = parse_constants(text);
       });
   }
 

@@ -109,8 +109,7 @@ namespace Debond
       "Load path/Factors",
       "",
       Pattern("nothing, or numbers and ranges FIRST:STEP:LAST, separated by "
-              "commas",
-              [](const std::string & /*value*/) { return true; }),
+              "commas"),
       "Multiples of all loads that are applied one after the other, each solved from the state before it, the first one from rest, such as '0:0.05:1.2, 1.2:-0.05:0' for loading and unloading; empty for the loads as they are. Needs majorise minimise with a direct linear solver",
       "none",
       [&load_path](const std::string &text) {
@@ -120,8 +119,7 @@ namespace Debond
       "Load path/Displacement factors",
       "",
       Pattern("nothing, or numbers and ranges FIRST:STEP:LAST, separated by "
-              "commas",
-              [](const std::string & /*value*/) { return true; }),
+              "commas"),
       "Multiples of the prescribed displacements, step by step beside Factors, each list as long as the other; a single factor holds for all steps, and if Factors is empty the loads stay as they are. Empty: those of the loads",
       "none",
       [&load_path](const std::string &text) {

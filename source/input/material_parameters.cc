@@ -25,12 +25,11 @@ namespace Debond
         }
       catch (const std::invalid_argument &error)
         {
-          const std::string entry = "Material/Poisson ratio" + region;
-          table.add_error(entry,
-                          entry + ": " + error.what(),
-                          {"Dimension",
-                           "Material/Young modulus",
-                           "Material/Hypothesis"});
+          table.reject("Material/Poisson ratio" + region,
+                       error.what(),
+                       {"Dimension",
+                        "Material/Young modulus",
+                        "Material/Hypothesis"});
         }
     }
   } // namespace
@@ -93,13 +92,13 @@ namespace Debond
       "Material/Poisson ratio",
       material.poisson_ratio,
       materials.poisson_ratios,
-      any_number(),
+      number(),
       "nu, in (-1, 1) in plane stress and in (-1, 0.5) in plane strain and 3D",
       "none");
     bind("Material/Thermal expansion",
          material.thermal_expansion,
          materials.thermal_expansions,
-         any_number(),
+         number(),
          "alpha, the strain that a change of temperature by one makes",
          "per temperature");
     table.bind_choice(

@@ -26,7 +26,9 @@ namespace Debond
       table.declare(
         path,
         join({shortest_text(variable[0]), shortest_text(variable[1])}, ", "),
-        one_for_each_dimension(pattern),
+        Pattern("2 or 3 times " + pattern.description(),
+                [list = dealii::Patterns::List(pattern, 2, 3)](
+                  const std::string &text) { return list.match(text); }),
         documentation,
         units,
         [&variable](const std::string &text) {
@@ -39,14 +41,6 @@ namespace Debond
               variable[d] = static_cast<Number>(number);
             }
         });
-    }
-
-
-
-    Pattern
-    any_text()
-    {
-      return Pattern("a text", [](const std::string &) { return true; });
     }
 
 
@@ -114,9 +108,8 @@ namespace Debond
     table.bind(
       "Mesh/File",
       body.file,
-      any_text(),
-      "A Gmsh file in ASCII, version 2.2 or 4.1; its path is relative to the scene's folder. Physical groups of curves (in 3D: of surfaces) are the boundaries and those of surfaces (volumes) the regions that the scene can name, by their names or else their numbers",
-      "none");
+      Pattern("a text"),
+      "A Gmsh file in ASCII, version 2.2 or 4.1; its path is relative to the scene's folder. Physical groups of curves (in 3D: of surfaces) are the boundaries and those of surfaces (volumes) the regions that the scene can name, by their names or else their numbers");
     table.bind("Mesh/Scale",
                body.scale,
                quantity(),
@@ -125,21 +118,19 @@ namespace Debond
     table.bind(
       "Mesh/Generator",
       body.generator,
-      any_text(),
-      "A function of deal.II's GridGenerator, such as plate_with_a_hole. Its boundary numbers are the names of the boundaries. Curved sides are straight between vertices",
-      "none");
+      Pattern("a text"),
+      "A function of deal.II's GridGenerator, such as plate_with_a_hole. Its boundary numbers are the names of the boundaries. Curved sides are straight between vertices");
     table.bind(
       "Mesh/Arguments",
       body.arguments,
-      any_text(),
+      Pattern("a text"),
       "All arguments of the generator, separated by colons, coordinates by commas, as in '0, 0 : 1 : false'",
       "those of the generator");
     table.bind(
       "Mesh/Refinements",
       body.n_refinements,
       whole_number(0, 10),
-      "How often the quadrilaterals or hexahedra of a file or a generator are halved in each direction before they are crossed",
-      "none");
+      "How often the quadrilaterals or hexahedra of a file or a generator are halved in each direction before they are crossed");
   }
 
 
@@ -203,7 +194,7 @@ namespace Debond
       }
     catch (const std::invalid_argument &error)
       {
-        table.add_error(entry, entry + ": " + error.what(), {"Mesh/Source"});
+        table.reject(entry, error.what(), {"Mesh/Source"});
         return nullptr;
       }
   }

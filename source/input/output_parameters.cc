@@ -13,13 +13,11 @@ namespace Debond
       output.directory,
       Pattern("a path",
               [](const std::string &value) { return !value.empty(); }),
-      "Where files are written, relative to the working directory; created if missing. {scene} stands for the name of the scene file without its ending",
-      "none",
-      AtRestart::any);
+      "Where files are written, relative to the working directory; created if missing. {scene} stands for the name of the scene file without its ending");
     const auto bind_switch = [&table](const std::string &name,
                                       bool              &variable,
                                       const std::string &documentation) {
-      table.bind("Output/" + name, variable, documentation, AtRestart::any);
+      table.bind("Output/" + name, variable, documentation);
     };
     bind_switch("Body VTU", output.body_vtu, "Write body.vtu, for ParaView");
     bind_switch("Contact VTU",

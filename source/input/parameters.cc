@@ -48,13 +48,12 @@ namespace Debond
       table.declare(
         "Contact law/Quadrature",
         p.quadrature_name,
-        parsed_by("nodal, midpoint, or gauss N with N from 1 to 99",
-                  ContactQuadratureParameters::parse),
+        Pattern("nodal, midpoint, or gauss N with N from 1 to 99"),
         "The quadrature of the adhesion energy on each face: at the vertices, at the midpoint, Gauss' rule with N points, at most 99 (in 3D for each direction, at most 7)",
         "none",
         [&p](const std::string &text) {
-          p.quadrature_name = text;
           p.quadrature      = ContactQuadratureParameters::parse(text);
+          p.quadrature_name = text;
         });
       table.bind_choice(
         "Contact law/Tangential displacement",
@@ -65,46 +64,22 @@ namespace Debond
         "Contact law/Tangential displacement",
         p.tangential_displacements,
         one_of({"fixed", "free"}),
-        "u_tau on the contact boundary or part of this name, as above; vertices where it meets others are fixed if one of them is",
-        "none");
+        "u_tau on the contact boundary or part of this name, as above; vertices where it meets others are fixed if one of them is");
     }
 
-
-
-    void
-    bind_verification(VerificationParameters &verification,
-                      ParameterTable         &table)
-    {
-      table.bind(
-        "Verification/Tolerance",
-        verification.tolerance,
-        positive_number(),
-        "The program returns 3 if the equilibrium residual, the force imbalance (both relative to the forces) or the violation of the contact law of the result is larger, whatever the solver says",
-        "none",
-        AtRestart::any);
-      table.bind(
-        "Verification/Exact displacement",
-        verification.exact_displacement,
-        vector_expression(),
-        "If the displacement is known, expressions for it with the names of the loads: the log and summary.json then have the relative errors of u in the norms of L2, H1 and the energy",
-        "length",
-        AtRestart::any);
-    }
   } // namespace
 
 
 
   SceneTable::SceneTable()
   {
-    bind(
-      "Dimension", p.dimension, whole_number(2, 3), "Space dimension", "none");
+    bind("Dimension", p.dimension, whole_number(2, 3), "Space dimension");
     bind_mesh(body, *this);
     bind(
       "Mesh/Degree",
       p.degree,
       whole_number(1, 2),
-      "Degree of the displacement on each triangle or tetrahedron: linear, as in the paper, or quadratic, which has a much smaller error for as many unknowns and no locking; it needs Contact law/Quadrature = gauss N",
-      "none");
+      "Degree of the displacement on each triangle or tetrahedron: linear, as in the paper, or quadratic, which has a much smaller error for as many unknowns and no locking; it needs Contact law/Quadrature = gauss N");
     bind_parts(parts, *this);
     bind_probes(p.probes, *this);
     bind_material(p.materials, *this);
@@ -115,9 +90,7 @@ namespace Debond
     bind_supports(p.supports, *this);
     bind_contact(p, *this);
     bind_solver(p.solver, *this);
-    bind_certificate(p.certificate, *this);
-    bind_accuracy(p.accuracy, *this);
-    bind_verification(p.verification, *this);
+    bind_accuracy(p.certificate, p.accuracy, p.verification, *this);
     bind_output(p.output, *this);
   }
 
@@ -426,7 +399,6 @@ namespace Debond
   Parameters
   SceneTable::parameters(const std::string &scene)
   {
-    parse();
     RunWatch::is_quiet = !p.output.machine_details;
     const Stage stage("mesh");
     p.scene = scene;
@@ -462,10 +434,10 @@ namespace Debond
     check_exact_displacement(p, *this);
     check_accuracy(p, *this);
     note_entries_without_effect(p, body, *this);
-    if (!errors().empty())
-      throw BadInput(errors());
+    if (!errors.empty())
+      throw BadInput(errors);
 
-    p.notes                               = notes();
+    p.notes                               = notes;
     const std::vector<std::string> unused = unused_names(p, body, parts);
     if (!unused.empty())
       p.notes.push_back("no entry of the scene uses " + join(unused, ", "));

@@ -103,10 +103,8 @@ namespace Debond
       "Parts/",
       parts,
       Pattern("an expression, or the name of a boundary, a colon and an "
-              "expression",
-              [](const std::string &) { return true; }),
-      "A piece of a boundary or of the body, by a condition on x, y (and z in 3D) such as 'bottom: x > 0.05' or 'y > 0.02'; its name can stand wherever that of a boundary (a region) can. Faces (cells) belong to it if their centre does",
-      "none");
+              "expression"),
+      "A piece of a boundary or of the body, by a condition on x, y (and z in 3D) such as 'bottom: x > 0.05' or 'y > 0.02'; its name can stand wherever that of a boundary (a region) can. Faces (cells) belong to it if their centre does");
   }
 
 

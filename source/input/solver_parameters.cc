@@ -44,20 +44,17 @@ namespace Debond
       table.bind(section + "Long step threshold",
                  bundle.t_bar,
                  number("in (0, 1]", [](double x) { return x > 0 && x <= 1; }),
-                 "t_bar, the step length below which a step is a short one",
-                 "none");
+                 "t_bar, the step length below which a step is a short one");
       table.bind(
         section + "Descent fraction",
         bundle.m_L,
         number("in (0, 0.5)", [](double x) { return x > 0 && x < 0.5; }),
-        "m_L, the part of the predicted descent that a step has to reach, eq. (14)",
-        "none");
+        "m_L, the part of the predicted descent that a step has to reach, eq. (14)");
       table.bind(
         section + "Slope fraction",
         bundle.m_R,
         number("in (0, 1)", [](double x) { return x > 0 && x < 1; }),
-        "m_R, the part of the predicted slope that a new subgradient has to exceed, eq. (15); above the descent fraction m_L",
-        "none");
+        "m_R, the part of the predicted slope that a new subgradient has to exceed, eq. (15); above the descent fraction m_L");
       table.bind_choice(
         section + "Line search",
         bundle.line_search,
@@ -70,19 +67,15 @@ namespace Debond
         bundle.epsilon_s,
         positive_number(),
         "epsilon_s: the method stops when the predicted descent is not above it, v_k >= -epsilon_s",
-        "energy",
-        AtRestart::any);
+        "energy");
       table.bind(section + "Bundle size",
                  bundle.bundle_size,
                  whole_number(2, 100000),
-                 "Subgradients that are kept before the bundle is emptied",
-                 "none");
+                 "Subgradients that are kept before the bundle is emptied");
       table.bind(section + "Maximum iterations",
                  bundle.maximum_iterations,
                  whole_number(1, 1000000000),
-                 end_of_iterations,
-                 "none",
-                 AtRestart::any);
+                 end_of_iterations);
       table.declare(
         section + "Start",
         "zero",
@@ -105,26 +98,20 @@ namespace Debond
         section + "Stop tolerance",
         bundle.epsilon_s,
         positive_number(),
-        "epsilon_s relative to the energy 1/2 <A u, u> that the body has without contact",
-        "none",
-        AtRestart::any);
+        "epsilon_s relative to the energy 1/2 <A u, u> that the body has without contact");
       table.bind(
         section + "Distance weight",
         bundle.gamma,
         number(">= 0", is_not_negative),
-        "gamma, the weight of the distance, measured in the energy norm, in the subgradient locality measure",
-        "none");
+        "gamma, the weight of the distance, measured in the energy norm, in the subgradient locality measure");
       table.bind(section + "Bundle size",
                  bundle.bundle_size,
                  whole_number(2, 1000),
-                 "Subgradients that are kept before the bundle is emptied",
-                 "none");
+                 "Subgradients that are kept before the bundle is emptied");
       table.bind(section + "Maximum iterations",
                  bundle.maximum_iterations,
                  whole_number(1, 1000000),
-                 end_of_iterations,
-                 "none",
-                 AtRestart::any);
+                 end_of_iterations);
     }
 
 
@@ -138,15 +125,11 @@ namespace Debond
         section + "Stop tolerance",
         majorise_minimise.tolerance,
         positive_number(),
-        "The optimality conditions hold to this part of the largest force on a contact node",
-        "none",
-        AtRestart::any);
+        "The optimality conditions hold to this part of the largest force on a contact node");
       table.bind(section + "Maximum iterations",
                  majorise_minimise.maximum_iterations,
                  whole_number(1, 1000000),
-                 end_of_iterations,
-                 "none",
-                 AtRestart::any);
+                 end_of_iterations);
     }
 
 
@@ -160,8 +143,7 @@ namespace Debond
         {{"automatic", BondSearchChoice::automatic},
          {"none", BondSearchChoice::none},
          {"full", BondSearchChoice::full}},
-        "Whether a lower minimum than the one found is searched for by changing which bonds are broken, with a direct linear solver: full does what automatic does, and then starts from rest and from all bonds broken, moves the edges of the broken patches by up to four nodes and breaks, closes and splits patches; automatic is none unless the method is automatic, and then as much of this as it takes until a lower bound of J (with nodal quadrature) or the minimum on coarser contact nodes says that it is enough, with more than 200 contact nodes on coarser ones but for the starts from rest and from all bonds broken",
-        AtRestart::any);
+        "Whether a lower minimum than the one found is searched for by changing which bonds are broken, with a direct linear solver: full does what automatic does, and then starts from rest and from all bonds broken, moves the edges of the broken patches by up to four nodes and breaks, closes and splits patches; automatic is none unless the method is automatic, and then as much of this as it takes until a lower bound of J (with nodal quadrature) or the minimum on coarser contact nodes says that it is enough, with more than 200 contact nodes on coarser ones but for the starts from rest and from all bonds broken");
     }
 
 
@@ -174,30 +156,24 @@ namespace Debond
       table.bind(
         "Solver/Prove",
         prove,
-        "Whether the result is proved to be the global minimum, or replaced by it, by branch and bound on the broken bonds. Needs a direct linear solver and nodal quadrature",
-        AtRestart::any);
+        "Whether the result is proved to be the global minimum, or replaced by it, by branch and bound on the broken bonds. Needs a direct linear solver and nodal quadrature");
       const std::string section = "Solver/Proof/";
       table.bind(
         section + "Tolerance",
         proof.tolerance,
         number("> 0 and <= 1e-2", [](double x) { return x > 0 && x <= 1e-2; }),
-        "The gap between J and its lower bound that counts as a proof, relative to what the bonds can change in J: the energy of all bonds when they break, or what the contact nodes would gain without foundation and bonds if that is less",
-        "none",
-        AtRestart::any);
+        "The gap between J and its lower bound that counts as a proof, relative to what the bonds can change in J: the energy of all bonds when they break, or what the contact nodes would gain without foundation and bonds if that is less");
       table.bind(
         section + "Maximum nodes",
         proof.maximum_nodes,
         whole_number(1, 1000000000),
-        "Nodes of the branch and bound tree after which the proof ends with the gap that is left",
-        "none",
-        AtRestart::any);
+        "Nodes of the branch and bound tree after which the proof ends with the gap that is left");
       table.bind(
         section + "Maximum time",
         proof.maximum_seconds,
         positive_number(),
         "Wall time after which the proof ends with the gap that is left",
-        "seconds",
-        AtRestart::any);
+        "seconds");
       table.declare(
         section + "Threads",
         "available",
@@ -212,8 +188,7 @@ namespace Debond
             text == "available" ?
               std::max(1u, std::thread::hardware_concurrency()) :
               static_cast<unsigned int>(std::stoul(text));
-        },
-        AtRestart::any);
+        });
     }
   } // namespace
 
@@ -229,16 +204,12 @@ namespace Debond
               "euclidean bundle",
               "energy bundle",
               "majorise minimise"}),
-      "The minimiser: euclidean bundle is the paper's proximal bundle method; energy bundle is the same method on the normal displacements of the contact nodes alone, in the energy norm; majorise minimise fixes the branch of the law at each quadrature point in turn and is exact after finitely many steps; automatic chooses and says why",
-      "none",
-      AtRestart::any);
+      "The minimiser: euclidean bundle is the paper's proximal bundle method; energy bundle is the same method on the normal displacements of the contact nodes alone, in the energy norm; majorise minimise fixes the branch of the law at each quadrature point in turn and is exact after finitely many steps; automatic chooses and says why");
     table.bind(
       "Solver/Linear solver",
       solver.linear_solver,
       one_of({"automatic", "direct", "multigrid"}),
-      "How the linear systems of energy bundle and majorise minimise are solved: direct factorises A once and goes on with the contact normals alone, multigrid (majorise minimise only) iterates on all unknowns, starting from the solutions on coarser meshes, and takes less memory in large scenes; automatic chooses by size and memory. euclidean bundle needs none",
-      "none",
-      AtRestart::any);
+      "How the linear systems of energy bundle and majorise minimise are solved: direct factorises A once and goes on with the contact normals alone, multigrid (majorise minimise only) iterates on all unknowns, starting from the solutions on coarser meshes, and takes less memory in large scenes; automatic chooses by size and memory. euclidean bundle needs none");
     table.declare(
       "Solver/Memory limit",
       "available",
@@ -255,8 +226,7 @@ namespace Debond
         if (text != "available")
           read_number(text, limit);
         solver.memory_limit = limit * (1 << 30);
-      },
-      AtRestart::any);
+      });
     bind_euclidean_bundle(solver.bundle, solver.start, table);
     bind_energy_bundle(solver.energy_bundle, table);
     bind_majorise_minimise(solver.majorise_minimise, table);
@@ -276,9 +246,9 @@ namespace Debond
       }
     catch (const std::invalid_argument &error)
       {
-        table.add_error("Solver/Euclidean bundle/Slope fraction",
-                        error.what(),
-                        {"Solver/Euclidean bundle/Descent fraction"});
+        table.reject("Solver/Euclidean bundle/Slope fraction",
+                     error.what(),
+                     {"Solver/Euclidean bundle/Descent fraction"});
       }
   }
 } // namespace Debond

@@ -23,12 +23,10 @@ namespace Debond
       "Boundary conditions/Displacement",
       supports.displacements,
       Pattern(
-        "nothing, or for each component 'free' or an expression, separated by ';'",
-        [](const std::string & /*value*/) { return true; }),
+        "nothing, or for each component 'free' or an expression, separated by ';'"),
       "The displacement of the boundary of this name in global coordinates, such as 'free; 0.001'; expressions as in Loads. A load path's factors multiply it",
       "length");
-    const Pattern     gap("nothing, or an expression",
-                      [](const std::string     &/*value*/) { return true; });
+    const Pattern     gap("nothing, or an expression");
     const std::string documentation =
       "The distance g >= 0 between the body at rest and the foundation, an expression as in Loads: u_nu <= g, and bonds are stretched by g - u_nu";
     table.bind(

@@ -141,12 +141,7 @@ namespace Debond
                SceneTable                     &table)
     {
       if (!scene.empty())
-        {
-          read_scene(scene, table);
-          if (table.has_unknown_section("Study"))
-            throw BadInput(
-              {scene + ": this is a study; run scripts/study " + scene});
-        }
+        read_scene(scene, table);
       for (const std::string &assignment : assignments)
         table.assign(assignment);
     }
@@ -258,8 +253,8 @@ namespace Debond
           read_table(scenes.empty() ? "" : scenes[0],
                      options.assignments,
                      table);
-          if (!table.errors().empty())
-            throw BadInput(table.errors());
+          if (!table.errors.empty())
+            throw BadInput(table.errors);
           table.print(std::cout, true);
           return ExitCode::success;
         }

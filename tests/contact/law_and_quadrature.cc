@@ -116,7 +116,6 @@ namespace
     ParameterTable table;
     section.bind(table);
     table.assign("Contact law/Law=" + name);
-    table.parse();
     std::vector<ConvexBranch> branches = section.make_law(table).branches;
     for (ConvexBranch &branch : branches)
       {
@@ -319,9 +318,8 @@ namespace
                                     "Stepped/Stiffnesses=69, 70",
                                     "Stepped/Thresholds=1, 2"})
       table.assign("Contact law/" + entry);
-    table.parse();
     section.make_law(table);
-    for (const std::string &line : table.errors())
+    for (const std::string &line : table.errors)
       std::cout << line << std::endl;
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Variables bound to entries: what is written into them, what is said of values
-// that are not allowed, and which entries of a scene a restart may change.
+// Variables bound to entries: what is written into them, and what is said of
+// values that are not allowed and of entries without effect.
+#include <debond/base/number_text.h>
 #include <debond/input/parameters.h>
 
 #include <iostream>
@@ -36,26 +37,29 @@ namespace
 
 
 
-  const Pattern anything("anything",
-                         [](const std::string & /*value*/) { return true; });
+  const Pattern anything("anything");
+  const Pattern numbers("a list, each a number", [](const std::string &value) {
+    double unused;
+    return read_number(value, unused);
+  });
 
 
 
   void
   bind(Section &section, ParameterTable &table)
   {
-    table.bind("A/Number", section.number, any_number(), "A number", "none");
-    table.bind("A/Count", section.count, whole_number(0, 9), "A count", "none");
-    table.bind("A/Text", section.text, anything, "A text", "none");
-    table.bind("A/List", section.list, list_of(any_number()), "A list", "none");
+    table.bind("A/Number", section.number, number(), "A number");
+    table.bind("A/Count", section.count, whole_number(0, 9), "A count");
+    table.bind("A/Text", section.text, anything, "A text");
+    table.bind("A/List", section.list, numbers, "A list");
     table.bind("A/Names", section.names, "Names");
-    table.bind("A/On", section.on, "A switch", AtRestart::any);
+    table.bind("A/On", section.on, "A switch");
     // Neither in the order of the values nor all of them.
     table.bind_choice("A/Fruit",
                       section.fruit,
                       {{"plum", Fruit::plum}, {"apple", Fruit::apple}},
                       "A choice");
-    table.bind_family("A/Member", section.family, anything, "Members", "none");
+    table.bind_family("A/Member", section.family, anything, "Members");
     table.declare("A/Even",
                   "0",
                   whole_number(0, 9),
@@ -97,9 +101,8 @@ namespace
     bind(section, table);
     for (const std::string &assignment : assignments)
       table.assign("A/" + assignment);
-    table.parse();
     print(section);
-    for (const std::string &line : table.errors())
+    for (const std::string &line : table.errors)
       std::cout << line << std::endl;
   }
 

@@ -2,6 +2,9 @@
 #ifndef debond_base_directory_lock_h
 #define debond_base_directory_lock_h
 
+#include <boost/interprocess/sync/file_lock.hpp>
+
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -11,7 +14,7 @@ namespace Debond
    * Keeps other processes from writing into a directory, by a lock on its file
    * `.lock`, which says who holds it. The file is removed at the end; if the
    * process is killed it stays, but the system has taken the lock off it, so
-   * that the next process takes it over.
+   * that the next process takes it over. A process does not exclude itself.
    */
   class DirectoryLock
   {
@@ -25,18 +28,19 @@ namespace Debond
 
     DirectoryLock(const DirectoryLock &) = delete;
 
-    /// Takes back what the constructor did: the lock, and the directories that
+    /// Takes back what the constructor did: the file, and the directories that
     /// it created, if nothing is in them.
     void
     withdraw();
 
   private:
-    const std::string file_name;
+    std::string file_name;
 
     /// The innermost one first.
     std::vector<std::string> created;
 
-    int descriptor = -1;
+    boost::interprocess::file_lock lock;
+    std::ofstream                  holder;
   };
 } // namespace Debond
 

@@ -2,10 +2,12 @@
 #ifndef debond_input_accuracy_parameters_h
 #define debond_input_accuracy_parameters_h
 
-#include <debond/base/parameter_table.h>
+#include <string>
 
 namespace Debond
 {
+  class ParameterTable;
+
   /// Until when the mesh is refined where that makes J more accurate.
   struct AccuracyParameters
   {
@@ -26,9 +28,41 @@ namespace Debond
     }
   };
 
-  /// The section Accuracy, and Certificate/Target.
+
+
+  /// What is to be certified.
+  enum class CertificateKind
+  {
+    none,
+    fixed_state,
+    global
+  };
+
+  struct CertificateParameters
+  {
+    CertificateKind kind = CertificateKind::none;
+  };
+
+
+
+  /// What makes a result count, and what it is compared with.
+  struct VerificationParameters
+  {
+    /// Largest Verification::error() of a result that counts.
+    double tolerance = 1e-3;
+
+    /// An expression with the constants of the loads; empty if unknown.
+    std::string exact_displacement;
+  };
+
+
+
+  /// The sections Certificate, Accuracy and Verification.
   void
-  bind_accuracy(AccuracyParameters &accuracy, ParameterTable &table);
+  bind_accuracy(CertificateParameters  &certificate,
+                AccuracyParameters     &accuracy,
+                VerificationParameters &verification,
+                ParameterTable         &table);
 } // namespace Debond
 
 #endif

@@ -5,11 +5,9 @@
 #include <debond/base/parameter_table.h>
 #include <debond/input/accuracy_parameters.h>
 #include <debond/input/bad_input.h>
-#include <debond/input/certificate_parameters.h>
 #include <debond/input/output_parameters.h>
 #include <debond/input/problem_parameters.h>
 #include <debond/input/solver_parameters.h>
-#include <debond/input/verification_parameters.h>
 #include <debond/mesh/make_body.h>
 
 #include <map>

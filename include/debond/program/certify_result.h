@@ -2,7 +2,7 @@
 #ifndef debond_program_certify_result_h
 #define debond_program_certify_result_h
 
-#include <debond/input/certificate_parameters.h>
+#include <debond/input/accuracy_parameters.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/output/run_result.h>
 #include <debond/solve/certificate.h>

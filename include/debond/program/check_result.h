@@ -2,7 +2,7 @@
 #ifndef debond_program_check_result_h
 #define debond_program_check_result_h
 
-#include <debond/input/verification_parameters.h>
+#include <debond/input/accuracy_parameters.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/output/run_result.h>
 #include <debond/solve/scene.h>

@@ -4,7 +4,6 @@
 
 #include <debond/check/error_estimate.h>
 #include <debond/input/accuracy_parameters.h>
-#include <debond/input/certificate_parameters.h>
 #include <debond/solve/certificate.h>
 #include <debond/solve/load_path_steps.h>
 #include <debond/solve/scene.h>

@@ -3,7 +3,7 @@
 #define debond_solve_certificate_h
 
 #include <debond/elasticity/equilibrium_problem.h>
-#include <debond/input/certificate_parameters.h>
+#include <debond/input/accuracy_parameters.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/solve/global_bound.h>

@@ -80,24 +80,26 @@ namespace Debond
         const std::string stiffnesses = "Contact law/Stepped/Stiffnesses";
         const std::string thresholds  = "Contact law/Stepped/Thresholds";
         const std::string factor      = "Contact law/Stepped/Factor";
+        const Pattern     quantities("a list, each " + quantity().description(),
+                                 [](const std::string &text) {
+                                   return quantity().match(text);
+                                 });
         table.bind(stiffnesses,
                    law->stiffnesses,
-                   list_of(quantity()),
+                   quantities,
                    "a_1, a_2, ..., which fall from step to step",
                    "force per volume");
         table.bind(thresholds,
                    law->thresholds,
-                   list_of(quantity()),
+                   quantities,
                    "M_1, M_2, ..., the displacement at which each step ends, "
                    "which rise",
                    "length");
         table.bind(
           factor,
           law->factor,
-          Pattern("nothing, or an expression",
-                  [](const std::string & /*value*/) { return true; }),
-          "What multiplies all stiffnesses, an expression in x, y (and z) as in Loads: 0 where there are no bonds, such as on a crack; 1 if empty",
-          "none");
+          Pattern("nothing, or an expression"),
+          "What multiplies all stiffnesses, an expression in x, y (and z) as in Loads: 0 where there are no bonds, such as on a crack; 1 if empty");
         return [=](ParameterTable &entries) {
           try
             {

@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""check_errors.py DEBOND ERRORS.txt: runs all scenes of the list, whose format
+is told in it, in one process, and compares their messages and exit codes."""
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+
+class Case:
+    def __init__(self, name, code):
+        self.name = name
+        self.code = int(code or 2)
+        self.lines = []
+        self.messages = []  # number of a line, path of its entry, words
+        self.place = (None, "")
+
+    def add_line(self, text):
+        if text.startswith("|"):
+            self.lines.append(text[1:])
+            self.place = (len(self.lines), "")
+            return
+        path, value = text.split("=", 1)
+        *sections, entry = path.strip().split("/")
+        self.lines += ["subsection " + section for section in sections]
+        self.lines.append(f"set {entry} ={value}")
+        self.place = (len(self.lines), path.strip())
+        self.lines += ["end"] * len(sections)
+
+    def add_message(self, words):
+        line, path = self.place
+        if re.match(r"[A-Z][\w ]*/", words):
+            path = ""
+        self.messages.append((line, path, words))
+
+    def is_message(self, message, text):
+        line, path, words = message
+        if line and not text.startswith(f"debond: {self.name}.prm:{line}: "):
+            return False
+        pattern = ".*".join(re.escape(part) for part in words.split("..."))
+        return path in text and re.search(pattern.replace(r"\ .*\ ", ".*"), text)
+
+
+def read_cases(file_name):
+    cases = []
+    for text in open(file_name).read().split("\n"):
+        header = re.fullmatch(r"\[(\w+)\] ?(\d*)", text)
+        if header:
+            cases.append(Case(*header.groups()))
+        elif text and not text.startswith("#"):
+            text, *words = re.split(r"(?:^|  )! ", text, 1)
+            if text:
+                cases[-1].add_line(text)
+            for message in words:
+                cases[-1].add_message(message)
+    return cases
+
+
+def main(debond, file_name):
+    cases = read_cases(file_name)
+    for case in cases:
+        with open(case.name + ".prm", "w") as scene:
+            scene.write("\n".join(case.lines) + "\n")
+    log = subprocess.run([debond] + [case.name + ".prm" for case in cases],
+                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                         text=True).stdout
+    *logs, codes = re.split(r"^== .*\n|\nexit code  scene\n", log, flags=re.M)[1:]
+    codes = dict(reversed(line.split()) for line in codes.strip().split("\n"))
+
+    n_failures = 0
+    for case, text in zip(cases, logs, strict=True):
+        left = [line for line in text.split("\n") if line.startswith("debond: ")]
+        faults = []
+        for message in case.messages:
+            found = [line for line in left if case.is_message(message, line)]
+            if found:
+                left.remove(found[0])
+            else:
+                faults.append(f"no message {message}")
+        faults += ["more than expected: " + line for line in left]
+        if int(codes[case.name + ".prm"]) != case.code:
+            faults.append("exit code " + codes[case.name + ".prm"])
+        if case.code == 2 and os.path.exists("output/" + case.name):
+            faults.append("files were written")
+        n_failures += bool(faults)
+        for fault in faults:
+            print(f"{case.name}: {fault}")
+    written = {name for name in os.listdir() if not name.endswith(".prm")}
+    if written - {"output"}:
+        print("written:", *written)
+        n_failures += 1
+    print(f"{len(cases)} scenes, {n_failures} with failures")
+    return n_failures > 0
+
+
+program, errors = map(os.path.abspath, sys.argv[1:])
+with tempfile.TemporaryDirectory() as directory:
+    os.chdir(directory)
+    sys.exit(main(program, errors))
