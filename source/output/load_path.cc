@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/data_table.h>
+#include <debond/base/append.h>
+#include <debond/output/csv_table.h>
 #include <debond/output/load_path.h>
 
 #include <utility>
@@ -8,7 +9,7 @@ namespace Debond
 {
   namespace
   {
-    using NamedCells = std::vector<std::pair<std::string, Cell>>;
+    using NamedCells = std::vector<std::pair<std::string, std::string>>;
 
 
 
@@ -17,8 +18,8 @@ namespace Debond
     cells_of(const LoadPathState<dim> &state, const std::string &prefix)
     {
       NamedCells cells;
-      const auto add = [&](const std::string &title, const Cell &cell) {
-        cells.emplace_back(prefix + title, cell);
+      const auto add = [&](const std::string &title, const auto &value) {
+        cells.emplace_back(prefix + title, CsvTable::cell(value));
       };
       const auto add_vector = [&](const std::string            &title,
                                   const dealii::Tensor<1, dim> &vector) {
@@ -53,36 +54,29 @@ namespace Debond
 
 
 
-    Cell
-    cell_of(const std::optional<double> &number)
-    {
-      return number ? Cell(*number) : Cell();
-    }
-
-
-
     /// What the global branch does not have is empty, under the titles of
     /// @p first.
     template <int dim>
     NamedCells
     row_of(const LoadPathStep<dim> &step, const LoadPathState<dim> &first)
     {
-      NamedCells row    = {{"step", static_cast<long>(step.step)},
-                           {"factor", step.factor},
-                           {"displacement_factor", step.displacement_factor},
-                           {"status", step.status}};
-      const auto append = [&row](const NamedCells &cells) {
-        row.insert(row.end(), cells.begin(), cells.end());
+      NamedCells row;
+      const auto add = [&row](const std::string &title, const auto &value) {
+        row.emplace_back(title, CsvTable::cell(value));
       };
-      append(cells_of(step.state, ""));
-      row.emplace_back("iterations", static_cast<long>(step.iterations));
-      row.emplace_back("change_factor", cell_of(step.change_factor));
+      add("step", step.step);
+      add("factor", step.factor);
+      add("displacement_factor", step.displacement_factor);
+      add("status", step.status);
+      append(cells_of(step.state, ""), row);
+      add("iterations", step.iterations);
+      add("change_factor", step.change_factor);
       NamedCells global = cells_of(step.global.value_or(first), "global_");
       if (!step.global)
         for (auto &[unused, cell] : global)
-          cell = Cell();
-      append(global);
-      row.emplace_back("global_relative_gap", cell_of(step.relative_gap));
+          cell.clear();
+      append(global, row);
+      add("global_relative_gap", step.relative_gap);
       return row;
     }
   } // namespace
@@ -96,18 +90,18 @@ namespace Debond
   {
     const LoadPathStep<dim> first =
       steps.empty() ? LoadPathStep<dim>() : steps[0];
-    DataTable table;
-    for (const auto &[title, unused] : row_of(first, first.state))
-      table.add_column(title);
+    const auto cells = [&](const LoadPathStep<dim> &step, const bool titles) {
+      CsvTable::Row row;
+      for (const auto &[title, cell] : row_of(step, first.state))
+        row.push_back(titles ? CsvTable::cell(title) : cell);
+      return row;
+    };
+    CsvTable table(cells(first, true));
     for (const LoadPathStep<dim> &step : steps)
-      {
-        std::vector<Cell> cells;
-        for (const auto &[unused, cell] : row_of(step, first.state))
-          cells.push_back(cell);
-        table.add_row(cells);
-      }
-    table.write_csv(file_name);
+      table.add_row(cells(step, false));
+    table.write(file_name);
   }
+
 
 
   template decltype(write_load_path<2>) write_load_path<2>;
