@@ -25,19 +25,6 @@ namespace Debond
 
 
 
-  int
-  create_file(const std::string &file_name)
-  {
-    unlink(file_name.c_str());
-    const int descriptor =
-      open(file_name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor < 0)
-      fail(file_name);
-    return descriptor;
-  }
-
-
-
   std::ifstream
   open_plain_file(const std::string &file_name)
   {
@@ -55,7 +42,13 @@ namespace Debond
   {
     const std::string partial = file_name + ".partial";
 
-    close(create_file(partial));
+    // In place of what has the name, such as a link or a pipe.
+    unlink(partial.c_str());
+    const int descriptor =
+      open(partial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor < 0)
+      fail(partial);
+    close(descriptor);
     errno = 0;
     std::ofstream out(partial, std::ios::binary);
 

@@ -52,15 +52,4 @@ namespace Debond
   {
     return signal_arrived;
   }
-
-
-
-  void
-  InterruptGuard::leave_to_parent()
-  {
-    n_guards       = 0;
-    signal_arrived = false;
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
-  }
 } // namespace Debond

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/run_watch.h>
 
-#include <pthread.h>
-
 #include <cmath>
 #include <condition_variable>
 #include <cstdlib>
@@ -50,10 +48,6 @@ namespace Debond
     : out(stream)
     , exit_code(code)
   {
-    // A child that is forked while the thread has the mutex would wait for it.
-    pthread_atfork([]() { watched.mutex.lock(); },
-                   []() { watched.mutex.unlock(); },
-                   []() { watched.mutex.unlock(); });
     watched.has_ended = false;
     thread            = std::thread([this]() {
       constexpr std::chrono::milliseconds between_looks(100);

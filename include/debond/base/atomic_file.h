@@ -9,12 +9,6 @@
 
 namespace Debond
 {
-  /// Creates a file and opens its descriptor for writing, in place of what has
-  /// the name, such as a link or a pipe: what is written goes nowhere else.
-  /// Throws std::runtime_error.
-  int
-  create_file(const std::string &file_name);
-
   /// Opens a file for reading; a stream that has failed if there is none, or
   /// if it is a device, a pipe or a folder, which need not end.
   std::ifstream

@@ -26,11 +26,6 @@ namespace Debond
     static bool
     requested();
 
-    /// In a process that was forked: the guards of its parent are none of its
-    /// own, and signals end it.
-    static void
-    leave_to_parent();
-
   private:
     struct sigaction previous_int;
     struct sigaction previous_term;
