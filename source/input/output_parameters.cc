@@ -34,6 +34,10 @@ namespace Debond
       output.displacement,
       "Write displacement.txt, all degrees of freedom, from which another run can start");
     bind_switch(
+      "Matrices",
+      output.matrices,
+      "Write A, f, the condensed S and g, weights and bounds as Matrix Market files (*.mtx), for other programs");
+    bind_switch(
       "Load path contact VTU",
       output.path_contact_vtu,
       "Write load_path_contact.pvd, the contact boundary at each factor, for ParaView");

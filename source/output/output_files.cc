@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/output/matrices.h>
 #include <debond/output/output_files.h>
 #include <debond/output/tables.h>
 #include <debond/output/vtu.h>
@@ -103,7 +104,8 @@ namespace Debond
                const Scene<dim>       &scene,
                const RunResult<dim>   &result)
   {
-    return {
+    std::vector<OutputFile>       files  = matrix_files(scene, output.matrices);
+    const std::vector<OutputFile> others = {
       {"body.vtu",
        [&]() {
          return output.body_vtu && result.has_displacement() &&
@@ -159,6 +161,8 @@ namespace Debond
        [&](const std::string &path) {
          write_history(result.solve.minimum.proof_history, path);
        }}};
+    files.insert(files.end(), others.begin(), others.end());
+    return files;
   }
 
 

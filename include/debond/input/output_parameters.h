@@ -16,6 +16,7 @@ namespace Debond
     bool        contact_profile  = true;
     bool        history          = true;
     bool        displacement     = false;
+    bool        matrices         = false;
     bool        path_body_vtu    = false;
     bool        path_contact_vtu = true;
     bool        machine_details  = true;
