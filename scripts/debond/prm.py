@@ -6,24 +6,20 @@ import re
 
 
 class BadInput(Exception):
-    """What is wrong with what the user wrote, a line for each fault."""
-
-    def __init__(self, *lines):
-        super().__init__("\n".join(lines))
-        self.lines = lines
+    """What is wrong with what the user wrote."""
 
 
 class Entries(dict):
-    """The values of a file by 'Section/Entry', with what it includes."""
+    """The values of a file by 'Section/Entry', and where each is."""
 
     def __init__(self):
         super().__init__()
-        self.where = {}  # file:line of each
+        self.where = {}
 
 
 def read(path, entries=None):
-    """Reads a file as the program does. Throws BadInput, of faults in the form
-    only: which entries there are is for others to say."""
+    """Reads a file, with what it includes, as the program does. Which entries
+    there are is for others to say."""
     entries = Entries() if entries is None else entries
     try:
         with open(path, encoding="utf-8-sig") as file:
@@ -31,13 +27,13 @@ def read(path, entries=None):
     except OSError as error:
         raise BadInput(f"{path}: {error.strerror}") from error
     sections, text, begin = [], "", 1
-    for number, line in enumerate(lines, 1):
+    for number_of_line, line in enumerate(lines, 1):
         text += line.strip()
         if text.endswith("\\"):
             text = text[:-1]
             continue
         words = text.partition("#")[0].strip()
-        where, text, begin = f"{path}:{begin}", "", number + 1
+        where, text, begin = f"{path}:{begin}", "", number_of_line + 1
         keyword, _, rest = words.partition(" ")
         rest = rest.strip()
         if keyword == "subsection" and rest:
@@ -47,8 +43,7 @@ def read(path, entries=None):
         elif keyword == "set" and "=" in rest:
             name, _, value = rest.partition("=")
             entry = "/".join([*sections, name.strip()])
-            entries[entry] = value.strip()
-            entries.where[entry] = where
+            entries[entry], entries.where[entry] = value.strip(), where
         elif keyword == "include" and rest and not sections:
             read(os.path.join(os.path.dirname(path), rest), entries)
         elif words:
@@ -56,6 +51,13 @@ def read(path, entries=None):
     if sections or text:
         raise BadInput(f"{path}: {'/'.join(sections)} is not closed by 'end'")
     return entries
+
+
+def items(text, separator="|"):
+    """Those of 'a | b | c'. A separator counts only with blanks around it,
+    since expressions may contain '||' and '&&'."""
+    return [item.strip() for item in re.split(
+        rf"\s{re.escape(separator)}(?=\s|$)", text)] if text.strip() else []
 
 
 def pairs(text):
@@ -67,15 +69,6 @@ def pairs(text):
             raise ValueError(f"'{item}' has no '='")
         result[name.strip()] = value.strip()
     return result
-
-
-def items(text, separator="|"):
-    """Those of 'a | b | c'. A separator counts only with blanks around it,
-    since expressions may contain '||' and '&&'."""
-    if not text.strip():
-        return []
-    return [item.strip()
-            for item in re.split(rf"\s{re.escape(separator)}(?=\s|$)", text)]
 
 
 def number(text):
@@ -90,11 +83,10 @@ def scene_text(scene, settings, directory):
     """A scene with other values, as a file in a directory."""
     scene = os.path.abspath(scene)
     lines = [f"include {os.path.relpath(scene, os.path.abspath(directory))}"]
-    settings = dict(settings)
     mesh = settings.get("Mesh/File", read(scene).get("Mesh/File", ""))
     if mesh:  # which the program looks for beside the file that it is given
-        settings["Mesh/File"] = os.path.join(os.path.dirname(scene), mesh)
-    for path, value in settings.items():
+        mesh = {"Mesh/File": os.path.join(os.path.dirname(scene), mesh)}
+    for path, value in {**settings, **(mesh or {})}.items():
         *sections, name = path.split("/")
         lines += ([f"subsection {section}" for section in sections] +
                   [f"set {name} = {value}"] + ["end"] * len(sections))

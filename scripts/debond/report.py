@@ -13,12 +13,10 @@ from .prm import BadInput
 
 
 def markdown(titles, rows):
-    def line(cells):
-        return "| " + " | ".join(
-            cell.replace("|", "\\|").replace("_", "\\_") for cell in cells) + \
-            " |"
-    return "\n".join([line(titles), "|---" * len(titles) + "|",
-                      *map(line, rows)]) + "\n"
+    lines = [titles, ["---"] * len(titles), *rows]
+    return "".join("| " + " | ".join(
+        str(cell).replace("|", "\\|").replace("_", "\\_")
+        for cell in line) + " |\n" for line in lines)
 
 
 def write(path, text):
@@ -26,137 +24,92 @@ def write(path, text):
         file.write(text)
 
 
+def write_csv(path, titles, rows):
+    with open(path, "w", encoding="utf8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows([titles, *rows])
+
+
 def table(study, rows):
     """Titles, and for each case its cells as values and as text."""
     titles = [sweep.label for sweep in study.sweeps]
-    for column in study.columns:
-        titles.append(column.title)
-        if column.title in study.reference.columns:
-            titles.append(f"{column.title} ({study.reference.label})")
-    values, texts = [], []
-    for index, row in enumerate(rows):
-        cells = [(value, value) for value in row.case.values]
-        for column in study.columns:
-            value = (studies.order(
-                studies.Column(column.of) if column.of not in
-                study.by_title else study.by_title[column.of],
-                rows, index, study.sweeps)
-                if column.kind == "order" else column.value(row))
-            cells.append((value, column.text(value)))
-            if column.title in study.reference.columns:
-                value = study.reference.value(row.case, column)
-                cells.append((value, column.text(value)))
-        values.append([value for value, _ in cells])
-        texts.append([text for _, text in cells])
+    values = [list(row.case.values) for row in rows]
+    texts = [list(row.case.values) for row in rows]
+
+    def add(title, column, cells):
+        titles.append(title)
+        for k, cell in enumerate(cells):
+            values[k].append(cell)
+            texts[k].append(column.text(cell))
+
+    for title, column in study.columns.items():
+        cells = [studies.order(study, column, rows, k) if column.kind == "order"
+                 else column.value(row) for k, row in enumerate(rows)]
+        if column.pointer and any(row.summary for row in rows) and \
+                all(cell is None for cell in cells):
+            raise BadInput(f"{study.file}: Study/Columns: no case has "
+                           f"{column.pointer} in its summary.json")
+        add(title, column, cells)
+        if title in study.reference.columns:
+            add(f"{title} ({study.reference.label})", column,
+                [study.reference.value(row.case, column) for row in rows])
     return titles, values, texts
-
-
-def write_csv(path, titles, rows):
-    with open(path, "w", encoding="utf8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(titles)
-        writer.writerows(rows)
-
-
-def write_series(study, rows, name, series):
-    """The cases as one series for ParaView; its time is their number."""
-    lines = "".join(
-        f'<DataSet timestep="{k}" part="0" file="{path}"/>\n'
-        for k, path in enumerate(os.path.relpath(
-            os.path.join(row.case.directory, name), study.directory)
-            for row in rows if row.summary))
-    write(os.path.join(study.directory, series),
-          '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n'
-          f"<Collection>\n{lines}</Collection>\n</VTKFile>\n")
 
 
 def write_results(study, program):
     """Returns the lines of the cases that failed."""
     rows = [studies.Row(study, case) for case in study.cases]
-    for column in study.columns:
-        if column.kind == "number" and any(row.summary for row in rows) and \
-                all(column.value(row) is None for row in rows):
-            raise BadInput(f"{study.file}: Study/Columns: no case has "
-                           f"{column.pointer} in its summary.json")
     titles, values, texts = table(study, rows)
+    write_csv(os.path.join(study.directory, "table.csv"), titles, values)
     text = markdown(titles, texts)
-    path = os.path.join(study.directory, "table")
-    write_csv(path + ".csv", titles, values)
-    write(path + ".md", text)
+    write(os.path.join(study.directory, "table.md"), text)
     print("\n" + text, flush=True)
-    version = subprocess.run([program, "--version"], check=True,
-                             capture_output=True, text=True).stdout.split("\n")
-    page = [f"# {study.title}\n", study.description + "\n"
-            if study.description else "",
+    version = subprocess.run([program, "--version"], check=True, text=True,
+                             capture_output=True).stdout.split("\n")
+    page = [f"# {study.title}\n", study.description + "\n",
             f"Made by `scripts/study {study.file}`, {', '.join(version[:2])}.\n",
             text]
     best = studies.best_values(study, rows)
     if best:
-        law = studies.fit_best(best)
         page += ["## Best values\n", markdown(
-            list(best[0]), [[f"{v:.3g}" if isinstance(v, float) else str(v)
-                             for v in row.values()] for row in best])]
-        if law:
-            page.append(f"Fitted: best {study.sweeps[1].label} = {law[1]:.3g} "
-                        f"h^{law[0]:.3g}, without those at an end.\n")
-    if study.fields:
-        write_series(study, rows, "body.vtu", "fields.pvd")
-        write_series(study, rows, "contact.vtu", "contact.pvd")
-        page.append("For ParaView: [body](fields.pvd), [contact boundary]"
-                    "(contact.pvd).\n")
+            best[0], [[f"{cell:.3g}" if isinstance(cell, float) else cell
+                       for cell in row.values()] for row in best])]
     drawn, empty = plots.draw(study, rows)
-    for plot in drawn:
-        page.append(f"![{plot.name}](plots/{plot.name}.png)\n*{plot.caption}* "
-                    f"([SVG](plots/{plot.name}.svg))\n")
-    page += [f"The plot {kind} has no points.\n" for kind in empty]
+    page += [f"![{plot.name}](plots/{plot.name}.png)\n*{plot.caption}* "
+             f"([SVG](plots/{plot.name}.svg))\n" for plot in drawn]
+    page += [f"The plot {plot.name} has no points.\n" for plot in empty]
     failed = [f"{case.label}: {case.status()}: "
               f"{case.summary().get('message', '')}".rstrip(": ")
               for case in study.all_cases() if case.status() not in
               (study.accepted if case in study.cases else ["success"])]
-    if failed:
-        page += ["Failed:\n", *(f"* {line}" for line in failed), ""]
+    page += [f"Failed: {line}\n" for line in failed]
     page.append("The table with all digits: [CSV](table.csv).\n")
     write(os.path.join(study.directory, "index.md"),
-          "\n".join(part for part in page if part != ""))
+          "\n".join(part for part in page if part.strip()))
     print(f"Written: {study.directory}/index.md")
     return failed
 
 
-def run(file, program=cases.PROGRAM, changes=(), jobs=None):
+def run(file, program, changes=(), jobs=None, only_validate=False):
     """Runs a study; returns 0, 3 if a case failed, 4 if interrupted."""
     study = studies.Study(file, changes)
     plots.check(study)
-    with cases.lock(study.directory):
-        print(f"{study.title}: {len(study.cases)} cases, {len(study.minima)} "
-              "exact minima", flush=True)
-        try:
-            afresh = bool(study.first) and cases.run(program, [study.first],
-                                                     jobs) > 0
-            if not study.first or study.first.summary():
-                cases.run(program, study.minima + study.cases, jobs, afresh)
-        except cases.Interrupted:
-            print(f"{file}: interrupted; the same command goes on where it "
-                  "stopped", file=sys.stderr)
-            return 4
-        failed = write_results(study, program)
+    print(f"{study.title}: {len(study.cases)} cases, {len(study.minima)} exact "
+          "minima", flush=True)
+    if only_validate:
+        return 0
+    try:
+        first = [study.first] if study.first else []
+        afresh = cases.run(program, first, jobs) > 0
+        if all(case.summary() for case in first):
+            cases.run(program, study.minima + study.cases, jobs, afresh)
+    except KeyboardInterrupt:
+        print(f"{file}: interrupted; the same command goes on where it stopped",
+              file=sys.stderr)
+        return 4
+    failed = write_results(study, program)
     for line in failed:
         print(f"{file}: case {line}", file=sys.stderr)
     return 3 if failed else 0
-
-
-def validate(file, program, changes=()):
-    """Reads and checks the scenes of all cases; returns 0 or 2."""
-    study = studies.Study(file, changes)
-    plots.check(study)
-    for case in study.all_cases():
-        settings = [word for name, value in case.settings.items()
-                    for word in ("--set", f"{name}={value}")]
-        done = subprocess.run([program, case.scene, "--print-parameters",
-                               *settings], capture_output=True, text=True)
-        if done.returncode:
-            raise BadInput(f"{file}: case {case.label}: {done.stderr.strip()}")
-    print(f"{file}: valid, {len(study.cases)} cases")
-    return 0
 
 
 def main():
@@ -165,24 +118,21 @@ def main():
         "doc/guide/studies.md. The same command goes on where one was "
         "interrupted. Returns 3 if a case failed, 2 for bad input.")
     parser.add_argument("studies", metavar="STUDY.prm", nargs="+")
-    parser.add_argument("--validate", action="store_true",
-                        help="read and check only")
+    parser.add_argument("--validate", action="store_true", help="only read them")
     parser.add_argument("--set", metavar="SECTION/ENTRY=VALUE", default=[],
                         action="append", help="change an entry of the studies")
     parser.add_argument("--jobs", type=int, help="processes at a time")
     parser.add_argument("--debond", help="a program that is built already")
     options = parser.parse_args()
-    if not options.debond:
+    if not options.debond and not options.validate:
         cases.build()
-    program = options.debond or cases.PROGRAM
     worst = 0
     for file in options.studies:
         try:
-            code = (validate(file, program, options.set) if options.validate
-                    else run(file, program, options.set, options.jobs))
+            code = run(file, options.debond or cases.PROGRAM, options.set,
+                       options.jobs, options.validate)
         except BadInput as error:
-            for line in error.lines:
-                print(f"study: {line}", file=sys.stderr)
+            print(f"study: {error}", file=sys.stderr)
             code = 2
         worst = worst or code
         if code == 4:

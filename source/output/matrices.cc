@@ -117,51 +117,6 @@ namespace Debond
         },
         path);
     }
-
-
-
-    /// What is made once there is a file to write.
-    template <int dim>
-    class AssembledScene
-    {
-    public:
-      explicit AssembledScene(const Scene<dim> &scene)
-        : scene(scene)
-      {}
-
-      const ElasticProblem<dim> &
-      problem()
-      {
-        if (assembled == nullptr)
-          {
-            const auto &unknowns = scene.problem().unknowns();
-            assembled            = std::make_unique<ElasticProblem<dim>>(
-              unknowns.dof_handler().get_triangulation(),
-              scene.conditions(),
-              scene.supports(),
-              unknowns.degree());
-            assembled->assemble(scene.materials(),
-                                scene.loads(),
-                                MatrixStorage::serial,
-                                scene.dead_loads());
-          }
-        return *assembled;
-      }
-
-      const Condensation &
-      condensed()
-      {
-        if (on_contact == nullptr)
-          on_contact.reset(
-            new Condensation(condense_to_contact(problem(), scene.adhesion())));
-        return *on_contact;
-      }
-
-    private:
-      const Scene<dim>                    &scene;
-      std::unique_ptr<ElasticProblem<dim>> assembled;
-      std::unique_ptr<Condensation>        on_contact;
-    };
   } // namespace
 
 
@@ -170,9 +125,13 @@ namespace Debond
   std::vector<OutputFile>
   matrix_files(const Scene<dim> &scene, const bool wanted)
   {
-    const auto own       = std::make_shared<AssembledScene<dim>>(scene);
-    const auto is_wanted = [&scene, wanted]() {
-      return wanted && scene.piece() == nullptr;
+    // S and g together, once one of them is to be written.
+    const auto on_contact = std::make_shared<std::unique_ptr<Condensation>>();
+    const auto condensed  = [&scene, on_contact]() -> const Condensation  &{
+      if (*on_contact == nullptr)
+        on_contact->reset(new Condensation(
+          condense_to_contact(scene.problem(), scene.adhesion())));
+      return **on_contact;
     };
     const auto of_nodes = [&scene](const std::string &path,
                                    const auto        &number_of) {
@@ -183,30 +142,33 @@ namespace Debond
     };
     std::vector<OutputFile> files;
     const auto add = [&](const std::string &name, const auto &write) {
-      files.push_back({name, is_wanted, write});
+      files.push_back(
+        {name,
+         [&scene, wanted]() { return wanted && scene.piece() == nullptr; },
+         write});
     };
-    add("A.mtx", [own](const std::string &path) {
-      write_sparse(own->problem().matrix(), path);
+    add("A.mtx", [&scene](const std::string &path) {
+      write_sparse(scene.problem().matrix(), path);
     });
-    add("f.mtx", [own](const std::string &path) {
-      write_array<DofVector>({own->problem().load()}, path);
+    add("f.mtx", [&scene](const std::string &path) {
+      write_array<DofVector>({scene.problem().load()}, path);
     });
-    add("frames.mtx", [own](const std::string &path) {
-      write_frames(own->problem().unknowns(), path);
+    add("frames.mtx", [&scene](const std::string &path) {
+      write_frames(scene.problem().unknowns(), path);
     });
-    add("modes.mtx", [own](const std::string &path) {
-      write_array(own->problem().unknowns().rigid_body_modes(), path);
+    add("modes.mtx", [&scene](const std::string &path) {
+      write_array(scene.problem().unknowns().rigid_body_modes(), path);
     });
-    add("S.mtx", [own](const std::string &path) {
-      write_dense(own->condensed().schur_complement(), path);
+    add("S.mtx", [condensed](const std::string &path) {
+      write_dense(condensed().schur_complement(), path);
     });
-    add("g.mtx", [own](const std::string &path) {
-      const Eigen::VectorXd &g = own->condensed().load();
+    add("g.mtx", [condensed](const std::string &path) {
+      const Eigen::VectorXd &g = condensed().load();
       write_array<std::vector<double>>({{g.begin(), g.end()}}, path);
     });
-    add("contact.mtx", [own](const std::string &path) {
+    add("contact.mtx", [&scene](const std::string &path) {
       std::vector<double> rows;
-      for (const auto i : own->problem().unknowns().contact().normals())
+      for (const auto i : scene.problem().unknowns().contact().normals())
         rows.push_back(static_cast<double>(i) + 1.);
       write_array<std::vector<double>>({rows}, path);
     });

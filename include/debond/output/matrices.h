@@ -11,7 +11,7 @@ namespace Debond
 {
   /// The discrete problem of a scene as Matrix Market files for other programs,
   /// if they are @p wanted; see doc/reference/output.md. Keeps a reference to
-  /// the scene. A is assembled once more, since solvers store it as they like.
+  /// the scene. A is factorised once more for S and g.
   template <int dim>
   std::vector<OutputFile>
   matrix_files(const Scene<dim> &scene, const bool wanted);
