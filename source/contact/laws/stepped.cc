@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/number_text.h>
 #include <debond/base/parameter_table.h>
 #include <debond/contact/laws/stepped.h>
 
