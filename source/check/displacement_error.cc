@@ -2,7 +2,6 @@
 #include <deal.II/base/quadrature_lib.h>
 
 #include <debond/check/displacement_error.h>
-#include <debond/elasticity/cell_nodes.h>
 
 #include <cmath>
 #include <limits>
@@ -94,9 +93,14 @@ namespace Debond
   {
     dealii::SymmetricTensor<4, dim> stiffness;
     const DofVector displacement = problem.unknowns().cartesian_displacement(u);
-    const unsigned int               degree = problem.unknowns().degree();
-    const dealii::QGaussSimplex<dim> rule(3);
-    const double reference_volume = dim == 2 ? 0.5 : 1. / 6.;
+    CellStresses<dim> cell_stresses(problem.fields(),
+                                    displacement,
+                                    1.,
+                                    dealii::QGaussSimplex<dim>(3),
+                                    dealii::update_values |
+                                      dealii::update_quadrature_points |
+                                      dealii::update_JxW_values);
+    const auto       &values = cell_stresses.values();
 
     Squares    errors, norms;
     const auto add = [&](const double                  weight,
@@ -113,39 +117,23 @@ namespace Debond
     for (const auto &cell :
          problem.unknowns().dof_handler().active_cell_iterators())
       {
-        const CellNodes<dim> nodes(cell);
+        cell_stresses.reinit(cell);
         stiffness =
           problem.fields().material(cell).template elasticity_tensor<dim>();
         // The points of the rule are further than twice that from the faces.
         const double step = 1e-3 * cell->minimum_vertex_distance();
-        for (unsigned int q = 0; q < rule.size(); ++q)
+        for (const unsigned int q : values.quadrature_point_indices())
           {
-            dealii::Point<dim>                       point;
-            dealii::Tensor<1, dim>                   value;
-            typename ElasticFields<dim>::Barycentric barycentric;
-            for (unsigned int v = 0; v <= dim; ++v)
-              {
-                barycentric[v] = v == 0 ? 1. : rule.point(q)[v - 1];
-                if (v == 0)
-                  for (unsigned int d = 0; d < dim; ++d)
-                    barycentric[v] -= rule.point(q)[d];
-                point += barycentric[v] * cell->vertex(v);
-              }
-            const auto basis = bernstein(barycentric, degree);
-            for (unsigned int n = 0; n < nodes.size; ++n)
-              for (unsigned int d = 0; d < dim; ++d)
-                value[d] += basis[n] * displacement[nodes.dofs[n][d]];
-            const dealii::Tensor<2, dim> gradient =
-              problem.fields().displacement_gradient(cell,
-                                                     displacement,
-                                                     barycentric);
-            const double weight =
-              rule.weight(q) / reference_volume * cell->measure();
+            const dealii::Point<dim>    &point  = values.quadrature_point(q);
+            const double                 weight = values.JxW(q);
             const dealii::Tensor<1, dim> exact_value = value_at(point, exact);
             const dealii::Tensor<2, dim> exact_gradient =
               gradient_at(point, step, exact);
             add(weight, exact_value, exact_gradient, norms);
-            add(weight, value - exact_value, gradient - exact_gradient, errors);
+            add(weight,
+                cell_stresses.displacement(q) - exact_value,
+                cell_stresses.gradient(q) - exact_gradient,
+                errors);
           }
       }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_simplex_p.h>
+#include <deal.II/fe/fe_values.h>
 
 #include <debond/base/text.h>
 #include <debond/check/error_estimate.h>
 #include <debond/contact/field_value.h>
-#include <debond/elasticity/cell_nodes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -52,13 +53,14 @@ namespace Debond
 
 
 
+    /// Of the gradients of the barycentric coordinates.
     template <int dim>
     double
-    sum_of_squares(const LinearSimplex<dim> &cell)
+    sum_of_squares(const dealii::FEValues<dim> &barycentric)
     {
       double sum = 0.;
-      for (const dealii::Tensor<1, dim> &gradient : cell.gradients)
-        sum += gradient.norm_square();
+      for (const unsigned int v : barycentric.dof_indices())
+        sum += barycentric.shape_grad(v, 0).norm_square();
       return sum;
     }
 
@@ -70,10 +72,10 @@ namespace Debond
     /// b_F of one of them takes.
     template <int dim>
     double
-    bubble_energy(const LinearSimplex<dim> &cell)
+    bubble_energy(const dealii::FEValues<dim> &barycentric, const double volume)
     {
       return dim == 2 ? 8. / 3. :
-                        243. / 140. * cell.volume * sum_of_squares(cell);
+                        243. / 140. * volume * sum_of_squares(barycentric);
     }
 
 
@@ -82,13 +84,14 @@ namespace Debond
     /// cell, for a force on it that is constant.
     template <int dim>
     double
-    fall_inside(const LinearSimplex<dim>     &cell,
+    fall_inside(const dealii::FEValues<dim>  &barycentric,
+                const double                  volume,
                 const dealii::Tensor<1, dim> &force,
                 const double                  stiffness)
     {
       const double mean = dim == 2 ? 1. / 60. : 1. / 840.;
       const double energy =
-        cell.volume * sum_of_squares(cell) / (dim == 2 ? 180. : 15120.);
+        volume * sum_of_squares(barycentric) / (dim == 2 ? 180. : 15120.);
       return 0.5 * mean * mean * force.norm_square() / (stiffness * energy);
     }
 
@@ -132,35 +135,20 @@ namespace Debond
 
 
 
+    /// The middle of a cell, and of degree 2, where stresses are linear, its
+    /// vertices.
     template <int dim>
-    struct FaceRule
+    std::vector<dealii::Point<dim>>
+    stress_points(const unsigned int degree)
     {
-      std::vector<std::array<double, dim>> barycentric;
-      std::vector<double>                  weights; ///< their sum is 1
-
-      FaceRule()
-      {
-        const auto add = [this](const auto &rule, const double measure) {
-          for (unsigned int q = 0; q < rule.size(); ++q)
-            {
-              std::array<double, dim> point;
-              point[0] = 1.;
-              for (unsigned int d = 1; d < dim; ++d)
-                {
-                  point[d] = rule.point(q)[d - 1];
-                  point[0] -= point[d];
-                }
-              barycentric.push_back(point);
-              weights.push_back(rule.weight(q) / measure);
-            }
-        };
-        // Loads and bonds may jump within a face.
-        if constexpr (dim == 2)
-          add(dealii::QGauss<1>(4), 1.);
-        else
-          add(dealii::QGaussSimplex<2>(3), 0.5);
-      }
-    };
+      std::vector<dealii::Point<dim>> points =
+        dealii::QGaussSimplex<dim>(1).get_points();
+      const auto cell = dealii::ReferenceCells::get_simplex<dim>();
+      if (degree == 2)
+        for (const unsigned int v : cell.vertex_indices())
+          points.push_back(cell.template vertex<dim>(v));
+      return points;
+    }
 
 
 
@@ -191,6 +179,18 @@ namespace Debond
                            (dead_loads != nullptr && dead_loads->body_force))
         , largest_s((piece == nullptr ? s : piece->trace(u))
                       .template lpNorm<Eigen::Infinity>())
+        , fe(1)
+        , barycentric(problem.unknowns().mapping(),
+                      fe,
+                      dealii::QGaussSimplex<dim>(has_volume_loads ? 2 : 1),
+                      dealii::update_gradients |
+                        dealii::update_quadrature_points |
+                        dealii::update_JxW_values)
+        , on_face(problem.unknowns().mapping(),
+                  fe,
+                  face_rule<dim>(1),
+                  dealii::update_values | dealii::update_quadrature_points |
+                    dealii::update_normal_vectors | dealii::update_JxW_values)
       {
         const ElasticFields<dim> &fields = problem.fields();
         const DofVector           displacement =
@@ -204,28 +204,30 @@ namespace Debond
         if (has_volume_loads)
           volume_loads.reserve(n);
         parts.assign(n, 0.);
+        CellStresses<dim> stresses(fields,
+                                   displacement,
+                                   factors,
+                                   stress_points<dim>(degree));
         for (const auto &cell : dofs.active_cell_iterators())
           {
-            const BernsteinSimplex<dim> simplex(cell, degree);
-            const CellNodes<dim>        nodes(cell);
-            Vertices                    vertices;
+            stresses.reinit(cell);
+            barycentric.reinit(
+              typename dealii::Triangulation<dim>::cell_iterator(cell));
+            volume = 0.;
+            for (const unsigned int q : barycentric.quadrature_point_indices())
+              volume += barycentric.JxW(q);
+            Vertices vertices;
             for (unsigned int v = 0; v <= dim; ++v)
               vertices[v] = cell->vertex(v);
-            add_cell(simplex,
-                     vertices,
-                     fields.material(cell),
-                     [&](const auto &point) {
-                       return fields.stress(
-                         cell, simplex, nodes, displacement, factors, point);
-                     });
+            add_cell(vertices, fields.material(cell), stresses);
             for (unsigned int f = 0; f <= dim; ++f)
               if (cell->neighbor_index(f) < 0)
-                add_boundary_face(cell, f, simplex, vertices);
+                add_boundary_face(cell, f, vertices);
               else if (is_before(cell->neighbor_level(f),
                                  cell->neighbor_index(f),
                                  cell->level(),
                                  cell->index()))
-                add_inner_face(cell, f, simplex, vertices, cell->neighbor(f));
+                add_inner_face(cell, f, vertices, cell->neighbor(f));
           }
       }
 
@@ -317,35 +319,34 @@ namespace Debond
         return level != other_level ? level < other_level : index < other_index;
       }
 
-      /// Of the next cell; @p stress: at its points.
-      template <typename Stress>
+      /// Of the next cell; @p stresses: at stress_points().
       void
-      add_cell(const BernsteinSimplex<dim> &simplex,
-               const Vertices              &vertices,
-               const Material              &material,
-               const Stress                &stress)
+      add_cell(const Vertices          &vertices,
+               const Material          &material,
+               const CellStresses<dim> &stresses)
       {
         if (moduli.material != &material)
           moduli = Moduli(material);
         CellStress here = {moduli.mu,
                            moduli.lambda,
-                           stress(ElasticFields<dim>::middle()),
+                           stresses.stress(0),
                            0.,
-                           bubble_energy(simplex)};
+                           bubble_energy<dim>(barycentric, volume)};
         VolumeLoad load;
         if (has_volume_loads)
-          load = volume_load(simplex, vertices, material);
+          load = volume_load(vertices, material);
         const double trace = dealii::trace(here.stress);
         here.pressure =
           load.thermal_pressure -
           moduli.part_of_lambda * (trace + dim * load.thermal_pressure);
         if (degree == 2)
           {
-            add_linear_part(simplex, vertices, stress, load);
-            parts[cells.size()] = fall_inside(simplex, load.force, here.mu);
+            add_linear_part(vertices, stresses, load);
+            parts[cells.size()] =
+              fall_inside<dim>(barycentric, volume, load.force, here.mu);
           }
         stress_energies.push_back(
-          0.5 * moduli.half_compliance * simplex.volume *
+          0.5 * moduli.half_compliance * volume *
           (here.stress * here.stress - moduli.part_of_lambda * trace * trace));
         is_nearly_incompressible =
           is_nearly_incompressible ||
@@ -360,9 +361,7 @@ namespace Debond
       /// Loads are evaluated where load_vector() and thermal_stresses() do it:
       /// there they are finite.
       VolumeLoad
-      volume_load(const LinearSimplex<dim> &simplex,
-                  const Vertices           &vertices,
-                  const Material           &material) const
+      volume_load(const Vertices &vertices, const Material &material) const
       {
         VolumeLoad result;
         for (const dealii::Point<dim> &vertex : vertices)
@@ -371,25 +370,20 @@ namespace Debond
           loads.temperature_change ?
             load_factor * material.template thermal_stress<dim>() :
             0.;
-        for (unsigned int q = 0; q < cell_rule.size(); ++q)
+        for (const unsigned int q : barycentric.quadrature_point_indices())
           {
-            const double weight = cell_rule.weight(q) * (dim == 2 ? 2. : 6.);
-            dealii::Point<dim> point = vertices[0];
-            // Times the basis' gradients at the vertices.
-            dealii::Tensor<1, dim> towards = simplex.gradients[0];
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                const double lambda = cell_rule.point(q)[d];
-                point += lambda * (vertices[d + 1] - vertices[0]);
-                towards +=
-                  lambda * (simplex.gradients[d + 1] - simplex.gradients[0]);
-              }
+            const double             weight = barycentric.JxW(q) / volume;
+            const dealii::Point<dim> point  = barycentric.quadrature_point(q);
+            // The gradients at the vertices times the coordinates.
+            dealii::Tensor<1, dim> towards;
+            for (unsigned int v = 0; v <= dim; ++v)
+              towards +=
+                fe.shape_value(v, barycentric.get_quadrature().point(q)) *
+                barycentric.shape_grad(v, q);
             const auto add_force = [&](const Loads<dim> &load,
                                        const double      factor) {
               if (load.body_force)
-                for (unsigned int d = 0; d < dim; ++d)
-                  result.force[d] += factor * weight * simplex.volume *
-                                     field_value(*load.body_force, point, d);
+                result.force += factor * weight * volume * load.force_at(point);
             };
             add_force(loads, load_factor);
             if (dead_loads != nullptr)
@@ -405,32 +399,28 @@ namespace Debond
               }
           }
         if (degree == 1)
-          result.force -= simplex.volume * result.pressure_gradient;
+          result.force -= volume * result.pressure_gradient;
         return result;
       }
 
       /// What varies in a cell, of degree 2, from the stress at its points.
-      template <typename Stress>
       void
-      add_linear_part(const LinearSimplex<dim> &simplex,
-                      const Vertices           &vertices,
-                      const Stress             &stress,
-                      VolumeLoad               &load)
+      add_linear_part(const Vertices          &vertices,
+                      const CellStresses<dim> &at_points,
+                      VolumeLoad              &load)
       {
         linear_stresses.emplace_back();
         auto &[stresses, pressures] = linear_stresses.back();
         for (unsigned int v = 0; v <= dim; ++v)
           {
-            std::array<double, dim + 1> vertex = {};
-            vertex[v]                          = 1.;
-            stresses[v]                        = stress(vertex);
+            stresses[v] = at_points.stress(1 + v);
             const double thermal =
               load.thermal_pressure +
               load.pressure_gradient * (vertices[v] - load.middle);
             pressures[v] =
               thermal - moduli.part_of_lambda *
                           (dealii::trace(stresses[v]) + dim * thermal);
-            load.force += simplex.volume * (stresses[v] * simplex.gradients[v]);
+            load.force += volume * (stresses[v] * barycentric.shape_grad(v, 0));
           }
       }
 
@@ -449,10 +439,9 @@ namespace Debond
       }
 
       Face
-      face_of(const unsigned int        cell,
-              const unsigned int        f,
-              const LinearSimplex<dim> &simplex,
-              const Vertices           &vertices) const
+      face_of(const unsigned int cell,
+              const unsigned int f,
+              const Vertices    &vertices) const
       {
         Face         face     = {cell, {}, {}, face_vertices[f]};
         unsigned int opposite = dim * (dim + 1) / 2;
@@ -461,7 +450,7 @@ namespace Debond
         if (has_volume_loads)
           for (const unsigned int vertex : face.in_cell)
             face.middle += vertices[vertex] / double(dim);
-        face.area = -dim * simplex.volume * simplex.gradients[opposite];
+        face.area = -dim * volume * barycentric.shape_grad(opposite, 0);
         return face;
       }
 
@@ -496,14 +485,12 @@ namespace Debond
       /// @p neighbor is done.
       template <typename CellIterator, typename OtherIterator>
       void
-      add_inner_face(const CellIterator       &cell,
-                     const unsigned int        f,
-                     const LinearSimplex<dim> &simplex,
-                     const Vertices           &vertices,
-                     const OtherIterator      &neighbor)
+      add_inner_face(const CellIterator  &cell,
+                     const unsigned int   f,
+                     const Vertices      &vertices,
+                     const OtherIterator &neighbor)
       {
-        const Face face =
-          face_of(cell->active_cell_index(), f, simplex, vertices);
+        const Face face = face_of(cell->active_cell_index(), f, vertices);
         const unsigned int other  = neighbor->active_cell_index();
         const CellStress  &here   = cells[face.cell];
         const CellStress  &there  = cells[other];
@@ -580,10 +567,9 @@ namespace Debond
 
       template <typename CellIterator>
       void
-      add_boundary_face(const CellIterator       &cell,
-                        const unsigned int        f,
-                        const LinearSimplex<dim> &simplex,
-                        const Vertices           &vertices)
+      add_boundary_face(const CellIterator &cell,
+                        const unsigned int  f,
+                        const Vertices     &vertices)
       {
         const auto id         = cell->face(f)->boundary_id();
         const bool is_contact = conditions.contact.count(id) > 0;
@@ -593,10 +579,9 @@ namespace Debond
         if (conditions.clamped.count(id) > 0)
           return;
 
-        const Face face =
-          face_of(cell->active_cell_index(), f, simplex, vertices);
-        const double                 measure = face.area.norm();
-        const dealii::Tensor<1, dim> normal  = face.area / measure;
+        const Face   face    = face_of(cell->active_cell_index(), f, vertices);
+        const double measure = face.area.norm();
+        const dealii::Tensor<1, dim> normal = face.area / measure;
         dealii::Tensor<1, dim>       inner;
         if (degree == 1)
           {
@@ -604,41 +589,31 @@ namespace Debond
             if (has_volume_loads)
               inner += share_of_volume(face.cell, face, face.area) / measure;
           }
-        const auto applied = [id](const Loads<dim> &load) {
-          const auto entry = load.tractions.find(id);
-          return entry == load.tractions.end() ? nullptr : entry->second.get();
-        };
-        const auto *const live = applied(loads);
-        const auto *const dead =
-          dead_loads == nullptr ? nullptr : applied(*dead_loads);
+        on_face.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell),
+                       f);
         double square = 0.;
-        for (unsigned int q = 0; q < rule.weights.size(); ++q)
+        for (const unsigned int q : on_face.quadrature_point_indices())
           {
-            dealii::Tensor<1, dim> r = inner;
+            std::array<double, dim> coordinates;
+            for (unsigned int v = 0; v < dim; ++v)
+              coordinates[v] = on_face.shape_value(face.in_cell[v], q);
+            const dealii::Point<dim> &point = on_face.quadrature_point(q);
+            dealii::Tensor<1, dim>    r     = inner;
             if (degree == 2)
               for (unsigned int v = 0; v < dim; ++v)
-                r -= rule.barycentric[q][v] *
+                r -= coordinates[v] *
                      (linear_stresses[face.cell].stresses[face.in_cell[v]] *
                       normal);
-            if (live != nullptr || dead != nullptr)
-              {
-                dealii::Point<dim> point;
-                for (unsigned int v = 0; v < dim; ++v)
-                  point += rule.barycentric[q][v] * vertices[face.in_cell[v]];
-                for (unsigned int d = 0; d < dim; ++d)
-                  {
-                    if (live != nullptr)
-                      r[d] += load_factor * field_value(*live, point, d);
-                    if (dead != nullptr)
-                      r[d] += field_value(*dead, point, d);
-                  }
-              }
+            r += load_factor * loads.traction(id, point, normal);
+            if (dead_loads != nullptr)
+              r += dead_loads->traction(id, point, normal);
             if (is_contact)
               r = with_foundation(r,
                                   face,
                                   boundary.faces[contact_face],
-                                  rule.barycentric[q]);
-            square += rule.weights[q] * free_part(r, normal, id).norm_square();
+                                  coordinates);
+            square +=
+              on_face.JxW(q) / measure * free_part(r, normal, id).norm_square();
           }
         const CellStress &here = cells[face.cell];
         parts[face.cell] +=
@@ -650,14 +625,14 @@ namespace Debond
       with_foundation(const dealii::Tensor<1, dim>              &r,
                       const Face                                &side,
                       const typename ContactBoundary<dim>::Face &face,
-                      const std::array<double, dim> &barycentric) const
+                      const std::array<double, dim> &coordinates) const
       {
         // Displacements of iterative methods may be off by so much.
         constexpr double             tolerance = 1e-6;
         const double                 measure   = side.area.norm();
         const dealii::Tensor<1, dim> normal    = side.area / measure;
-        const double traction  = adhesion.traction(face, barycentric, s);
-        const double trace     = adhesion.trace(face, barycentric, s);
+        const double traction  = adhesion.traction(face, coordinates, s);
+        const double trace     = adhesion.trace(face, coordinates, s);
         double       r_nu      = r * normal - traction;
         bool         is_closed = true;
         for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
@@ -694,22 +669,23 @@ namespace Debond
         return r;
       }
 
-      const unsigned int                                       degree;
-      const AdhesionIntegral<dim>                             &adhesion;
-      const ContactBoundary<dim>                              &boundary;
-      const BoundaryConditions                                &conditions;
-      const Supports<dim>                                     &supports;
-      const Loads<dim>                                        &loads;
-      const Eigen::VectorXd                                    s;
-      const Loads<dim>                                        *dead_loads;
-      const double                                             load_factor;
-      const bool                                               has_volume_loads;
-      const double                                             largest_s;
-      const FaceRule<dim>                                      rule;
+      const unsigned int             degree;
+      const AdhesionIntegral<dim>   &adhesion;
+      const ContactBoundary<dim>    &boundary;
+      const BoundaryConditions      &conditions;
+      const Supports<dim>           &supports;
+      const Loads<dim>              &loads;
+      const Eigen::VectorXd          s;
+      const Loads<dim>              *dead_loads;
+      const double                   load_factor;
+      const bool                     has_volume_loads;
+      const double                   largest_s;
+      const dealii::FE_SimplexP<dim> fe;
+      dealii::FEValues<dim>          barycentric; ///< of the cell
+      dealii::FEFaceValues<dim>      on_face;
+      double                         volume = 0.; ///< of the cell
       const std::array<std::array<unsigned int, dim>, dim + 1> face_vertices =
         make_face_vertices();
-      const dealii::QGaussSimplex<dim> cell_rule =
-        dealii::QGaussSimplex<dim>(2);
       Moduli                    moduli;
       std::vector<CellStress>   cells;
       std::vector<LinearStress> linear_stresses; ///< of degree 2

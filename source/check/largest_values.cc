@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/check/largest_values.h>
-#include <debond/elasticity/cell_nodes.h>
 
 #include <algorithm>
 
@@ -14,27 +13,22 @@ namespace Debond
   {
     const DofVector displacement =
       problem.unknowns().cartesian_displacement(u, factors);
-    const DofVector at_nodes = problem.unknowns().nodal_values(displacement);
-
     LargestValues largest;
+    for (unsigned int i = 0; i < displacement.size(); i += dim)
+      {
+        dealii::Tensor<1, dim> at_node;
+        for (unsigned int d = 0; d < dim; ++d)
+          at_node[d] = displacement(i + d);
+        largest.displacement = std::max(largest.displacement, at_node.norm());
+      }
+    CellStresses<dim> means(problem.fields(), displacement, factors);
     for (const auto &cell :
          problem.unknowns().dof_handler().active_cell_iterators())
       {
-        const CellNodes<dim> nodes(cell);
-        for (unsigned int n = 0; n < nodes.size; ++n)
-          {
-            dealii::Tensor<1, dim> at_node;
-            for (unsigned int d = 0; d < dim; ++d)
-              at_node[d] = at_nodes(nodes.dofs[n][d]);
-            largest.displacement =
-              std::max(largest.displacement, at_node.norm());
-          }
-        largest.gradient = std::max(
-          largest.gradient,
-          problem.fields().displacement_gradient(cell, displacement).norm());
-        largest.von_mises = std::max(largest.von_mises,
-                                     von_mises(problem.fields().solid_stress(
-                                       cell, displacement, factors)));
+        means.reinit(cell);
+        largest.gradient = std::max(largest.gradient, means.gradient(0).norm());
+        largest.von_mises =
+          std::max(largest.von_mises, von_mises(means.solid_stress(0)));
       }
     return largest;
   }

@@ -1,107 +1,156 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
 #include <debond/check/probes.h>
-#include <debond/elasticity/cell_nodes.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 namespace Debond
 {
+  namespace
+  {
+    /// By the first degree of freedom of a node, in the order of the unknowns,
+    /// which is the same for any number of ranks.
+    using Weights = std::map<dealii::types::global_dof_index, double>;
+
+
+
+    /// The values of the basis at a point, in the cell in which that lies
+    /// deepest.
+    template <int dim>
+    Weights
+    weights_at(const ElasticUnknowns<dim> &unknowns, const Probe<dim> &probe)
+    {
+      const auto           &fe = unknowns.dof_handler().get_fe();
+      dealii::FEValues<dim> fe_values(unknowns.mapping(),
+                                      fe,
+                                      dealii::QGaussSimplex<dim>(1),
+                                      dealii::update_inverse_jacobians);
+      double                least = -std::numeric_limits<double>::max();
+      typename dealii::DoFHandler<dim>::active_cell_iterator inside;
+      dealii::Point<dim>                                     unit_point;
+      for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
+        {
+          fe_values.reinit(cell);
+          const dealii::Point<dim> point(
+            dealii::apply_transformation(fe_values.inverse_jacobian(0),
+                                         probe.point - cell->vertex(0)));
+          double here = 1., sum = 0.;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              here = std::min(here, point[d]);
+              sum += point[d];
+            }
+          here = std::min(here, 1. - sum);
+          if (here > least)
+            {
+              least      = here;
+              inside     = cell;
+              unit_point = point;
+            }
+        }
+      constexpr double rounding = 1e-8;
+      if (least < -rounding)
+        throw ProbeError(probe.name, "the point is not in the body");
+
+      std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
+      inside->get_dof_indices(dofs);
+      Weights weights;
+      for (unsigned int i = 0; i < dofs.size(); i += dim)
+        weights[dofs[i]] += fe.shape_value(i, unit_point);
+      return weights;
+    }
+
+
+
+    /// Adds the integrals over a cell or a face, of nodes that are wanted.
+    template <typename Values, typename IsWanted>
+    void
+    add_integrals(const Values                                       &fe_values,
+                  const std::vector<dealii::types::global_dof_index> &dofs,
+                  const IsWanted                                     &is_wanted,
+                  Weights                                            &weights)
+    {
+      constexpr unsigned int dim = Values::dimension;
+      for (unsigned int i = 0; i < dofs.size(); i += dim)
+        if (is_wanted(i))
+          for (const unsigned int q : fe_values.quadrature_point_indices())
+            weights[dofs[i]] += fe_values.JxW(q) * fe_values.shape_value(i, q);
+    }
+
+
+
+    /// Over a piece of the boundary or of the body.
+    template <int dim>
+    Weights
+    integrals(const ElasticUnknowns<dim> &unknowns,
+              const PieceNames           &pieces,
+              const std::string          &piece)
+    {
+      const auto &fe    = unknowns.dof_handler().get_fe();
+      const auto  flags = dealii::update_values | dealii::update_JxW_values;
+      std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
+      Weights                                      weights;
+      if (const auto boundary = pieces.boundaries.find(piece);
+          boundary != pieces.boundaries.end())
+        {
+          dealii::FEFaceValues<dim> fe_values(unknowns.mapping(),
+                                              fe,
+                                              dealii::QGaussSimplex<dim - 1>(2),
+                                              flags);
+          for (const auto &cell :
+               unknowns.dof_handler().active_cell_iterators())
+            for (const unsigned int f : cell->face_indices())
+              if (cell->face(f)->at_boundary() &&
+                  boundary->second.count(cell->face(f)->boundary_id()) > 0)
+                {
+                  fe_values.reinit(cell, f);
+                  cell->get_dof_indices(dofs);
+                  add_integrals(
+                    fe_values,
+                    dofs,
+                    [&](const unsigned int i) {
+                      return fe.has_support_on_face(i, f);
+                    },
+                    weights);
+                }
+          return weights;
+        }
+      const auto           &ids = pieces.regions.at(piece);
+      dealii::FEValues<dim> fe_values(unknowns.mapping(),
+                                      fe,
+                                      dealii::QGaussSimplex<dim>(2),
+                                      flags);
+      for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
+        if (ids.count(cell->material_id()) > 0)
+          {
+            fe_values.reinit(cell);
+            cell->get_dof_indices(dofs);
+            add_integrals(
+              fe_values,
+              dofs,
+              [](const unsigned int) { return true; },
+              weights);
+          }
+      return weights;
+    }
+  } // namespace
+
+
+
   template <int dim>
   Probes<dim>::Probes(const ElasticUnknowns<dim>    &unknowns,
                       const PieceNames              &pieces,
                       const std::vector<Probe<dim>> &probes)
   {
-    using Kind = typename Probe<dim>::Kind;
     for (const Probe<dim> &probe : probes)
       {
-        // In the order of the unknowns, which is the same for any number of
-        // ranks.
-        std::map<dealii::types::global_dof_index, double> weights;
-        const auto add = [&weights](const CellNodes<dim> &nodes,
-                                    const unsigned int    node,
-                                    const double          weight) {
-          const auto &dofs = nodes.dofs[node];
-          for (unsigned int d = 1; d < dim; ++d)
-            Assert(dofs[d] == dofs[0] + d, dealii::ExcInternalError());
-          weights[dofs[0]] += weight;
-        };
-
-        if (probe.kind == Kind::point)
-          {
-            // The cell in which the point lies deepest.
-            double least = -std::numeric_limits<double>::max();
-            typename dealii::DoFHandler<dim>::active_cell_iterator inside;
-            std::array<double, dim + 1> barycentric = {};
-            for (const auto &cell :
-                 unknowns.dof_handler().active_cell_iterators())
-              {
-                const LinearSimplex<dim>    simplex(cell);
-                std::array<double, dim + 1> coordinates;
-                coordinates.fill(0.);
-                coordinates[0] = 1.;
-                for (unsigned int v = 0; v <= dim; ++v)
-                  coordinates[v] +=
-                    simplex.gradients[v] * (probe.point - cell->vertex(0));
-                const double here =
-                  *std::min_element(coordinates.begin(), coordinates.end());
-                if (here > least)
-                  {
-                    least       = here;
-                    inside      = cell;
-                    barycentric = coordinates;
-                  }
-              }
-            constexpr double rounding = 1e-8;
-            if (least < -rounding)
-              throw ProbeError(probe.name, "the point is not in the body");
-            const CellNodes<dim> nodes(inside);
-            const auto basis = bernstein(barycentric, unknowns.degree());
-            for (unsigned int n = 0; n < nodes.size; ++n)
-              add(nodes, n, basis[n]);
-          }
-        else if (const auto boundary = pieces.boundaries.find(probe.piece);
-                 boundary != pieces.boundaries.end())
-          for (const auto &cell :
-               unknowns.dof_handler().active_cell_iterators())
-            for (const unsigned int f : cell->face_indices())
-              {
-                if (!cell->face(f)->at_boundary() ||
-                    boundary->second.count(cell->face(f)->boundary_id()) == 0)
-                  continue;
-                // All basis functions of a face have the same integral.
-                const CellNodes<dim>          nodes(cell);
-                std::array<unsigned int, dim> in_cell;
-                for (unsigned int v = 0; v < dim; ++v)
-                  {
-                    in_cell[v] =
-                      cell->reference_cell().face_to_cell_vertices(f, v, 1);
-                    add(nodes, in_cell[v], cell->face(f)->measure());
-                  }
-                for (unsigned int k = dim;
-                     k < n_coefficients(dim, unknowns.degree());
-                     ++k)
-                  add(nodes,
-                      dim + 1 +
-                        edge_between(in_cell[simplex_edges[k - dim][0]],
-                                     in_cell[simplex_edges[k - dim][1]]),
-                      cell->face(f)->measure());
-              }
-        else
-          {
-            const auto &ids = pieces.regions.at(probe.piece);
-            for (const auto &cell :
-                 unknowns.dof_handler().active_cell_iterators())
-              if (ids.count(cell->material_id()) > 0)
-                {
-                  const CellNodes<dim> nodes(cell);
-                  for (unsigned int n = 0; n < nodes.size; ++n)
-                    add(nodes, n, LinearSimplex<dim>(cell).volume);
-                }
-          }
-
-        Sum sum = {probe.name, probe.kind == Kind::force, {}};
+        const Weights weights = probe.kind == Probe<dim>::Kind::point ?
+                                  weights_at(unknowns, probe) :
+                                  integrals(unknowns, pieces, probe.piece);
+        Sum sum = {probe.name, probe.kind == Probe<dim>::Kind::force, {}};
         for (const auto &[dof, weight] : weights)
           sum.weights.emplace_back(dof, sum.of_forces ? 1. : weight);
         sums.push_back(sum);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/check/broken_zone.h>
 #include <debond/check/verification.h>
-#include <debond/elasticity/cell_nodes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -399,41 +398,27 @@ namespace Debond
       std::vector<bool>           is_supported(unknowns.n_dofs(), false);
       for (const auto &[dof, unused] : unknowns.supported())
         is_supported[dof] = true;
-      DofVector                 clamped(problem.unknowns().n_dofs());
-      DofVector                 contact(problem.unknowns().n_dofs());
-      std::vector<unsigned int> component(problem.unknowns().n_dofs());
-      for (const auto &cell :
-           problem.unknowns().dof_handler().active_cell_iterators())
-        {
-          const CellNodes<dim> nodes(cell);
-          for (unsigned int n = 0; n < nodes.size; ++n)
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                const auto dof = nodes.dofs[n][d];
-                component[dof] = d;
-                if (is_supported[dof])
-                  clamped(dof) = residual(dof);
-                else if (is_normal[dof] || unknowns.is_constrained(dof))
-                  contact(dof) = residual(dof);
-              }
-        }
+      DofVector clamped(unknowns.n_dofs());
+      DofVector contact(unknowns.n_dofs());
+      for (unsigned int dof = 0; dof < unknowns.n_dofs(); ++dof)
+        if (is_supported[dof])
+          clamped(dof) = residual(dof);
+        else if (is_normal[dof] || unknowns.is_constrained(dof))
+          contact(dof) = residual(dof);
 
       const auto resultant = [&](const DofVector &forces) {
         const DofVector cartesian =
           whole(problem.unknowns().cartesian_forces(forces));
         dealii::Tensor<1, dim> sum;
         for (unsigned int i = 0; i < cartesian.size(); ++i)
-          sum[piece == nullptr ? component[i] : i % dim] += cartesian(i);
+          sum[i % dim] += cartesian(i);
         return sum;
       };
 
       const DofVector applied =
         whole(problem.fields().applied_nodal_forces(factors));
-      if (piece == nullptr)
-        result.applied_force = problem.fields().total_load(factors);
-      else
-        for (unsigned int i = 0; i < applied.size(); ++i)
-          result.applied_force[i % dim] += applied(i);
+      for (unsigned int i = 0; i < applied.size(); ++i)
+        result.applied_force[i % dim] += applied(i);
       result.clamped_reaction = resultant(clamped);
       result.contact_reaction = resultant(contact);
 
@@ -626,6 +611,7 @@ namespace Debond
         0.;
 
     displacement = problem.unknowns().cartesian_displacement(u, factors);
+    problem.unknowns().edges().to_coefficients(displacement);
     result.displacements =
       piece == nullptr ?
         at_contact_nodes<dim>(displacement,

@@ -1,50 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_simplex_p.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/fe/mapping_fe.h>
+
 #include <debond/elasticity/boundary_face.h>
-#include <debond/elasticity/cell_nodes.h>
-#include <debond/elasticity/linear_simplex.h>
 
 #include <stdexcept>
 
 namespace Debond
 {
-  template <int dim>
-  BoundaryFace<dim>::BoundaryFace(
-    const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-    const unsigned int                                            face_no)
-  {
-    id                             = cell->face(face_no)->boundary_id();
-    const auto           reference = cell->reference_cell();
-    const CellNodes<dim> cell_nodes(cell);
-    n_nodes = n_coefficients(dim, cell->get_fe().degree);
-    unsigned int                  opposite = dim * (dim + 1) / 2;
-    std::array<unsigned int, dim> cell_vertices;
-    for (unsigned int v = 0; v < dim; ++v)
-      {
-        cell_vertices[v] = reference.face_to_cell_vertices(face_no, v, 1);
-        opposite -= cell_vertices[v];
-      }
-    for (unsigned int n = 0; n < n_nodes; ++n)
-      {
-        const unsigned int node =
-          n < dim ? cell_vertices[n] :
-                    dim + 1 +
-                      edge_between(cell_vertices[simplex_edges[n - dim][0]],
-                                   cell_vertices[simplex_edges[n - dim][1]]);
-        indices[n]   = cell_nodes.indices[node];
-        positions[n] = node_position<dim>(cell, node);
-        dofs[n]      = cell_nodes.dofs[node];
-      }
-
-    // The basis function of the opposite vertex grows inwards.
-    const LinearSimplex<dim>     simplex(cell);
-    const dealii::Tensor<1, dim> inward = simplex.gradients[opposite];
-
-    measure = dim * simplex.volume * inward.norm();
-    normal  = -inward / inward.norm();
-  }
-
-
-
   template <int dim>
   std::vector<BoundaryFace<dim>>
   boundary_faces(const dealii::DoFHandler<dim>              &dofs,
@@ -52,6 +17,15 @@ namespace Debond
                  const BoundaryNames                        &names,
                  const bool                                  is_piece)
   {
+    const dealii::MappingFE<dim> mapping(dealii::FE_SimplexP<dim>(1));
+    const auto                  &fe = dofs.get_fe();
+    dealii::FEFaceValues<dim>    fe_values(mapping,
+                                        fe,
+                                        dealii::QGaussSimplex<dim - 1>(1),
+                                        dealii::update_normal_vectors |
+                                          dealii::update_JxW_values);
+    std::vector<dealii::types::global_dof_index> cell_dofs(fe.dofs_per_cell);
+
     std::vector<BoundaryFace<dim>>       faces;
     std::set<dealii::types::boundary_id> missing = boundaries;
     for (const auto &cell : dofs.active_cell_iterators())
@@ -59,8 +33,25 @@ namespace Debond
         if (cell->face(f)->at_boundary() &&
             boundaries.count(cell->face(f)->boundary_id()) > 0)
           {
-            missing.erase(cell->face(f)->boundary_id());
-            faces.emplace_back(cell, f);
+            fe_values.reinit(cell, f);
+            cell->get_dof_indices(cell_dofs);
+            BoundaryFace<dim> face;
+            face.id      = cell->face(f)->boundary_id();
+            face.n_nodes = fe.n_dofs_per_face(f) / dim;
+            face.measure = fe_values.JxW(0);
+            face.normal  = fe_values.normal_vector(0);
+            for (unsigned int n = 0; n < face.n_nodes; ++n)
+              {
+                const unsigned int i = fe.face_to_cell_index(n * dim, f);
+                face.indices[n] = static_cast<unsigned int>(cell_dofs[i] / dim);
+                face.positions[n] =
+                  mapping.transform_unit_to_real_cell(cell,
+                                                      fe.unit_support_point(i));
+                for (unsigned int d = 0; d < dim; ++d)
+                  face.dofs[n][d] = cell_dofs[i] + d;
+              }
+            missing.erase(face.id);
+            faces.push_back(face);
           }
     if (!missing.empty() && !is_piece)
       throw std::invalid_argument(
@@ -72,8 +63,6 @@ namespace Debond
 
 
 
-  template struct BoundaryFace<2>;
-  template struct BoundaryFace<3>;
   template decltype(boundary_faces<2>) boundary_faces<2>;
   template decltype(boundary_faces<3>) boundary_faces<3>;
 } // namespace Debond

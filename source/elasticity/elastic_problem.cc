@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/full_matrix.h>
 
-#include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/temperature_load.h>
 
@@ -40,12 +40,13 @@ namespace Debond
     });
     const std::vector<double> pressures =
       thermal_stresses(dofs, materials, loads);
-    DofVector applied_forces = load_vector(dofs, loads);
+    notes.clear();
+    DofVector applied_forces = load_vector(dofs, loads, &notes);
     add_thermal_forces(dofs, pressures, applied_forces);
     DofVector dead_forces;
     if (dead_loads.body_force || !dead_loads.tractions.empty())
       {
-        dead_forces = load_vector(dofs, dead_loads);
+        dead_forces = load_vector(dofs, dead_loads, &notes);
         applied_forces += dead_forces;
       }
     elastic_fields = std::make_unique<ElasticFields<dim>>(
@@ -92,64 +93,43 @@ namespace Debond
   void
   ElasticProblem<dim>::add_cell_matrices(const ByRegion<Material> &materials)
   {
-    const auto stiffness = materials.transformed([](const Material &material) {
+    const auto  stiffness = materials.transformed([](const Material &material) {
       return material.elasticity_tensor<dim>();
     });
-    const unsigned int degree      = elastic_unknowns.degree();
-    const unsigned int n_cell_dofs = dim * n_coefficients(dim + 1, degree);
-    dealii::FullMatrix<double>                   cell_matrix(n_cell_dofs);
-    std::vector<dealii::types::global_dof_index> cell_dofs(n_cell_dofs);
-    std::array<dealii::Tensor<1, dim>, dim * CellNodes<dim>::maximum>
-      directions;
-    std::array<dealii::SymmetricTensor<2, dim>, dim * CellNodes<dim>::maximum>
-      strains;
+    const auto &dofs      = elastic_unknowns.dof_handler();
+    dealii::FEValues<dim> fe_values(elastic_unknowns.mapping(),
+                                    dofs.get_fe(),
+                                    strain_rule<dim>(elastic_unknowns.degree()),
+                                    dealii::update_gradients |
+                                      dealii::update_JxW_values);
+    const dealii::FEValuesExtractors::Vector     displacement(0);
+    const unsigned int                           n = fe_values.dofs_per_cell;
+    dealii::FullMatrix<double>                   cell_matrix(n);
+    std::vector<dealii::types::global_dof_index> cell_dofs(n);
+    std::vector<dealii::SymmetricTensor<2, dim>> strains(n);
 
-    for (const auto &cell :
-         elastic_unknowns.dof_handler().active_cell_iterators())
+    for (const auto &cell : dofs.active_cell_iterators())
       {
-        const BernsteinSimplex<dim> simplex(cell, degree);
-        const CellNodes<dim>        nodes(cell);
-
-        // The basis function of the unknown k of node n is phi_n times the
-        // direction of the unknown.
-        for (unsigned int n = 0; n < nodes.size; ++n)
-          {
-            const dealii::Tensor<2, dim> *const frame =
-              elastic_unknowns.directions(nodes.indices[n]);
-            for (unsigned int k = 0; k < dim; ++k)
-              {
-                const unsigned int i = n * dim + k;
-                cell_dofs[i]         = nodes.dofs[n][k];
-                directions[i]        = {};
-                if (frame == nullptr)
-                  directions[i][k] = 1.;
-                else
-                  for (unsigned int d = 0; d < dim; ++d)
-                    directions[i][d] = (*frame)[d][k];
-              }
-          }
-
+        fe_values.reinit(cell);
+        cell->get_dof_indices(cell_dofs);
         cell_matrix = 0.;
-        for (unsigned int q = 0; q < simplex.n_points; ++q)
+        for (const unsigned int q : fe_values.quadrature_point_indices())
           {
-            const auto point = simplex.point(q);
-            for (unsigned int n = 0; n < nodes.size; ++n)
-              {
-                const dealii::Tensor<1, dim> gradient =
-                  simplex.gradient(n, point);
-                for (unsigned int i = n * dim; i < (n + 1) * dim; ++i)
-                  strains[i] = dealii::symmetrize(
-                    dealii::outer_product(directions[i], gradient));
-              }
-            for (unsigned int i = 0; i < n_cell_dofs; ++i)
+            for (unsigned int i = 0; i < n; ++i)
+              strains[i] = fe_values[displacement].symmetric_gradient(i, q);
+            for (unsigned int i = 0; i < n; ++i)
               {
                 const dealii::SymmetricTensor<2, dim> weighted_stress =
-                  simplex.weight *
+                  fe_values.JxW(q) *
                   (stiffness(cell->material_id()) * strains[i]);
-                for (unsigned int j = 0; j < n_cell_dofs; ++j)
+                for (unsigned int j = 0; j <= i; ++j)
                   cell_matrix(i, j) += weighted_stress * strains[j];
               }
           }
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int j = 0; j < i; ++j)
+            cell_matrix(j, i) = cell_matrix(i, j);
+        elastic_unknowns.to_unknowns(cell_dofs, cell_matrix);
         elastic_unknowns.constraints().distribute_local_to_global(
           cell_matrix, cell_dofs, system_matrix);
       }
@@ -162,6 +142,15 @@ namespace Debond
   ElasticProblem<dim>::unknowns() const
   {
     return elastic_unknowns;
+  }
+
+
+
+  template <int dim>
+  const std::vector<std::string> &
+  ElasticProblem<dim>::load_notes() const
+  {
+    return notes;
   }
 
 

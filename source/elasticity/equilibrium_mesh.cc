@@ -165,7 +165,7 @@ namespace Debond
       throw EquilibriumError("an initial gap is not done");
     find_elements();
     if (given_loads.body_force)
-      find_body_forces(*given_loads.body_force);
+      find_body_forces(given_loads);
     exact_loads = exact_loads && is_temperature_exact(given_loads);
     make_sides();
     fix_sides(conditions, supports, given_loads);
@@ -237,7 +237,7 @@ namespace Debond
 
   template <int dim>
   void
-  EquilibriumMesh<dim>::find_body_forces(const dealii::Function<dim> &force)
+  EquilibriumMesh<dim>::find_body_forces(const Loads<dim> &given)
   {
     const dealii::QGaussSimplex<dim> rule(2);
     for (Place &place : all_places)
@@ -250,8 +250,7 @@ namespace Debond
           for (unsigned int q = 0; q < rule.size(); ++q)
             {
               forces.push_back(
-                field_vector(force,
-                             point_of<dim>(place.cells[i], rule.point(q))));
+                given.force_at(point_of<dim>(place.cells[i], rule.point(q))));
               largest = std::max(largest, forces.back().norm());
             }
         // All points have the same weight, in all parts of the element.
@@ -351,10 +350,6 @@ namespace Debond
                                   const Supports<dim>      &supports,
                                   const Loads<dim>         &given)
   {
-    std::map<dealii::types::boundary_id, unsigned int> n_faces;
-    for (const auto &face : mesh.active_face_iterators())
-      if (face->at_boundary())
-        ++n_faces[face->boundary_id()];
     for (unsigned int element = 0; element < all_places.size(); ++element)
       for (unsigned int i = 0; i < all_places[element].sides.size(); ++i)
         {
@@ -430,13 +425,13 @@ namespace Debond
                 contact.unknowns[k] = unknowns_of_a_side * number + dim * k;
               sides_in_contact.push_back(contact);
             }
-          const auto traction = given.tractions.find(id);
-          if (traction != given.tractions.end())
+          if (given.tractions.count(id) > 0)
             {
-              const SideTraction<dim> own =
-                side_traction<dim>(*traction->second,
-                                   corners(side.vertices),
-                                   n_faces[id]);
+              const SideTraction<dim> own = side_traction<dim>(
+                [&](const dealii::Point<dim> &point) {
+                  return given.traction(id, point, normal);
+                },
+                corners(side.vertices));
               exact_loads = exact_loads && own.rest == 0.;
               if (own.rest > 0.)
                 all_rests.push_back({cell,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/contact/bernstein.h>
 #include <debond/elasticity/extended_operator.h>
 
 #include <algorithm>
@@ -10,24 +11,16 @@ namespace Debond
   ExtendedOperator<dim>::ExtendedOperator(
     const ElasticProblem<dim> &elastic_problem)
     : problem(elastic_problem)
-    , degree(problem.unknowns().degree())
-    , n_points(degree == 1 ? 1 : dim + 1)
   {
+    make_reference_gradients();
     cells.reserve(
       problem.unknowns().dof_handler().get_triangulation().n_active_cells());
     for (const auto &dof_cell :
          problem.unknowns().dof_handler().active_cell_iterators())
       {
-        Cell                 cell;
-        const CellNodes<dim> nodes(dof_cell);
-        std::copy_n(nodes.dofs.begin(), dim + 1, cell.dofs.begin());
-        if (degree == 2)
-          {
-            edge_dofs.emplace_back();
-            std::copy(nodes.dofs.begin() + dim + 1,
-                      nodes.dofs.end(),
-                      edge_dofs.back().begin());
-          }
+        Cell cell;
+        cell.dofs.resize(dof_cell->get_fe().dofs_per_cell);
+        dof_cell->get_dof_indices(cell.dofs);
 
         // Row v of edges is the edge to vertex v + 1, and the columns of its
         // inverse are the gradients.
@@ -66,29 +59,77 @@ namespace Debond
 
 
   template <int dim>
+  void
+  ExtendedOperator<dim>::make_reference_gradients()
+  {
+    if (problem.unknowns().degree() == 1)
+      {
+        reference_gradients.emplace_back(dim, Gradient{});
+        for (unsigned int d = 0; d < dim; ++d)
+          reference_gradients[0][d][d] = 1.L;
+        return;
+      }
+    // The points and gradients of strain_rule() and FE_SimplexP, which have the
+    // digits of double only: next to each vertex one point, where the others'
+    // coordinates are small.
+    const long double small =
+      dim == 2 ? 1.L / 6.L : (5.L - std::sqrt(5.L)) / 20.L;
+    for (unsigned int q = 0; q <= dim; ++q)
+      {
+        const auto coordinate = [&](const unsigned int v) {
+          return v == q ? 1.L - dim * small : small;
+        };
+        // Of a barycentric coordinate by another one, or by the first one's.
+        const auto derivative = [](const unsigned int v, const unsigned int d) {
+          return v == 0 ? -1.L : v == d + 1 ? 1.L : 0.L;
+        };
+        reference_gradients.emplace_back();
+        for (unsigned int v = 1; v <= dim; ++v)
+          {
+            reference_gradients[q].emplace_back();
+            for (unsigned int d = 0; d < dim; ++d)
+              reference_gradients[q].back()[d] =
+                (4.L * coordinate(v) - 1.L) * derivative(v, d);
+          }
+        for (unsigned int l = 0; l < n_simplex_edges(dim + 1); ++l)
+          {
+            const auto &[a, b] = simplex_edges[l];
+            reference_gradients[q].emplace_back();
+            for (unsigned int d = 0; d < dim; ++d)
+              reference_gradients[q].back()[d] =
+                4.L * (coordinate(a) * derivative(b, d) +
+                       coordinate(b) * derivative(a, d));
+          }
+      }
+  }
+
+
+
+  template <int dim>
   ExtendedVector
   ExtendedOperator<dim>::operator*(const ExtendedVector &u) const
   {
     const ExtendedVector  displacement = cartesian(u);
     ExtendedVector        forces       = ExtendedVector::Zero(u.size());
     std::vector<Gradient> gradients;
-    for (unsigned int c = 0; c < cells.size(); ++c)
-      for (unsigned int q = 0; q < n_points; ++q)
+    for (const Cell &cell : cells)
+      for (unsigned int q = 0; q < reference_gradients.size(); ++q)
         {
-          make_gradients(cells[c], q, gradients);
-          const Stress sigma = stress(c, gradients, displacement);
+          make_gradients(cell, q, gradients);
+          const Stress sigma = stress(cell, gradients, displacement);
           for (unsigned int d = 0; d < dim; ++d)
             for (unsigned int n = 0; n < gradients.size(); ++n)
               {
                 long double force = 0.;
                 for (unsigned int e = 0; e < dim; ++e)
                   force += sigma[d][e] * gradients[n][e];
-                force *= cells[c].volume / n_points;
-                forces(dofs(c, n + 1)[d]) += force;
-                forces(dofs(c, 0)[d]) -= force;
+                force *= cell.volume / reference_gradients.size();
+                forces(cell.dofs[(n + 1) * dim + d]) += force;
+                forces(cell.dofs[d]) -= force;
               }
         }
 
+    problem.unknowns().edges().forces_to_conjugates(forces);
     ExtendedVector result = forces;
     for (const auto &frame : problem.unknowns().frames())
       for (unsigned int k = 0; k < dim; ++k)
@@ -115,12 +156,12 @@ namespace Debond
     const ExtendedVector  rounded      = cartesian(rounded_u);
     long double           largest = 0., largest_change = 0.;
     std::vector<Gradient> gradients;
-    for (unsigned int c = 0; c < cells.size(); ++c)
-      for (unsigned int q = 0; q < n_points; ++q)
+    for (const Cell &cell : cells)
+      for (unsigned int q = 0; q < reference_gradients.size(); ++q)
         {
-          make_gradients(cells[c], q, gradients);
-          const Stress exact = stress(c, gradients, displacement);
-          const Stress other = stress(c, gradients, rounded);
+          make_gradients(cell, q, gradients);
+          const Stress exact = stress(cell, gradients, displacement);
+          const Stress other = stress(cell, gradients, rounded);
           for (unsigned int d = 0; d < dim; ++d)
             for (unsigned int e = 0; e < dim; ++e)
               {
@@ -147,6 +188,7 @@ namespace Debond
             result(frame.dofs[d]) +=
               frame.to_cartesian[d][k] * u(frame.dofs[k]);
         }
+    problem.unknowns().edges().to_values(result);
     return result;
   }
 
@@ -158,52 +200,29 @@ namespace Debond
                                         const unsigned int     point,
                                         std::vector<Gradient> &gradients) const
   {
-    if (degree == 1)
-      {
-        gradients.assign(cell.gradients.begin(), cell.gradients.end());
-        return;
-      }
-    const long double small =
-      dim == 2 ? 1.L / 6.L : (5.L - std::sqrt(5.L)) / 20.L;
-    std::array<long double, dim + 1> barycentric;
-    barycentric.fill(small);
-    barycentric[point] = 1.L - dim * small;
-    std::array<Gradient, dim + 1> of_vertices;
-    of_vertices[0] = {};
-    for (unsigned int v = 1; v <= dim; ++v)
-      {
-        of_vertices[v] = cell.gradients[v - 1];
+    gradients.assign(reference_gradients[point].size(), Gradient{});
+    for (unsigned int n = 0; n < gradients.size(); ++n)
+      for (unsigned int v = 0; v < dim; ++v)
         for (unsigned int d = 0; d < dim; ++d)
-          of_vertices[0][d] -= of_vertices[v][d];
-      }
-    gradients.resize(CellNodes<dim>::maximum - 1);
-    for (unsigned int n = 1; n < CellNodes<dim>::maximum; ++n)
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          const unsigned int a = n <= dim ? n : simplex_edges[n - (dim + 1)][0];
-          const unsigned int b = n <= dim ? n : simplex_edges[n - (dim + 1)][1];
-          // Of l_a^2 and of 2 l_a l_b.
-          gradients[n - 1][d] =
-            (a == b ? 1.L : 2.L) * (barycentric[a] * of_vertices[b][d] +
-                                    barycentric[b] * of_vertices[a][d]);
-        }
+          gradients[n][d] +=
+            reference_gradients[point][n][v] * cell.gradients[v][d];
   }
 
 
 
   template <int dim>
   typename ExtendedOperator<dim>::Stress
-  ExtendedOperator<dim>::stress(const unsigned int           c,
+  ExtendedOperator<dim>::stress(const Cell                  &cell,
                                 const std::vector<Gradient> &gradients,
                                 const ExtendedVector        &cartesian_u) const
   {
-    const Cell &cell     = cells[c];
-    Stress      gradient = {};
+    Stress gradient = {};
     for (unsigned int n = 0; n < gradients.size(); ++n)
       for (unsigned int d = 0; d < dim; ++d)
         {
           const long double difference =
-            cartesian_u(dofs(c, n + 1)[d]) - cartesian_u(dofs(c, 0)[d]);
+            cartesian_u(cell.dofs[(n + 1) * dim + d]) -
+            cartesian_u(cell.dofs[d]);
           for (unsigned int e = 0; e < dim; ++e)
             gradient[d][e] += difference * gradients[n][e];
         }

@@ -5,6 +5,7 @@
 #include <boost/accumulators/statistics/stats.hpp>
 #include <boost/accumulators/statistics/sum_kahan.hpp>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -17,7 +18,7 @@ namespace Debond
                                     const DofVector            &applied_forces,
                                     const std::vector<double> &thermal_stresses,
                                     const DofVector           &dead_forces)
-    : unknowns(unknowns)
+    : elastic_unknowns(unknowns)
     , materials(materials)
     , stiffness(materials.transformed([](const Material &material) {
       return material.elasticity_tensor<dim>();
@@ -28,6 +29,21 @@ namespace Debond
   {
     if (dead_forces.size() > 0)
       live_forces -= dead_forces;
+    if (unknowns.degree() == 2)
+      for (const dealii::Point<dim> &point : strain_rule<dim>(2).get_points())
+        {
+          unsigned int vertex  = 0;
+          double       largest = 1.;
+          for (unsigned int d = 0; d < dim; ++d)
+            largest -= point[d];
+          for (unsigned int d = 0; d < dim; ++d)
+            if (point[d] > largest)
+              {
+                largest = point[d];
+                vertex  = d + 1;
+              }
+          vertices_of_points.push_back(vertex);
+        }
   }
 
 
@@ -59,30 +75,36 @@ namespace Debond
   ElasticFields<dim>::residual(const DofVector  &u,
                                const LoadFactors factors) const
   {
-    const DofVector displacement = unknowns.cartesian_displacement(u, factors);
+    const DofVector displacement =
+      elastic_unknowns.cartesian_displacement(u, factors);
 
-    DofVector forces(unknowns.n_dofs());
-    for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
+    DofVector         forces(elastic_unknowns.n_dofs());
+    CellStresses<dim> cell_stresses(*this,
+                                    displacement,
+                                    factors,
+                                    strain_rule<dim>(elastic_unknowns.degree()),
+                                    dealii::update_JxW_values);
+    const auto       &values = cell_stresses.values();
+    for (const auto &cell :
+         elastic_unknowns.dof_handler().active_cell_iterators())
       {
-        const BernsteinSimplex<dim> simplex(cell, unknowns.degree());
-        const CellNodes<dim>        nodes(cell);
-        for (unsigned int q = 0; q < simplex.n_points; ++q)
+        cell_stresses.reinit(cell);
+        const auto &dofs = cell_stresses.dofs();
+        for (const unsigned int q : values.quadrature_point_indices())
           {
-            const Barycentric                     point = simplex.point(q);
             const dealii::SymmetricTensor<2, dim> sigma =
-              stiffness(cell->material_id()) *
-              dealii::symmetrize(gradient(simplex, nodes, displacement, point));
-            for (unsigned int n = 0; n < nodes.size; ++n)
+              values.JxW(q) * cell_stresses.elastic_stress(q);
+            for (unsigned int i = 0; i < dofs.size(); i += dim)
               {
                 const dealii::Tensor<1, dim> force =
-                  simplex.weight * (sigma * simplex.gradient(n, point));
+                  sigma * values.shape_grad(i, q);
                 for (unsigned int d = 0; d < dim; ++d)
-                  forces[nodes.dofs[n][d]] += force[d];
+                  forces(dofs[i + d]) += force[d];
               }
           }
       }
     forces -= applied_nodal_forces(factors);
-    return unknowns.in_frames(forces);
+    return elastic_unknowns.in_frames(forces);
   }
 
 
@@ -92,30 +114,31 @@ namespace Debond
   ElasticFields<dim>::residual_rounding(const DofVector  &u,
                                         const LoadFactors factors) const
   {
-    const DofVector displacement = unknowns.cartesian_displacement(u, factors);
+    const DofVector displacement =
+      elastic_unknowns.cartesian_displacement(u, factors);
 
-    DofVector rounding(unknowns.n_dofs());
-    for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
+    DofVector         rounding(elastic_unknowns.n_dofs());
+    CellStresses<dim> cell_stresses(*this,
+                                    displacement,
+                                    factors,
+                                    strain_rule<dim>(elastic_unknowns.degree()),
+                                    dealii::update_JxW_values);
+    const auto       &values = cell_stresses.values();
+    for (const auto &cell :
+         elastic_unknowns.dof_handler().active_cell_iterators())
       {
-        const BernsteinSimplex<dim> simplex(cell, unknowns.degree());
-        const CellNodes<dim>        nodes(cell);
+        cell_stresses.reinit(cell);
+        const auto  &dofs    = cell_stresses.dofs();
         const double modulus = stiffness(cell->material_id()).norm();
-        for (unsigned int q = 0; q < simplex.n_points; ++q)
+        for (const unsigned int q : values.quadrature_point_indices())
           {
-            const Barycentric point         = simplex.point(q);
-            double            size_gradient = 0.;
-            for (unsigned int n = 0; n < nodes.size; ++n)
-              {
-                double size = 0.;
-                for (unsigned int d = 0; d < dim; ++d)
-                  size += std::abs(displacement[nodes.dofs[n][d]]);
-                size_gradient += size * simplex.gradient(n, point).norm();
-              }
-            for (unsigned int n = 0; n < nodes.size; ++n)
-              for (unsigned int d = 0; d < dim; ++d)
-                rounding[nodes.dofs[n][d]] += simplex.weight * modulus *
-                                              size_gradient *
-                                              simplex.gradient(n, point).norm();
+            double size_gradient = 0.;
+            for (unsigned int i = 0; i < dofs.size(); ++i)
+              size_gradient += std::abs(displacement(dofs[i])) *
+                               values.shape_grad(i, q).norm();
+            for (unsigned int i = 0; i < dofs.size(); ++i)
+              rounding(dofs[i]) += values.JxW(q) * modulus * size_gradient *
+                                   values.shape_grad(i, q).norm();
           }
       }
     const DofVector forces = applied_nodal_forces(factors);
@@ -128,71 +151,37 @@ namespace Debond
 
 
   template <int dim>
-  dealii::SymmetricTensor<2, dim>
-  ElasticFields<dim>::stress(const Cell        &cell,
-                             const DofVector   &cartesian_displacement,
-                             const LoadFactors  factors,
-                             const Barycentric &point) const
+  const dealii::SymmetricTensor<4, dim> &
+  ElasticFields<dim>::elasticity_tensor(const Cell &cell) const
   {
-    return stress(cell,
-                  BernsteinSimplex<dim>(cell, unknowns.degree()),
-                  CellNodes<dim>(cell),
-                  cartesian_displacement,
-                  factors,
-                  point);
-  }
-
-
-
-  template <int dim>
-  dealii::SymmetricTensor<2, dim>
-  ElasticFields<dim>::stress(const Cell                  &cell,
-                             const BernsteinSimplex<dim> &simplex,
-                             const CellNodes<dim>        &nodes,
-                             const DofVector   &cartesian_displacement,
-                             const LoadFactors  factors,
-                             const Barycentric &point) const
-  {
-    dealii::SymmetricTensor<2, dim> stress =
-      stiffness(cell->material_id()) *
-      dealii::symmetrize(
-        gradient(simplex, nodes, cartesian_displacement, point));
-    if (!thermal_stresses.empty())
-      stress -= factors.loads * thermal_stress(cell, point) *
-                dealii::unit_symmetric_tensor<dim>();
-    return stress;
-  }
-
-
-
-  template <int dim>
-  dealii::SymmetricTensor<2, 3>
-  ElasticFields<dim>::solid_stress(const Cell        &cell,
-                                   const DofVector   &cartesian_displacement,
-                                   const LoadFactors  factors,
-                                   const Barycentric &point) const
-  {
-    return material(cell).solid_stress(
-      stress(cell, cartesian_displacement, factors, point),
-      factors.loads * thermal_stress(cell, point));
+    return stiffness(cell->material_id());
   }
 
 
 
   template <int dim>
   double
-  ElasticFields<dim>::thermal_stress(const Cell        &cell,
-                                     const Barycentric &point) const
+  ElasticFields<dim>::thermal_stress(const Cell               &cell,
+                                     const dealii::Point<dim> &unit_point) const
   {
     if (thermal_stresses.empty())
       return 0.;
-    if (unknowns.degree() == 1)
+    if (vertices_of_points.empty())
       return thermal_stresses[cell->active_cell_index()];
-    // The linear function that has these values at the points.
-    const double small = BernsteinSimplex<dim>::small_coordinate();
-    double       sum   = 0.;
+    // The linear function that has these values at the points, where the other
+    // barycentric coordinates are small.
+    std::array<double, dim + 1> barycentric;
+    barycentric[0] = 1.;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        barycentric[d + 1] = unit_point[d];
+        barycentric[0] -= unit_point[d];
+      }
+    constexpr double small = dim == 2 ? 1. / 6. : 0.13819660112501051;
+    double           sum   = 0.;
     for (unsigned int q = 0; q <= dim; ++q)
-      sum += (point[q] - small) / (1. - (dim + 1) * small) *
+      sum += (barycentric[vertices_of_points[q]] - small) /
+             (1. - (dim + 1) * small) *
              thermal_stresses[(dim + 1) * cell->active_cell_index() + q];
     return sum;
   }
@@ -200,50 +189,10 @@ namespace Debond
 
 
   template <int dim>
-  typename ElasticFields<dim>::Barycentric
-  ElasticFields<dim>::middle()
+  const ElasticUnknowns<dim> &
+  ElasticFields<dim>::unknowns() const
   {
-    Barycentric result;
-    result.fill(1. / (dim + 1));
-    return result;
-  }
-
-
-
-  template <int dim>
-  dealii::Tensor<2, dim>
-  ElasticFields<dim>::displacement_gradient(
-    const Cell        &cell,
-    const DofVector   &cartesian_displacement,
-    const Barycentric &point) const
-  {
-    return gradient(BernsteinSimplex<dim>(cell, unknowns.degree()),
-                    CellNodes<dim>(cell),
-                    cartesian_displacement,
-                    point);
-  }
-
-
-
-  template <int dim>
-  dealii::Tensor<2, dim>
-  ElasticFields<dim>::gradient(const BernsteinSimplex<dim> &simplex,
-                               const CellNodes<dim>        &nodes,
-                               const DofVector   &cartesian_displacement,
-                               const Barycentric &point)
-  {
-    dealii::Tensor<2, dim> result;
-    // The basis sums to one: without vertex 0 there are only differences of
-    // neighbours' displacements, and a translation rounds nothing away.
-    for (unsigned int n = 1; n < nodes.size; ++n)
-      {
-        dealii::Tensor<1, dim> difference;
-        for (unsigned int d = 0; d < dim; ++d)
-          difference[d] = cartesian_displacement[nodes.dofs[n][d]] -
-                          cartesian_displacement[nodes.dofs[0][d]];
-        result += dealii::outer_product(difference, simplex.gradient(n, point));
-      }
-    return result;
+    return elastic_unknowns;
   }
 
 
@@ -263,7 +212,9 @@ namespace Debond
   ElasticFields<dim>::elastic_terms(const DofVector  &u,
                                     const LoadFactors factors) const
   {
-    return terms(u, factors, unknowns.in_frames(applied_nodal_forces(factors)));
+    return terms(u,
+                 factors,
+                 elastic_unknowns.in_frames(applied_nodal_forces(factors)));
   }
 
 
@@ -283,7 +234,7 @@ namespace Debond
   ElasticFields<dim>::load_work(const DofVector  &u,
                                 const LoadFactors factors) const
   {
-    return unknowns.in_frames(live_forces) * lifted(u, factors);
+    return elastic_unknowns.in_frames(live_forces) * lifted(u, factors);
   }
 
 
@@ -294,8 +245,8 @@ namespace Debond
                              const LoadFactors factors) const
   {
     DofVector x = u;
-    if (unknowns.has_lifting())
-      x += unknowns.lifting(factors);
+    if (elastic_unknowns.has_lifting())
+      x += elastic_unknowns.lifting(factors);
     return x;
   }
 
@@ -307,20 +258,24 @@ namespace Debond
                             const LoadFactors factors,
                             const DofVector  &load) const
   {
-    const DofVector displacement = unknowns.cartesian_displacement(u, factors);
-    Terms           result       = {{}, load, lifted(u, factors)};
-    for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
+    const DofVector displacement =
+      elastic_unknowns.cartesian_displacement(u, factors);
+    Terms             result = {{}, load, lifted(u, factors)};
+    CellStresses<dim> cell_stresses(*this,
+                                    displacement,
+                                    factors,
+                                    strain_rule<dim>(elastic_unknowns.degree()),
+                                    dealii::update_JxW_values);
+    const auto       &values = cell_stresses.values();
+    for (const auto &cell :
+         elastic_unknowns.dof_handler().active_cell_iterators())
       {
-        const BernsteinSimplex<dim> simplex(cell, unknowns.degree());
-        const CellNodes<dim>        nodes(cell);
-        for (unsigned int q = 0; q < simplex.n_points; ++q)
-          {
-            const dealii::SymmetricTensor<2, dim> strain = dealii::symmetrize(
-              gradient(simplex, nodes, displacement, simplex.point(q)));
-            result.energies.push_back(
-              0.5 * simplex.weight *
-              (strain * (stiffness(cell->material_id()) * strain)));
-          }
+        cell_stresses.reinit(cell);
+        for (const unsigned int q : values.quadrature_point_indices())
+          result.energies.push_back(
+            0.5 * values.JxW(q) *
+            (dealii::symmetrize(cell_stresses.gradient(q)) *
+             cell_stresses.elastic_stress(q)));
       }
     return result;
   }
@@ -350,25 +305,125 @@ namespace Debond
   {
     const DofVector        applied_forces = applied_nodal_forces(factors);
     dealii::Tensor<1, dim> result;
-    std::vector<bool>      visited(
-      n_nodes(unknowns.dof_handler().get_triangulation(), unknowns.degree()),
-      false);
-    for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
-      {
-        const CellNodes<dim> nodes(cell);
-        for (unsigned int n = 0; n < nodes.size; ++n)
-          if (!visited[nodes.indices[n]])
-            {
-              visited[nodes.indices[n]] = true;
-              for (unsigned int d = 0; d < dim; ++d)
-                result[d] += applied_forces[nodes.dofs[n][d]];
-            }
-      }
+    for (unsigned int i = 0; i < applied_forces.size(); ++i)
+      result[i % dim] += applied_forces(i);
     return result;
+  }
+
+
+
+  template <int dim>
+  CellStresses<dim>::CellStresses(const ElasticFields<dim> &fields,
+                                  const DofVector  &cartesian_displacement,
+                                  const LoadFactors factors,
+                                  const dealii::Quadrature<dim> &rule,
+                                  const dealii::UpdateFlags      flags)
+    : fields(fields)
+    , cartesian_displacement(cartesian_displacement)
+    , load_factor(factors.loads)
+    , fe_values(fields.unknowns().mapping(),
+                fields.unknowns().dof_handler().get_fe(),
+                rule,
+                flags | dealii::update_gradients)
+    , cell_dofs(fe_values.dofs_per_cell)
+    , cell_values(fe_values.dofs_per_cell)
+  {}
+
+
+
+  template <int dim>
+  void
+  CellStresses<dim>::reinit(const Cell &new_cell)
+  {
+    cell = new_cell;
+    fe_values.reinit(cell);
+    cell->get_dof_indices(cell_dofs);
+    for (unsigned int i = 0; i < cell_dofs.size(); ++i)
+      cell_values[i] = cartesian_displacement(cell_dofs[i]);
+  }
+
+
+
+  template <int dim>
+  const dealii::FEValues<dim> &
+  CellStresses<dim>::values() const
+  {
+    return fe_values;
+  }
+
+
+
+  template <int dim>
+  const std::vector<dealii::types::global_dof_index> &
+  CellStresses<dim>::dofs() const
+  {
+    return cell_dofs;
+  }
+
+
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  CellStresses<dim>::displacement(const unsigned int q) const
+  {
+    dealii::Tensor<1, dim> result;
+    for (unsigned int i = 0; i < cell_values.size(); ++i)
+      result[i % dim] += cell_values[i] * fe_values.shape_value(i, q);
+    return result;
+  }
+
+
+
+  template <int dim>
+  dealii::Tensor<2, dim>
+  CellStresses<dim>::gradient(const unsigned int q) const
+  {
+    dealii::Tensor<2, dim> result;
+    // The basis sums to one: without vertex 0 there are only differences of
+    // neighbours' displacements, and a translation rounds nothing away.
+    for (unsigned int i = dim; i < cell_values.size(); ++i)
+      result[i % dim] +=
+        (cell_values[i] - cell_values[i % dim]) * fe_values.shape_grad(i, q);
+    return result;
+  }
+
+
+
+  template <int dim>
+  dealii::SymmetricTensor<2, dim>
+  CellStresses<dim>::elastic_stress(const unsigned int q) const
+  {
+    return fields.elasticity_tensor(cell) * dealii::symmetrize(gradient(q));
+  }
+
+
+
+  template <int dim>
+  dealii::SymmetricTensor<2, dim>
+  CellStresses<dim>::stress(const unsigned int q) const
+  {
+    return elastic_stress(q) -
+           load_factor *
+             fields.thermal_stress(cell, fe_values.get_quadrature().point(q)) *
+             dealii::unit_symmetric_tensor<dim>();
+  }
+
+
+
+  template <int dim>
+  dealii::SymmetricTensor<2, 3>
+  CellStresses<dim>::solid_stress(const unsigned int q) const
+  {
+    return fields.material(cell).solid_stress(
+      stress(q),
+      load_factor *
+        fields.thermal_stress(cell, fe_values.get_quadrature().point(q)));
   }
 
 
 
   template class ElasticFields<2>;
   template class ElasticFields<3>;
+  template class CellStresses<2>;
+  template class CellStresses<3>;
 } // namespace Debond

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/mesh_transfer.h>
 
 #include <algorithm>
@@ -31,22 +30,26 @@ namespace Debond
     const std::vector<dealii::Tensor<1, dim>> &displacements,
     const ElasticProblem<dim>                 &problem)
   {
-    DofVector result(problem.unknowns().n_dofs());
-    for (const auto &cell :
-         problem.unknowns().dof_handler().active_cell_iterators())
+    const auto                                  &unknowns = problem.unknowns();
+    DofVector                                    result(unknowns.n_dofs());
+    std::vector<dealii::types::global_dof_index> cell_dofs(
+      unknowns.dof_handler().get_fe().dofs_per_cell);
+    for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
       {
-        const CellNodes<dim> nodes(cell);
-        for (unsigned int n = 0; n < nodes.size; ++n)
-          for (unsigned int d = 0; d < dim; ++d)
-            if (n <= dim)
-              result[nodes.dofs[n][d]] = displacements[nodes.indices[n]][d];
+        cell->get_dof_indices(cell_dofs);
+        for (unsigned int i = 0; i < cell_dofs.size(); ++i)
+          {
+            const unsigned int node = i / dim, d = i % dim;
+            if (node <= dim)
+              result(cell_dofs[i]) = displacements[cell->vertex_index(node)][d];
             else
               {
-                const auto &[a, b] = simplex_edges[n - (dim + 1)];
-                result[nodes.dofs[n][d]] =
-                  0.5 * (displacements[nodes.indices[a]][d] +
-                         displacements[nodes.indices[b]][d]);
+                const auto line = cell->line(node - (dim + 1));
+                result(cell_dofs[i]) =
+                  0.5 * (displacements[line->vertex_index(0)][d] +
+                         displacements[line->vertex_index(1)][d]);
               }
+          }
       }
     result = problem.unknowns().from_cartesian(result);
     if (problem.unknowns().has_gap())
@@ -67,51 +70,43 @@ namespace Debond
                        const std::vector<unsigned int> &ancestors,
                        const ElasticProblem<dim>       &target)
   {
-    using Cell        = typename dealii::DoFHandler<dim>::active_cell_iterator;
-    using Barycentric = std::array<double, dim + 1>;
+    using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
     std::vector<Cell> whole_cells;
     for (const auto &cell :
          source.unknowns().dof_handler().active_cell_iterators())
       whole_cells.push_back(cell);
-    const unsigned int degree    = source.unknowns().degree();
-    const DofVector coefficients = source.unknowns().cartesian_displacement(u);
+    const DofVector values = source.unknowns().cartesian_displacement(u);
+    const std::vector<dealii::Point<dim>> positions =
+      target.unknowns().positions();
+    const auto &fe = source.unknowns().dof_handler().get_fe();
 
-    DofVector result(target.unknowns().n_dofs());
+    // The Jacobian takes to the points of the reference cell.
+    dealii::FEValues<dim> fe_values(source.unknowns().mapping(),
+                                    fe,
+                                    dealii::QGaussSimplex<dim>(1),
+                                    dealii::update_inverse_jacobians);
+    std::vector<dealii::types::global_dof_index> from(fe.dofs_per_cell),
+      to(fe.dofs_per_cell);
+    DofVector         result(target.unknowns().n_dofs());
+    std::vector<bool> is_done(result.size(), false);
     for (const auto &cell :
          target.unknowns().dof_handler().active_cell_iterators())
       {
         const Cell &whole = whole_cells[ancestors[cell->active_cell_index()]];
-        const LinearSimplex<dim>         simplex(whole);
-        const CellNodes<dim>             from(whole), to(cell);
-        std::array<Barycentric, dim + 1> vertices;
-        for (unsigned int v = 0; v <= dim; ++v)
-          for (unsigned int w = 0; w <= dim; ++w)
-            vertices[v][w] =
-              (w == 0 ? 1. : 0.) +
-              simplex.gradients[w] * (cell->vertex(v) - whole->vertex(0));
-
-        // A coefficient is the polynomial's polar form at the ends of an edge,
-        // or twice at a vertex.
-        for (unsigned int n = 0; n < to.size; ++n)
+        fe_values.reinit(whole);
+        whole->get_dof_indices(from);
+        cell->get_dof_indices(to);
+        for (unsigned int i = 0; i < to.size(); ++i)
           {
-            const unsigned int a = n <= dim ? n : simplex_edges[n - dim - 1][0];
-            const unsigned int b = n <= dim ? n : simplex_edges[n - dim - 1][1];
-            const Barycentric &x = vertices[a], &y = vertices[b];
-            std::array<double, CellNodes<dim>::maximum> weights = {};
-            for (unsigned int v = 0; v <= dim; ++v)
-              weights[v] = degree == 1 ? x[v] : x[v] * y[v];
-            for (unsigned int e = dim + 1; e < from.size; ++e)
-              {
-                const auto &[i, j] = simplex_edges[e - dim - 1];
-                weights[e]         = x[i] * y[j] + x[j] * y[i];
-              }
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                double sum = 0.;
-                for (unsigned int m = 0; m < from.size; ++m)
-                  sum += weights[m] * coefficients(from.dofs[m][d]);
-                result(to.dofs[n][d]) = sum;
-              }
+            if (is_done[to[i]])
+              continue;
+            is_done[to[i]] = true;
+            const dealii::Point<dim> point(
+              dealii::apply_transformation(fe_values.inverse_jacobian(0),
+                                           positions[to[i]] -
+                                             whole->vertex(0)));
+            for (unsigned int j = i % dim; j < from.size(); j += dim)
+              result(to[i]) += fe.shape_value(j, point) * values(from[j]);
           }
       }
     return target.unknowns().from_cartesian(result);

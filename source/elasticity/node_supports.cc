@@ -126,7 +126,8 @@ namespace Debond
   void
   NodeSupports<dim>::prescribe(const std::vector<BoundaryFace<dim>> &faces,
                                const PrescribedDisplacement<dim>    &condition,
-                               const BoundaryConditions             &conditions)
+                               const BoundaryConditions             &conditions,
+                               const EdgeCoefficients<dim>          &edges)
   {
     const auto fail = [&](const std::string &message) {
       throw SupportError(condition.is_roller ?
@@ -134,6 +135,28 @@ namespace Debond
                            SupportError::Subject::displacement,
                          condition.name,
                          message);
+    };
+    // Of the unknown of a face's node.
+    const auto prescribed_value = [&](const BoundaryFace<dim> &face,
+                                      const unsigned int       node,
+                                      const unsigned int       d) {
+      if (condition.values == nullptr)
+        return 0.;
+      const auto value = [&](const unsigned int n) {
+        return field_value(*condition.values, face.positions[n], d);
+      };
+      try
+        {
+          if (edges.find(face.indices[node]) == nullptr)
+            return value(node);
+          const auto &[a, b] = simplex_edges[node - dim];
+          return 2. * value(node) - 0.5 * (value(a) + value(b));
+        }
+      catch (const std::invalid_argument &error)
+        {
+          fail(error.what());
+          return 0.;
+        }
     };
     const unsigned int support =
       static_cast<unsigned int>(support_names.size());
@@ -177,23 +200,7 @@ namespace Debond
               for (unsigned int d = 0; d < dim; ++d)
                 if (condition.components[d])
                   rows.push_back({dealii::Point<dim>::unit_vector(d),
-                                  condition.values == nullptr ?
-                                    0. :
-                                    [&] {
-                                      try
-                                        {
-                                          return face.coefficient(
-                                            v, [&](const auto &position) {
-                                              return field_value(
-                                                *condition.values, position, d);
-                                            });
-                                        }
-                                      catch (const std::invalid_argument &error)
-                                        {
-                                          fail(error.what());
-                                          return 0.;
-                                        }
-                                    }(),
+                                  prescribed_value(face, v, d),
                                   support});
             if (fixed.is_constrained(face.dofs[v][0]))
               {

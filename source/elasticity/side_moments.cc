@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/base/quadrature.h>
 
 #include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/side_moments.h>
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 #include <vector>
 
 namespace Debond
@@ -15,51 +14,6 @@ namespace Debond
   {
     /// How far a traction may be from a linear one, relative to it.
     constexpr double traction_rounding = 1e-10;
-
-
-
-    /// Barycentric coordinates of many points, so that no load can hide that is
-    /// not linear.
-    std::vector<std::array<double, 2>>
-    points_of_side(std::integral_constant<int, 2>)
-    {
-      constexpr unsigned int             parts = 16;
-      const dealii::QGauss<1>            rule(3);
-      std::vector<std::array<double, 2>> result;
-      for (unsigned int part = 0; part < parts; ++part)
-        for (unsigned int q = 0; q < rule.size(); ++q)
-          {
-            const double t = (part + rule.point(q)[0]) / parts;
-            result.push_back({{1. - t, t}});
-          }
-      return result;
-    }
-
-
-
-    std::vector<std::array<double, 3>>
-    points_of_side(std::integral_constant<int, 3>)
-    {
-      constexpr unsigned int             parts = 4;
-      const dealii::QGaussSimplex<2>     rule(3);
-      std::vector<std::array<double, 3>> result;
-      const auto add = [&](const double x, const double y, const double size) {
-        for (unsigned int q = 0; q < rule.size(); ++q)
-          {
-            const double a = x + size * rule.point(q)[0];
-            const double b = y + size * rule.point(q)[1];
-            result.push_back({{1. - a - b, a, b}});
-          }
-      };
-      for (unsigned int i = 0; i < parts; ++i)
-        for (unsigned int j = 0; j < parts - i; ++j)
-          {
-            add(1. * i / parts, 1. * j / parts, 1. / parts);
-            if (i + j + 1 < parts)
-              add((i + 1.) / parts, (j + 1.) / parts, -1. / parts);
-          }
-      return result;
-    }
 
 
 
@@ -86,34 +40,43 @@ namespace Debond
 
   template <int dim>
   SideTraction<dim>
-  side_traction(const dealii::Function<dim>               &traction,
-                const std::array<dealii::Point<dim>, dim> &corners,
-                const unsigned int                         n_faces)
+  side_traction(
+    const std::function<dealii::Tensor<1, dim>(const dealii::Point<dim> &)>
+                                              &traction,
+    const std::array<dealii::Point<dim>, dim> &corners)
   {
-    static const std::vector<std::array<double, dim>> points =
-      points_of_side(std::integral_constant<int, dim>());
+    static const dealii::Quadrature<dim - 1> rule =
+      face_rule<dim>(parts_of_a_face<dim>);
+    std::vector<std::array<double, dim>> barycentric(rule.size());
+    std::vector<dealii::Tensor<1, dim>>  values(rule.size());
+
     // At the corners the linear function with the same moments.
-    std::array<dealii::Tensor<1, dim>, dim> linear =
-      traction_moments<dim>(traction, corners, n_faces);
-    dealii::Tensor<1, dim> sum;
-    for (const dealii::Tensor<1, dim> &moment : linear)
-      sum += moment;
-    for (dealii::Tensor<1, dim> &value : linear)
-      value = dim * ((dim + 1.) * value - sum);
-    double largest = 0., square = 0.;
-    for (const std::array<double, dim> &barycentric : points)
+    std::array<dealii::Tensor<1, dim>, dim> linear;
+    for (unsigned int q = 0; q < rule.size(); ++q)
       {
-        dealii::Point<dim>     place;
-        dealii::Tensor<1, dim> rest;
-        for (unsigned int k = 0; k < dim; ++k)
+        dealii::Point<dim> place = corners[0];
+        barycentric[q][0]        = 1.;
+        for (unsigned int k = 1; k < dim; ++k)
           {
-            place += barycentric[k] * corners[k];
-            rest -= barycentric[k] * linear[k];
+            barycentric[q][k] = rule.point(q)[k - 1];
+            barycentric[q][0] -= barycentric[q][k];
+            place += barycentric[q][k] * (corners[k] - corners[0]);
           }
-        const dealii::Tensor<1, dim> value = field_vector(traction, place);
-        largest                            = std::max(largest, value.norm());
-        square +=
-          (value + rest).norm_square() / static_cast<double>(points.size());
+        values[q] = traction(place);
+        for (unsigned int k = 0; k < dim; ++k)
+          for (unsigned int l = 0; l < dim; ++l)
+            linear[l] += (dim - 1.) * rule.weight(q) * dim * barycentric[q][k] *
+                         ((k == l ? dim + 1. : 0.) - 1.) * values[q];
+      }
+
+    double largest = 0., square = 0.;
+    for (unsigned int q = 0; q < rule.size(); ++q)
+      {
+        dealii::Tensor<1, dim> rest = values[q];
+        for (unsigned int k = 0; k < dim; ++k)
+          rest -= barycentric[q][k] * linear[k];
+        largest = std::max(largest, values[q].norm());
+        square += (dim - 1.) * rule.weight(q) * rest.norm_square();
       }
     if (std::sqrt(square) <= traction_rounding * largest)
       square = 0.;

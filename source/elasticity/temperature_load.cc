@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_simplex_p.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/fe/mapping_fe.h>
 
 #include <debond/contact/field_value.h>
-#include <debond/elasticity/cell_nodes.h>
+#include <debond/elasticity/fields.h>
 #include <debond/elasticity/temperature_load.h>
 
 namespace Debond
@@ -36,24 +39,26 @@ namespace Debond
     if (!loads.temperature_change)
       return stresses;
 
-    const dealii::QGaussSimplex<dim> rule(2);
-    double                           reference_volume = 0.;
-    for (unsigned int q = 0; q < rule.size(); ++q)
-      reference_volume += rule.weight(q);
+    const dealii::FE_SimplexP<dim> fe(1);
+    const dealii::MappingFE<dim>   mapping(fe);
+    dealii::FEValues<dim>          fe_values(mapping,
+                                    fe,
+                                    dealii::QGaussSimplex<dim>(2),
+                                    dealii::update_quadrature_points |
+                                      dealii::update_JxW_values);
     for (const auto &cell : triangulation.active_cell_iterators())
       {
-        double mean = 0.;
-        for (unsigned int q = 0; q < rule.size(); ++q)
+        fe_values.reinit(cell);
+        double sum = 0., volume = 0.;
+        for (const unsigned int q : fe_values.quadrature_point_indices())
           {
-            dealii::Point<dim> point = cell->vertex(0);
-            for (unsigned int d = 0; d < dim; ++d)
-              point +=
-                rule.point(q)[d] * (cell->vertex(d + 1) - cell->vertex(0));
-            mean +=
-              rule.weight(q) / reference_volume * temperature_at(loads, point);
+            sum += fe_values.JxW(q) *
+                   temperature_at(loads, fe_values.quadrature_point(q));
+            volume += fe_values.JxW(q);
           }
         stresses.push_back(
-          materials(cell->material_id()).template thermal_stress<dim>() * mean);
+          materials(cell->material_id()).template thermal_stress<dim>() * sum /
+          volume);
       }
     return stresses;
   }
@@ -74,19 +79,19 @@ namespace Debond
     if (!loads.temperature_change)
       return stresses;
 
+    const dealii::MappingFE<dim> mapping(dealii::FE_SimplexP<dim>(1));
+    dealii::FEValues<dim>        fe_values(mapping,
+                                    dof_handler.get_fe(),
+                                    strain_rule<dim>(2),
+                                    dealii::update_quadrature_points);
     for (const auto &cell : dof_handler.active_cell_iterators())
       {
-        const double pressure_of_one =
-          materials(cell->material_id()).template thermal_stress<dim>();
-        const BernsteinSimplex<dim> simplex(cell, 2);
-        for (unsigned int q = 0; q < simplex.n_points; ++q)
-          {
-            const auto         barycentric = simplex.point(q);
-            dealii::Point<dim> point       = cell->vertex(0);
-            for (unsigned int v = 1; v <= dim; ++v)
-              point += barycentric[v] * (cell->vertex(v) - cell->vertex(0));
-            stresses.push_back(pressure_of_one * temperature_at(loads, point));
-          }
+        fe_values.reinit(cell);
+        for (const dealii::Point<dim> &point :
+             fe_values.get_quadrature_points())
+          stresses.push_back(
+            materials(cell->material_id()).template thermal_stress<dim>() *
+            temperature_at(loads, point));
       }
     return stresses;
   }
@@ -101,23 +106,26 @@ namespace Debond
   {
     if (thermal_stresses.empty())
       return;
+    const dealii::MappingFE<dim> mapping(dealii::FE_SimplexP<dim>(1));
+    const auto                  &fe = dof_handler.get_fe();
+    dealii::FEValues<dim>        fe_values(mapping,
+                                    fe,
+                                    strain_rule<dim>(fe.degree),
+                                    dealii::update_gradients |
+                                      dealii::update_JxW_values);
+    const dealii::FEValuesExtractors::Vector     displacement(0);
+    std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
+    auto stress = thermal_stresses.begin();
     for (const auto &cell : dof_handler.active_cell_iterators())
       {
-        const BernsteinSimplex<dim> simplex(cell, cell->get_fe().degree);
-        const CellNodes<dim>        nodes(cell);
-        for (unsigned int q = 0; q < simplex.n_points; ++q)
+        fe_values.reinit(cell);
+        cell->get_dof_indices(dofs);
+        for (const unsigned int q : fe_values.quadrature_point_indices())
           {
-            const double stress =
-              thermal_stresses[simplex.n_points * cell->active_cell_index() +
-                               q];
-            for (unsigned int n = 0; n < nodes.size; ++n)
-              {
-                const dealii::Tensor<1, dim> gradient =
-                  simplex.gradient(n, simplex.point(q));
-                for (unsigned int d = 0; d < dim; ++d)
-                  forces[nodes.dofs[n][d]] +=
-                    simplex.weight * stress * gradient[d];
-              }
+            for (unsigned int i = 0; i < dofs.size(); ++i)
+              forces(dofs[i]) += fe_values.JxW(q) * *stress *
+                                 fe_values[displacement].divergence(i, q);
+            ++stress;
           }
       }
   }

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/bounding_box.h>
+#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_simplex_p.h>
 
 #include <debond/base/text.h>
 #include <debond/elasticity/boundary_face.h>
-#include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/contact_nodes.h>
 #include <debond/elasticity/rigid_motions.h>
 #include <debond/elasticity/unknowns.h>
-#include <debond/mesh/crossed_mesh.h>
 
 #include <set>
 #include <stdexcept>
@@ -61,14 +60,16 @@ namespace Debond
     const auto faces = [&](const std::set<dealii::types::boundary_id> &ids) {
       return boundary_faces(dofs, ids, conditions.names, is_piece);
     };
+    contact_edges = EdgeCoefficients<dim>(dofs, conditions.contact);
     node_supports =
-      NodeSupports<dim>(n_nodes(triangulation, degree),
+      NodeSupports<dim>(dofs.n_dofs() / dim,
                         supports.displacements.empty() ? 0 : dofs.n_dofs());
     node_supports.clamp(faces(conditions.clamped), conditions);
     for (const PrescribedDisplacement<dim> &condition : supports.displacements)
       node_supports.prescribe(faces(condition.boundaries),
                               condition,
-                              conditions);
+                              conditions,
+                              contact_edges);
     contact_space = make_contact_space(faces(conditions.contact),
                                        degree,
                                        conditions,
@@ -143,11 +144,69 @@ namespace Debond
 
 
   template <int dim>
-  const dealii::Tensor<2, dim> *
-  ElasticUnknowns<dim>::directions(const unsigned int node_index) const
+  const EdgeCoefficients<dim> &
+  ElasticUnknowns<dim>::edges() const
   {
-    const DisplacementFrame<dim> *frame = node_supports.frame(node_index);
-    return frame == nullptr ? nullptr : &frame->to_cartesian;
+    return contact_edges;
+  }
+
+
+
+  template <int dim>
+  void
+  ElasticUnknowns<dim>::to_unknowns(
+    const std::vector<dealii::types::global_dof_index> &cell_dofs,
+    dealii::FullMatrix<double>                         &cell_matrix) const
+  {
+    const unsigned int n    = static_cast<unsigned int>(cell_dofs.size());
+    const auto         node = [&](const unsigned int i) {
+      return static_cast<unsigned int>(cell_dofs[i] / dim);
+    };
+    // Rows and columns alike.
+    const auto add = [&](const unsigned int to, const unsigned int from) {
+      for (unsigned int j = 0; j < n; ++j)
+        cell_matrix(to, j) += 0.25 * cell_matrix(from, j);
+      for (unsigned int j = 0; j < n; ++j)
+        cell_matrix(j, to) += 0.25 * cell_matrix(j, from);
+    };
+    for (unsigned int i = 0; i < n; ++i)
+      if (const auto *edge = contact_edges.find(node(i)))
+        {
+          for (unsigned int j = i % dim; j < n; j += dim)
+            if (node(j) == edge->ends[0] || node(j) == edge->ends[1])
+              add(j, i);
+          for (unsigned int j = 0; j < n; ++j)
+            cell_matrix(i, j) *= 0.5;
+          for (unsigned int j = 0; j < n; ++j)
+            cell_matrix(j, i) *= 0.5;
+        }
+    for (unsigned int i = 0; i < n; i += dim)
+      if (const DisplacementFrame<dim> *frame = node_supports.frame(node(i)))
+        for (const bool are_rows : {true, false})
+          for (unsigned int j = 0; j < n; ++j)
+            {
+              const auto entry = [&](const unsigned int d) -> double & {
+                return are_rows ? cell_matrix(i + d, j) : cell_matrix(j, i + d);
+              };
+              dealii::Tensor<1, dim> cartesian;
+              for (unsigned int d = 0; d < dim; ++d)
+                cartesian[d] = entry(d);
+              const dealii::Tensor<1, dim> in_frame =
+                cartesian * frame->to_cartesian;
+              for (unsigned int k = 0; k < dim; ++k)
+                entry(k) = in_frame[k];
+            }
+  }
+
+
+
+  template <int dim>
+  std::vector<dealii::Point<dim>>
+  ElasticUnknowns<dim>::positions() const
+  {
+    std::vector<dealii::Point<dim>> result(n_dofs());
+    dealii::DoFTools::map_dofs_to_support_points(mapping_p1, dofs, result);
+    return result;
   }
 
 
@@ -274,31 +333,7 @@ namespace Debond
             result[frame.dofs[d]] +=
               frame.to_cartesian[d][k] * u[frame.dofs[k]];
         }
-    return result;
-  }
-
-
-
-  template <int dim>
-  DofVector
-  ElasticUnknowns<dim>::nodal_values(
-    const DofVector &cartesian_displacement) const
-  {
-    DofVector result = cartesian_displacement;
-    if (degree() == 2)
-      for (const auto &cell : dofs.active_cell_iterators())
-        {
-          const CellNodes<dim> nodes(cell);
-          for (unsigned int n = dim + 1; n < nodes.size; ++n)
-            {
-              const auto &[a, b] = simplex_edges[n - (dim + 1)];
-              for (unsigned int d = 0; d < dim; ++d)
-                result(nodes.dofs[n][d]) =
-                  0.5 * cartesian_displacement(nodes.dofs[n][d]) +
-                  0.25 * (cartesian_displacement(nodes.dofs[a][d]) +
-                          cartesian_displacement(nodes.dofs[b][d]));
-            }
-        }
+    contact_edges.to_values(result);
     return result;
   }
 
@@ -327,7 +362,9 @@ namespace Debond
   ElasticUnknowns<dim>::from_cartesian(
     const DofVector &cartesian_displacement) const
   {
-    DofVector result = to_frames(cartesian_displacement);
+    DofVector result = cartesian_displacement;
+    contact_edges.to_coefficients(result);
+    result = to_frames(result);
     if (has_lifting())
       result -= lifting();
     constraints().set_zero(result);
@@ -340,14 +377,16 @@ namespace Debond
   DofVector
   ElasticUnknowns<dim>::in_frames(const DofVector &forces) const
   {
-    DofVector result = forces;
+    DofVector conjugates = forces;
+    contact_edges.forces_to_conjugates(conjugates);
+    DofVector result = conjugates;
     for (const DisplacementFrame<dim> &frame : frames())
       for (unsigned int k = 0; k < dim; ++k)
         {
           result[frame.dofs[k]] = 0.;
           for (unsigned int d = 0; d < dim; ++d)
             result[frame.dofs[k]] +=
-              frame.to_cartesian[d][k] * forces[frame.dofs[d]];
+              frame.to_cartesian[d][k] * conjugates[frame.dofs[d]];
         }
     return result;
   }
@@ -378,23 +417,19 @@ namespace Debond
   {
     constexpr unsigned int n_rotations = dim * (dim - 1) / 2;
     std::vector<DofVector> modes(dim + n_rotations, DofVector(dofs.n_dofs()));
-    for (const auto &cell : dofs.active_cell_iterators())
+    const std::vector<dealii::Point<dim>> places = positions();
+    for (unsigned int i = 0; i < n_dofs(); i += dim)
       {
-        const CellNodes<dim> nodes(cell);
-        for (unsigned int n = 0; n < nodes.size; ++n)
-          {
-            const dealii::Point<dim> position = node_position<dim>(cell, n);
-            for (unsigned int d = 0; d < dim; ++d)
-              modes[d][nodes.dofs[n][d]] = 1.;
-            // The rotation in the plane of the axes d and e.
-            unsigned int rotation = dim;
-            for (unsigned int d = 0; d < dim; ++d)
-              for (unsigned int e = d + 1; e < dim; ++e, ++rotation)
-                {
-                  modes[rotation][nodes.dofs[n][d]] = -position[e];
-                  modes[rotation][nodes.dofs[n][e]] = position[d];
-                }
-          }
+        for (unsigned int d = 0; d < dim; ++d)
+          modes[d][i + d] = 1.;
+        // The rotation in the plane of the axes d and e.
+        unsigned int rotation = dim;
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int e = d + 1; e < dim; ++e, ++rotation)
+            {
+              modes[rotation][i + d] = -places[i][e];
+              modes[rotation][i + e] = places[i][d];
+            }
       }
     for (DofVector &mode : modes)
       {

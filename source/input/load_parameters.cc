@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace Debond
 {
@@ -64,7 +66,59 @@ namespace Debond
         }
       return constants;
     }
+
+
+
+    /// Whether a force is the same everywhere, as one that has no place is.
+    template <int dim>
+    bool
+    is_constant(const std::string                   &expression,
+                const std::map<std::string, double> &constants)
+    {
+      const auto         force = make_function<dim>(expression, constants);
+      dealii::Point<dim> elsewhere;
+      for (unsigned int d = 0; d < dim; ++d)
+        elsewhere[d] = 0.71 + 0.13 * d;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const double at_origin = force->value(dealii::Point<dim>(), d);
+          if (!std::isfinite(at_origin) ||
+              at_origin != force->value(elsewhere, d))
+            return false;
+        }
+      return true;
+    }
   } // namespace
+
+
+
+  std::string
+  SurfaceLoad::entry() const
+  {
+    return "Loads/" + kind + ' ' + boundary;
+  }
+
+
+
+  unsigned int
+  SurfaceLoad::n_components(const unsigned int dimension) const
+  {
+    return kind == "Pressure" ? 1 : dimension;
+  }
+
+
+
+  std::vector<SurfaceLoad>
+  LoadParameters::on_boundaries() const
+  {
+    std::vector<SurfaceLoad> result;
+    for (const auto &[kind, loads] : {std::make_pair("Traction", &tractions),
+                                      std::make_pair("Pressure", &pressures),
+                                      std::make_pair("Force", &forces)})
+      for (const auto &[boundary, expression] : *loads)
+        result.push_back({kind, boundary, expression});
+    return result;
+  }
 
 
 
@@ -97,6 +151,18 @@ namespace Debond
          {"left", "right", "bottom", "top", "front", "back"})
       table.declare_member("Loads/Traction " + side,
                            traction + "side " + side + ", as the body force");
+    table.bind_family(
+      "Loads/Pressure",
+      loads.pressures,
+      Pattern("nothing, or an expression"),
+      "The pressure on the boundary of this name, along its normal: a positive one presses on the body, with the traction -p n",
+      "force per area");
+    table.bind_family(
+      "Loads/Force",
+      loads.forces,
+      expression,
+      "The total force on the boundary of this name, spread evenly over it: an expression without x, y and z for each component. In 2D per thickness",
+      "force, in 2D per length");
     table.bind(
       "Loads/Temperature change",
       loads.temperature_change,
@@ -177,19 +243,37 @@ namespace Debond
     else
       add_material_constants<3>(material, loads.constants);
 
-    const auto check = [&](const std::string &path,
-                           const std::string &expression) {
-      check_expression(
-        path, expression, dimension, dimension, loads.constants, table);
-    };
-    check("Loads/Body force", loads.body_force);
+    check_expression("Loads/Body force",
+                     loads.body_force,
+                     dimension,
+                     dimension,
+                     loads.constants,
+                     table);
     check_expression("Loads/Temperature change",
                      loads.temperature_change,
                      dimension,
                      1,
                      loads.constants,
                      table);
-    for (const auto &[boundary, traction] : loads.tractions)
-      check("Loads/Traction " + boundary, traction);
+    for (const SurfaceLoad &load : loads.on_boundaries())
+      check_expression(load.entry(),
+                       load.expression,
+                       dimension,
+                       load.n_components(dimension),
+                       loads.constants,
+                       table);
+    for (const auto &[boundary, force] : loads.forces)
+      try
+        {
+          if (!(dimension == 2 ? is_constant<2>(force, loads.constants) :
+                                 is_constant<3>(force, loads.constants)))
+            table.reject("Loads/Force " + boundary,
+                         "a total force is finite and the same everywhere; "
+                         "Loads/Traction takes expressions of the place");
+        }
+      catch (const std::invalid_argument &)
+        {
+          // check_expression() has said so.
+        }
   }
 } // namespace Debond

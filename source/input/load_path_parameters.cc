@@ -189,9 +189,12 @@ namespace Debond
                    {"Load path/Factors", "Load path/Displacement factors"});
     if (load_path.arc && factors.empty())
       table.reject("Load path/Arc", "the scene has no load path");
+    std::set<std::string> loaded;
+    for (const SurfaceLoad &load : loads.on_boundaries())
+      loaded.insert(load.boundary);
     for (const std::string &name : load_path.dead_loads)
       if (name == "body force" ? loads.body_force.empty() :
-                                 loads.tractions.count(name) == 0)
+                                 loaded.count(name) == 0)
         table.reject("Load path/Dead loads",
                      "the scene has no " +
                        (name == "body force" ? name : "traction " + name));

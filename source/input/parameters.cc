@@ -127,8 +127,8 @@ namespace Debond
         {
           check_names(clamped, p.clamped_boundaries, *p.body, table);
           check_names(contact, p.contact_boundaries, *p.body, table);
-          for (const auto &[name, unused] : p.loads.tractions)
-            check_names("Loads/Traction " + name, {name}, *p.body, table);
+          for (const SurfaceLoad &load : p.loads.on_boundaries())
+            check_names(load.entry(), {load.boundary}, *p.body, table);
         }
 
       for (const std::string &side : p.contact_boundaries)
@@ -230,8 +230,8 @@ namespace Debond
         used.insert(name);
       for (const auto &[name, unused] : p.supports.displacements)
         used.insert(name);
-      for (const auto &[name, unused] : p.loads.tractions)
-        used.insert(name);
+      for (const SurfaceLoad &load : p.loads.on_boundaries())
+        used.insert(load.boundary);
       for (const auto &[unused, text] : p.probes)
         if (const std::size_t space = text.find(' ');
             space != std::string::npos)

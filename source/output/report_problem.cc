@@ -67,6 +67,10 @@ namespace Debond
         record.line("body force", problem.loads.body_force);
       for (const auto &[side, traction] : problem.loads.tractions)
         record.line("traction " + side, traction);
+      for (const auto &[side, pressure] : problem.loads.pressures)
+        record.line("pressure " + side, pressure);
+      for (const auto &[side, force] : problem.loads.forces)
+        record.line("force " + side, force);
       if (!problem.loads.temperature_change.empty())
         record.line("temperature change", problem.loads.temperature_change);
       record.add("/contact_nodes", n_contact_nodes);

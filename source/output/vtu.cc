@@ -7,7 +7,7 @@
 #include <deal.II/numerics/data_out.h>
 
 #include <debond/base/atomic_file.h>
-#include <debond/mesh/bernstein.h>
+#include <debond/contact/bernstein.h>
 #include <debond/output/vtu.h>
 
 #include <cmath>
@@ -47,10 +47,11 @@ namespace Debond
         const auto &fields = problem.fields();
         std::vector<dealii::SymmetricTensor<2, 3>> stresses;
         bool                                       has_regions = false;
+        CellStresses<dim> means(fields, displacement, factors);
         for (const auto &cell : dofs.active_cell_iterators())
           {
-            stresses.push_back(
-              fields.solid_stress(cell, displacement, factors));
+            means.reinit(cell);
+            stresses.push_back(means.solid_stress(0));
             has_regions |= cell->material_id() != first.material_id();
           }
         const auto add = [&](const std::string &name, const auto &value) {
@@ -110,9 +111,9 @@ namespace Debond
                const ProblemPiece<dim>        *piece  = nullptr,
                const std::vector<std::string> &pieces = {})
     {
-      namespace Interpretation     = dealii::DataComponentInterpretation;
-      const DofVector displacement = problem.unknowns().nodal_values(
-        problem.unknowns().cartesian_displacement(u, factors));
+      namespace Interpretation = dealii::DataComponentInterpretation;
+      const DofVector displacement =
+        problem.unknowns().cartesian_displacement(u, factors);
 
       dealii::DataOut<dim> out;
       out.set_flags(vtk_flags());
@@ -357,8 +358,9 @@ namespace Debond
               Patch patch;
               patch.n_subdivisions = 1;
               patch.patch_index    = static_cast<unsigned int>(patches.size());
-              patch.data.reinit(values[k].size() + of_share.size(),
-                                dealii::GeometryInfo<dim - 1>::vertices_per_cell);
+              patch.data.reinit(
+                values[k].size() + of_share.size(),
+                dealii::GeometryInfo<dim - 1>::vertices_per_cell);
               unsigned int n         = 0;
               const auto   add_point = [&](const dealii::Point<dim> &position,
                                          const ContactValues      &at_point) {

@@ -67,6 +67,11 @@ namespace Debond
              "Solver/Linear solver",
              "several ranks have multigrid only");
       refuse(solver.prove, "Solver/Prove", "several ranks have no proof");
+      refuse(!parameters.loads.forces.empty(),
+             parameters.loads.forces.empty() ?
+               "" :
+               "Loads/Force " + parameters.loads.forces.begin()->first,
+             "several ranks spread no total force");
       refuse(!parameters.load_path.factors.empty(),
              "Load path/Factors",
              "several ranks follow no load path");

@@ -111,9 +111,7 @@ namespace Debond
       catch (const std::invalid_argument &error)
         {
           if (const auto *load = dynamic_cast<const LoadError *>(&error))
-            entry = load->boundary ?
-                      traction_entry(given.loads, boundaries, *load->boundary) :
-                      "Loads/Body force";
+            entry = load->entry;
           if (dynamic_cast<const TemperatureError *>(&error) != nullptr)
             entry = "Loads/Temperature change";
           if (const auto *piece = dynamic_cast<const PieceError *>(&error))
@@ -194,11 +192,10 @@ namespace Debond
                         displacement_factors(given.load_path));
     entry                                   = "Material/Poisson ratio";
     const std::set<std::string> &dead_loads = given.load_path.dead_loads;
-    body_loads = make_loads<dim>(given.loads, dead_loads, false, boundaries);
+    body_loads                              = make_loads<dim>(
+      given.loads, dead_loads, false, boundaries, triangulation);
     body_dead_loads =
-      make_loads<dim>(given.loads, dead_loads, true, boundaries);
-    if (body_piece != nullptr)
-      body_loads.n_faces = body_dead_loads.n_faces = body_piece->n_faces();
+      make_loads<dim>(given.loads, dead_loads, true, boundaries, triangulation);
     body_materials = make_materials(given.materials, names.regions);
     std::set<double> moduli;
     for (const auto &cell : triangulation.active_cell_iterators())
@@ -263,13 +260,16 @@ namespace Debond
         "Contact law/Tangential displacement = free does not hold corners");
     const std::set<dealii::types::boundary_id> &clamped =
       boundary_conditions.clamped;
-    for (const auto &[name, traction] : given.loads.tractions)
+    for (const SurfaceLoad &load : given.loads.on_boundaries())
       if (const std::set<dealii::types::boundary_id> &ids =
-            boundary_conditions.names.at(name);
-          traction.find_first_not_of("0;. ") != std::string::npos &&
+            boundary_conditions.names.at(load.boundary);
+          load.expression.find_first_not_of("0;. ") != std::string::npos &&
           std::includes(clamped.begin(), clamped.end(), ids.begin(), ids.end()))
-        body_notes.push_back("no effect of Loads/Traction " + name +
+        body_notes.push_back("no effect of " + load.entry() +
                              ": the boundary is clamped");
+    body_notes.insert(body_notes.end(),
+                      elastic_problem->load_notes().begin(),
+                      elastic_problem->load_notes().end());
     if (n_unknowns() == 0)
       body_notes.push_back("no vertex is free, so that there is nothing to "
                            "solve: J is that of the prescribed displacements");

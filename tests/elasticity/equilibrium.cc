@@ -209,9 +209,9 @@ namespace
         Box<2>({{{0.4, 0.04, 0.}}, {{nx, ny, 1}}}).make_mesh(mesh).boundaries;
       for (const std::string side : {"left", "right"})
         conditions.clamped.insert(names.at(side).begin(), names.at(side).end());
-      conditions.contact = names.at("bottom");
-      loads.tractions[*names.at("top").begin()] =
-        function("0; if(x<0.2, 0.69, -0.345)");
+      conditions.contact                        = names.at("bottom");
+      loads.tractions[*names.at("top").begin()] = {
+        {function("0; if(x<0.2, 0.69, -0.345)")}};
       if (distortion > 0.)
         dealii::GridTools::distort_random(distortion, mesh, true, 5);
     }
@@ -253,8 +253,8 @@ namespace
       {
         Loads<3> loads;
         if (is_pulled)
-          loads.tractions[*names.at("right").begin()] =
-            function<3>("0.2; 0; 0");
+          loads.tractions[*names.at("right").begin()] = {
+            {function<3>("0.2; 0; 0")}};
         else
           loads.body_force = function<3>("0; -0.03; 0");
         const EquilibriumProblem<3> stresses(
@@ -274,7 +274,8 @@ namespace
     conditions.contact     = names.at("bottom");
     material.poisson_ratio = 0.3;
     Loads<3> loads;
-    loads.tractions[*names.at("top").begin()] = function<3>("x; 0.2-z; 0.1");
+    loads.tractions[*names.at("top").begin()] = {
+      {function<3>("x; 0.2-z; 0.1")}};
     const EquilibriumProblem<3> stresses(mesh, conditions, {}, material, loads);
     ElasticProblem<3>           P1(mesh, conditions);
     P1.assemble(material, loads);
@@ -287,7 +288,7 @@ namespace
     check("a clamped solid: below the P1 displacement",
           minimum(*stresses.condense()) < minimum(condensed));
     check("and linear tractions are exact", stresses.loads_are_exact());
-    loads.tractions[*names.at("top").begin()] = function<3>("x*z; 0; 0");
+    loads.tractions[*names.at("top").begin()] = {{function<3>("x*z; 0; 0")}};
     check("others are not",
           !EquilibriumProblem<3>(mesh, conditions, {}, material, loads)
              .loads_are_exact());
@@ -338,7 +339,7 @@ namespace
 
     Bar rough(40, 4);
     for (auto &[id, traction] : rough.loads.tractions)
-      traction = function("0; if(x<0.203, 0.69, -0.345)");
+      traction = {{function("0; if(x<0.203, 0.69, -0.345)")}};
     check("a jump inside of a side is seen",
           !EquilibriumProblem<2>(
              rough.mesh, rough.conditions, {}, rough.material, rough.loads)

@@ -34,8 +34,8 @@ namespace
       , problem(mesh, conditions())
     {
       Loads<dim> loads;
-      loads.tractions[box_sides<dim>().at("top")] =
-        std::make_shared<dealii::Functions::ConstantFunction<dim>>(0.7, dim);
+      loads.tractions[box_sides<dim>().at("top")] = {
+        {std::make_shared<dealii::Functions::ConstantFunction<dim>>(0.7, dim)}};
       Material material;
       material.young_modulus = 69.;
       material.poisson_ratio = 0.33;

@@ -78,8 +78,8 @@ test_layers()
   ElasticProblem<dim> problem(mesh,
                               {{box_sides<dim>().at("bottom")}, {}, true});
   Loads<dim>          loads;
-  loads.tractions[box_sides<dim>().at("top")] = constant<dim>(
-    dim == 2 ? std::vector<double>{0., q} : std::vector<double>{0., q, 0.});
+  loads.tractions[box_sides<dim>().at("top")] = {{constant<dim>(
+    dim == 2 ? std::vector<double>{0., q} : std::vector<double>{0., q, 0.})}};
   problem.assemble(materials, loads);
   const Vector<double> u     = cartesian_solution(problem);
   const auto           exact = [&](const Point<dim> &p) {
@@ -90,12 +90,15 @@ test_layers()
   std::cout << dim << "D" << std::endl;
   check("a column of two layers", error(problem, u, exact), 1e-13);
 
-  double stress_error = 0.;
+  double            stress_error = 0.;
+  CellStresses<dim> stresses(problem.fields(), u);
   for (const auto &cell :
        problem.unknowns().dof_handler().active_cell_iterators())
-    stress_error =
-      std::max(stress_error,
-               std::abs(problem.fields().stress(cell, u, 1.)[1][1] / q - 1.));
+    {
+      stresses.reinit(cell);
+      stress_error =
+        std::max(stress_error, std::abs(stresses.stress(0)[1][1] / q - 1.));
+    }
   check("the stress is the same in both", stress_error, 1e-12);
 
   check("energy of the layers",
@@ -130,12 +133,13 @@ test_temperature(const Material &material, const double alpha)
       for (unsigned int d = 0; d < dim; ++d)
         expanded(cell->vertex_dof_index(v, d)) =
           alpha * change * cell->vertex(v)[d];
-  double stress = 0., out_of_plane = 0.;
+  double            stress = 0., out_of_plane = 0.;
+  CellStresses<dim> stresses(free.fields(), expanded);
   for (const auto &cell : free.unknowns().dof_handler().active_cell_iterators())
     {
-      stress =
-        std::max(stress, free.fields().stress(cell, expanded, 1.).norm());
-      out_of_plane = free.fields().solid_stress(cell, expanded, 1.)[2][2];
+      stresses.reinit(cell);
+      stress       = std::max(stress, stresses.stress(0).norm());
+      out_of_plane = stresses.solid_stress(0)[2][2];
     }
   const double scale =
     material.young_modulus * material.thermal_expansion * change;
@@ -163,12 +167,16 @@ test_temperature(const Material &material, const double alpha)
   check("a body that cannot expand does not move",
         u.linfty_norm() / (material.thermal_expansion * change),
         1e-13);
-  double difference = 0.;
+  double            difference = 0.;
+  CellStresses<dim> held_stresses(held.fields(), u);
   for (const auto &cell : held.unknowns().dof_handler().active_cell_iterators())
-    difference = std::max(difference,
-                          (held.fields().stress(cell, u, 1.) +
-                           pressure * unit_symmetric_tensor<dim>())
-                            .norm());
+    {
+      held_stresses.reinit(cell);
+      difference = std::max(difference,
+                            (held_stresses.stress(0) +
+                             pressure * unit_symmetric_tensor<dim>())
+                              .norm());
+    }
   check("its stress", difference / pressure, 1e-12);
   double         force    = 0.;
   Vector<double> residual = held.fields().residual(Vector<double>(u.size()));

@@ -51,7 +51,7 @@ namespace
       auto load = std::make_shared<dealii::FunctionParser<dim>>(dim);
       load->initialize(dim == 2 ? "x,y" : "x,y,z", expression, {});
       Loads<dim> loads;
-      loads.tractions[box_sides<dim>().at("top")] = load;
+      loads.tractions[box_sides<dim>().at("top")] = {{load}};
       Material material;
       material.young_modulus = 69.;
       material.poisson_ratio = 0.33;

@@ -82,17 +82,16 @@ namespace
                                                 node_order(*piece, mesh));
       Loads<dim>             loads;
       dealii::Tensor<1, dim> up, down;
-      up[1]   = 0.02;
-      down[1] = -0.003;
-      loads.tractions[*names.at(sides.pulled).begin()] =
-        std::make_shared<dealii::Functions::ConstantFunction<dim>>(
-          up.begin_raw(), dim);
-      loads.tractions[*names.at(sides.pressed).begin()] =
-        std::make_shared<dealii::Functions::ConstantFunction<dim>>(
-          down.begin_raw(), dim);
+      up[1]                                            = 0.02;
+      down[1]                                          = -0.003;
+      loads.tractions[*names.at(sides.pulled).begin()] = {
+        {std::make_shared<dealii::Functions::ConstantFunction<dim>>(
+          up.begin_raw(), dim)}};
+      loads.tractions[*names.at(sides.pressed).begin()] = {
+        {std::make_shared<dealii::Functions::ConstantFunction<dim>>(
+          down.begin_raw(), dim)}};
       if (piece != nullptr)
-        loads.n_faces = piece->n_faces();
-      Material material;
+        Material material;
       material.young_modulus = 69.;
       material.poisson_ratio = 0.33;
       problem->assemble(material, loads);

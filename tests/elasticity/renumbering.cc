@@ -95,7 +95,7 @@ namespace
     top->initialize(dealii::FunctionParser<dim>::default_variable_names(),
                     traction,
                     {});
-    loads.tractions[box_sides<dim>().at("top")] = top;
+    loads.tractions[box_sides<dim>().at("top")] = {{top}};
     problem.assemble(Material(), loads);
 
     const ContactQuadrature<dim> quadrature(

@@ -40,7 +40,7 @@ namespace
     const auto   load =
       std::make_shared<dealii::Functions::ConstantFunction<dim>>(q, dim);
     if (clamped == "left")
-      loads.tractions[box_sides<dim>().at("top")] = load;
+      loads.tractions[box_sides<dim>().at("top")] = {{load}};
     else
       loads.body_force = load;
     problem.assemble(material, loads);

@@ -274,8 +274,8 @@ namespace
       traction[1] = pressure * young_modulus / 1000.;
       traction[0] = traction[1] / 4.;
       Loads<dim> loads;
-      loads.tractions[names.at("top")] =
-        std::make_shared<dealii::Functions::ConstantFunction<dim>>(traction);
+      loads.tractions[names.at("top")] = {
+        {std::make_shared<dealii::Functions::ConstantFunction<dim>>(traction)}};
       problem->assemble(Material{young_modulus,
                                  0.3,
                                  Material::Hypothesis::plane_strain},

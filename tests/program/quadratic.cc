@@ -5,6 +5,8 @@
 // methods beside each other, units, bodies of many kinds beside linear
 // displacements, and meshes that are refined.
 
+#include <deal.II/fe/fe_values.h>
+
 #include <debond/check/verification.h>
 #include <debond/solve/adaptive_loop.h>
 #include <debond/solve/method_choice.h>
@@ -52,43 +54,39 @@ namespace
       const auto     &unknowns     = scene.problem().unknowns();
       const DofVector displacement = unknowns.cartesian_displacement(result.u);
       double          largest      = -1e300;
+      // Points of a fine grid, those on the edges too.
+      std::vector<dealii::Point<dim - 1>> points;
+      for (unsigned int i = 0; i <= 40; ++i)
+        for (unsigned int j = 0; j <= (dim == 3 ? 40 - i : 0); ++j)
+          {
+            points.emplace_back();
+            points.back()[0] = i / 40.;
+            if constexpr (dim == 3)
+              points.back()[1] = j / 40.;
+          }
+      dealii::FEFaceValues<dim>           fe_values(unknowns.mapping(),
+                                          unknowns.dof_handler().get_fe(),
+                                          dealii::Quadrature<dim - 1>(points),
+                                          dealii::update_values |
+                                            dealii::update_normal_vectors);
+      std::vector<dealii::Vector<double>> values(points.size(),
+                                                 dealii::Vector<double>(dim));
       for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
         for (const unsigned int f : cell->face_indices())
-          {
-            if (!cell->face(f)->at_boundary() ||
-                scene.conditions().contact.count(
-                  cell->face(f)->boundary_id()) == 0)
-              continue;
-            const CellNodes<dim>          nodes(cell);
-            const LinearSimplex<dim>      simplex(cell);
-            std::array<double, dim + 1>   barycentric = {};
-            std::array<unsigned int, dim> in_cell;
-            unsigned int                  opposite = dim * (dim + 1) / 2;
-            for (unsigned int v = 0; v < dim; ++v)
-              {
-                in_cell[v] =
-                  cell->reference_cell().face_to_cell_vertices(f, v, 1);
-                opposite -= in_cell[v];
-              }
-            const dealii::Tensor<1, dim> normal =
-              -simplex.gradients[opposite] / simplex.gradients[opposite].norm();
-            constexpr unsigned int n = 40;
-            for (unsigned int i = 0; i <= n; ++i)
-              for (unsigned int j = 0; j <= (dim == 3 ? n - i : 0); ++j)
+          if (cell->face(f)->at_boundary() &&
+              scene.conditions().contact.count(cell->face(f)->boundary_id()) >
+                0)
+            {
+              fe_values.reinit(cell, f);
+              fe_values.get_function_values(displacement, values);
+              for (unsigned int q = 0; q < points.size(); ++q)
                 {
-                  barycentric[in_cell[0]] = 1. - static_cast<double>(i + j) / n;
-                  barycentric[in_cell[1]] = static_cast<double>(i) / n;
-                  if constexpr (dim == 3)
-                    barycentric[in_cell[2]] = static_cast<double>(j) / n;
-                  const auto basis = bernstein(barycentric, 2);
-                  double     u_nu  = 0.;
-                  for (unsigned int k = 0; k < nodes.size; ++k)
-                    for (unsigned int d = 0; d < dim; ++d)
-                      u_nu +=
-                        basis[k] * normal[d] * displacement(nodes.dofs[k][d]);
+                  double u_nu = 0.;
+                  for (unsigned int d = 0; d < dim; ++d)
+                    u_nu += fe_values.normal_vector(q)[d] * values[q](d);
                   largest = std::max(largest, u_nu);
                 }
-          }
+            }
       return largest / displacement.linfty_norm();
     }
 

@@ -57,6 +57,21 @@ namespace Debond
 
 
 
+  /// A field with dim components; throws likewise.
+  template <int dim>
+  dealii::Tensor<1, dim>
+  field_vector(const dealii::Function<dim> &field,
+               const dealii::Point<dim>    &point)
+  {
+    AssertDimension(field.n_components, dim);
+    dealii::Tensor<1, dim> result;
+    for (unsigned int d = 0; d < dim; ++d)
+      result[d] = field_value(field, point, d);
+    return result;
+  }
+
+
+
   /// A field that must not be negative, but for @p rounding, which stands for
   /// zero. Throws as field_value() does.
   template <int dim>

@@ -6,8 +6,8 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/dofs/dof_handler.h>
 
+#include <debond/contact/bernstein.h>
 #include <debond/elasticity/boundary_conditions.h>
-#include <debond/mesh/bernstein.h>
 
 #include <array>
 #include <set>
@@ -19,32 +19,15 @@ namespace Debond
   template <int dim>
   struct BoundaryFace
   {
-    BoundaryFace(
-      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-      const unsigned int                                            face_no);
-
     static constexpr unsigned int maximum = n_coefficients(dim, 2);
-
-    /// The coefficient of a node of a function with these values at the
-    /// nodes' positions.
-    template <typename Values>
-    double
-    coefficient(const unsigned int n, const Values &value) const
-    {
-      if (n < dim)
-        return value(positions[n]);
-      const auto &[a, b] = simplex_edges[n - dim];
-      return 2. * value(positions[n]) -
-             0.5 * (value(positions[a]) + value(positions[b]));
-    }
 
     dealii::types::boundary_id              id;
     unsigned int                            n_nodes; ///< vertices come first
-    std::array<unsigned int, maximum>       indices;
+    std::array<unsigned int, maximum>       indices; ///< of nodes
     std::array<dealii::Point<dim>, maximum> positions;
     std::array<std::array<dealii::types::global_dof_index, dim>, maximum> dofs;
     double                 measure;
-    dealii::Tensor<1, dim> normal;
+    dealii::Tensor<1, dim> normal; ///< outward unit normal
   };
 
 

@@ -89,6 +89,13 @@ namespace Debond
         for (unsigned int k = 0; k < nodes.size; ++k)
           for (unsigned int d = 0; d < dim; ++d)
             own.coefficients[k][d] = cartesian(nodes.dofs[k][d]);
+        for (unsigned int k = dim + 1; k < nodes.size; ++k)
+          {
+            const auto &[a, b] = simplex_edges[k - (dim + 1)];
+            own.coefficients[k] =
+              2. * own.coefficients[k] -
+              0.5 * (own.coefficients[a] + own.coefficients[b]);
+          }
         result.push_back(own);
       }
     return result;

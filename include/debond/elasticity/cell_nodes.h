@@ -5,8 +5,8 @@
 #include <deal.II/base/point.h>
 #include <deal.II/dofs/dof_handler.h>
 
+#include <debond/contact/bernstein.h>
 #include <debond/elasticity/linear_simplex.h>
-#include <debond/mesh/bernstein.h>
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,6 @@
 
 #include <debond/base/run_watch.h>
 #include <debond/contact/adhesion_integral.h>
-#include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/condensation.h>
 
@@ -117,26 +116,18 @@ namespace Debond
     const DofVector    forces = problem.fields().applied_nodal_forces(factors);
     const Eigen::Index n      = static_cast<Eigen::Index>(motions.size());
     WorkOfLoads        work{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
-    std::vector<bool>  is_done(forces.size(), false);
-    for (const auto &cell :
-         problem.unknowns().dof_handler().active_cell_iterators())
+    const std::vector<dealii::Point<dim>> positions =
+      problem.unknowns().positions();
+    for (unsigned int i = 0; i < forces.size(); i += dim)
       {
-        const CellNodes<dim> nodes(cell);
-        for (unsigned int i = 0; i < nodes.size; ++i)
+        dealii::Tensor<1, dim> force;
+        for (unsigned int d = 0; d < dim; ++d)
+          force[d] = forces(i + d);
+        for (Eigen::Index k = 0; k < n; ++k)
           {
-            if (is_done[nodes.dofs[i][0]])
-              continue;
-            is_done[nodes.dofs[i][0]]         = true;
-            const dealii::Point<dim> position = node_position<dim>(cell, i);
-            dealii::Tensor<1, dim>   force;
-            for (unsigned int d = 0; d < dim; ++d)
-              force[d] = forces(nodes.dofs[i][d]);
-            for (Eigen::Index k = 0; k < n; ++k)
-              {
-                const dealii::Tensor<1, dim> way = motions[k](position);
-                work.along[k] += force * way;
-                work.largest[k] += force.norm() * way.norm();
-              }
+            const dealii::Tensor<1, dim> way = motions[k](positions[i]);
+            work.along[k] += force * way;
+            work.largest[k] += force.norm() * way.norm();
           }
       }
     return work;

@@ -48,6 +48,10 @@ namespace Debond
     const ElasticUnknowns<dim> &
     unknowns() const;
 
+    /// What load_vector() says of loads that jump, at the last assemble().
+    const std::vector<std::string> &
+    load_notes() const;
+
     /// Of the last assemble().
     const ElasticFields<dim> &
     fields() const;
@@ -100,10 +104,11 @@ namespace Debond
     dealii::SparseMatrix<double> system_matrix;
     // An empty one would need MPI already.
     mutable std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix>
-              distributed_matrix;
-    DofVector system_load;
-    DofVector load_without_factor;
-    DofVector load_of_displacements;
+                             distributed_matrix;
+    DofVector                system_load;
+    DofVector                load_without_factor;
+    std::vector<std::string> notes;
+    DofVector                load_of_displacements;
   };
 } // namespace Debond
 

@@ -181,7 +181,7 @@ namespace Debond
     find_parallelograms(std::vector<char> &is_taken);
 
     void
-    find_body_forces(const dealii::Function<dim> &force);
+    find_body_forces(const Loads<dim> &given);
 
     /// Whether the change of temperature is the same everywhere on each cell.
     bool

@@ -2,7 +2,6 @@
 #ifndef debond_elasticity_extended_operator_h
 #define debond_elasticity_extended_operator_h
 
-#include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/elastic_problem.h>
 
 #include <Eigen/Core>
@@ -44,14 +43,14 @@ namespace Debond
     /// sigma[d][e].
     using Stress = std::array<std::array<long double, dim>, dim>;
 
-    using Dofs     = std::array<unsigned int, dim>;
     using Gradient = std::array<long double, dim>;
 
     struct Cell
     {
-      std::array<Dofs, dim + 1> dofs;
+      /// By node, those of one after the other.
+      std::vector<dealii::types::global_dof_index> dofs;
 
-      /// Of the barycentric coordinates of all vertices but the first.
+      /// Rows are the gradients of all barycentric coordinates but the first.
       std::array<Gradient, dim> gradients;
 
       long double volume;
@@ -62,32 +61,27 @@ namespace Debond
     ExtendedVector
     cartesian(const ExtendedVector &u) const;
 
-    /// The gradients at a point of BernsteinSimplex of all basis functions but
-    /// the first.
+    void
+    make_reference_gradients();
+
+    /// The gradients at a point of the rule of all basis functions but the
+    /// first.
     void
     make_gradients(const Cell            &cell,
                    const unsigned int     point,
                    std::vector<Gradient> &gradients) const;
 
     Stress
-    stress(const unsigned int           cell,
+    stress(const Cell                  &cell,
            const std::vector<Gradient> &gradients,
            const ExtendedVector        &cartesian_u) const;
 
-    const Dofs &
-    dofs(const unsigned int cell, const unsigned int node) const
-    {
-      return node <= dim ? cells[cell].dofs[node] :
-                           edge_dofs[cell][node - (dim + 1)];
-    }
-
     const ElasticProblem<dim> &problem;
-    const unsigned int         degree;
-    const unsigned int         n_points; ///< of BernsteinSimplex
     std::vector<Cell>          cells;
 
-    /// Of each cell, of degree 2.
-    std::vector<std::array<Dofs, n_simplex_edges(dim + 1)>> edge_dofs;
+    /// Of the basis functions but the first at each point of strain_rule(), by
+    /// all barycentric coordinates but the first.
+    std::vector<std::vector<Gradient>> reference_gradients;
   };
 } // namespace Debond
 

@@ -2,10 +2,11 @@
 #ifndef debond_elasticity_fields_h
 #define debond_elasticity_fields_h
 
+#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
+#include <deal.II/fe/fe_values.h>
 
-#include <debond/elasticity/cell_nodes.h>
 #include <debond/elasticity/material.h>
 #include <debond/elasticity/unknowns.h>
 #include <debond/linear_algebra/dof_vector.h>
@@ -22,15 +23,14 @@ namespace Debond
   class ElasticFields
   {
   public:
-    using Cell        = typename dealii::DoFHandler<dim>::active_cell_iterator;
-    using Barycentric = typename BernsteinSimplex<dim>::Barycentric;
+    using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
     /// Keeps a reference to the unknowns. @p applied_forces: the Cartesian
     /// nodal forces of all loads, at every degree of freedom; @p dead_forces:
     /// those of them that do not grow with the load factor, empty for none.
-    /// @p thermal_stresses: of each point of BernsteinSimplex in each active
-    /// cell the pressure that the change of temperature makes if the body
-    /// cannot expand; none if empty.
+    /// @p thermal_stresses: of each point of strain_rule() in each active cell
+    /// the pressure that the change of temperature makes if the body cannot
+    /// expand; none if empty.
     ElasticFields(const ElasticUnknowns<dim> &unknowns,
                   const ByRegion<Material>   &materials,
                   const DofVector            &applied_forces,
@@ -69,36 +69,17 @@ namespace Debond
     DofVector
     residual_rounding(const DofVector &u, const LoadFactors factors = 1.) const;
 
-    /// Stress and displacement gradient are constant on each cell, linear of
-    /// degree 2: the stress at a point of the active cell, by default its mean,
-    /// in the units of E, with @p factors times the change of temperature.
-    dealii::SymmetricTensor<2, dim>
-    stress(const Cell        &cell,
-           const DofVector   &cartesian_displacement,
-           const LoadFactors  factors,
-           const Barycentric &point = middle()) const;
+    const dealii::SymmetricTensor<4, dim> &
+    elasticity_tensor(const Cell &cell) const;
 
-    /// The same of a cell whose gradients and nodes are known.
-    dealii::SymmetricTensor<2, dim>
-    stress(const Cell                  &cell,
-           const BernsteinSimplex<dim> &simplex,
-           const CellNodes<dim>        &nodes,
-           const DofVector             &cartesian_displacement,
-           const LoadFactors            factors,
-           const Barycentric           &point) const;
+    /// The pressure at a point of the reference cell that the whole change of
+    /// temperature makes; linear in each cell of degree 2, else constant.
+    double
+    thermal_stress(const Cell               &cell,
+                   const dealii::Point<dim> &unit_point) const;
 
-    /// The same with what the hypothesis of plane bodies implies.
-    dealii::SymmetricTensor<2, 3>
-    solid_stress(const Cell        &cell,
-                 const DofVector   &cartesian_displacement,
-                 const LoadFactors  factors,
-                 const Barycentric &point = middle()) const;
-
-    /// The displacement gradient in the cell, its row d that of component d.
-    dealii::Tensor<2, dim>
-    displacement_gradient(const Cell        &cell,
-                          const DofVector   &cartesian_displacement,
-                          const Barycentric &point = middle()) const;
+    const ElasticUnknowns<dim> &
+    unknowns() const;
 
     /**
      * 1/2 <A u, u> - <f, u>, f with @p factors, from the strains of the cells,
@@ -133,10 +114,6 @@ namespace Debond
     double
     load_work(const DofVector &u, const LoadFactors factors = 1.) const;
 
-    /// The barycentric coordinates of a cell's middle.
-    static Barycentric
-    middle();
-
   private:
     /// u with its lifting, in the unknowns.
     DofVector
@@ -148,23 +125,88 @@ namespace Debond
           const LoadFactors factors,
           const DofVector  &load) const;
 
-    /// The displacement gradient, of a cell that is known.
-    static dealii::Tensor<2, dim>
-    gradient(const BernsteinSimplex<dim> &simplex,
-             const CellNodes<dim>        &nodes,
-             const DofVector             &cartesian_displacement,
-             const Barycentric           &point);
-
-    /// At a point of the cell, for the whole load.
-    double
-    thermal_stress(const Cell &cell, const Barycentric &point) const;
-
-    const ElasticUnknowns<dim>               &unknowns;
+    const ElasticUnknowns<dim>               &elastic_unknowns;
     ByRegion<Material>                        materials;
     ByRegion<dealii::SymmetricTensor<4, dim>> stiffness;
     DofVector                                 live_forces;
     DofVector                                 dead_forces; ///< or empty
     std::vector<double>                       thermal_stresses;
+
+    /// The vertex that each point of strain_rule() is closest to.
+    std::vector<unsigned int> vertices_of_points;
+  };
+
+
+
+  /// The rule that integrates products of two strains: one point of degree 1,
+  /// dim + 1 points of degree 2.
+  template <int dim>
+  dealii::QGaussSimplex<dim>
+  strain_rule(const unsigned int degree)
+  {
+    return dealii::QGaussSimplex<dim>(degree);
+  }
+
+
+
+  /// Gradients and stresses of a displacement in one cell after the other, at
+  /// the points of a rule. Where that is one point they are means, of degree 1
+  /// too where thermal stresses are.
+  template <int dim>
+  class CellStresses
+  {
+  public:
+    using Cell = typename ElasticFields<dim>::Cell;
+
+    /// Keeps references. @p cartesian_displacement: with @p factors times the
+    /// load; @p flags: what values() are wanted beside gradients.
+    CellStresses(
+      const ElasticFields<dim>      &fields,
+      const DofVector               &cartesian_displacement,
+      const LoadFactors              factors = 1.,
+      const dealii::Quadrature<dim> &rule    = dealii::QGaussSimplex<dim>(1),
+      const dealii::UpdateFlags      flags   = dealii::update_default);
+
+    void
+    reinit(const Cell &cell);
+
+    /// Values, gradients, points and weights in the cell.
+    const dealii::FEValues<dim> &
+    values() const;
+
+    /// Of the cell.
+    const std::vector<dealii::types::global_dof_index> &
+    dofs() const;
+
+    dealii::Tensor<1, dim>
+    displacement(const unsigned int q) const;
+
+    /// Its row d is that of component d.
+    dealii::Tensor<2, dim>
+    gradient(const unsigned int q) const;
+
+    /// C eps: without thermal stresses.
+    dealii::SymmetricTensor<2, dim>
+    elastic_stress(const unsigned int q) const;
+
+    /// In the units of E.
+    dealii::SymmetricTensor<2, dim>
+    stress(const unsigned int q) const;
+
+    /// The same with what the hypothesis of plane bodies implies.
+    dealii::SymmetricTensor<2, 3>
+    solid_stress(const unsigned int q) const;
+
+  private:
+    const ElasticFields<dim> &fields;
+    const DofVector          &cartesian_displacement;
+    const double              load_factor;
+    dealii::FEValues<dim>     fe_values;
+
+    // Of the cell.
+    Cell                                         cell;
+    std::vector<dealii::types::global_dof_index> cell_dofs;
+    std::vector<double>                          cell_values;
   };
 } // namespace Debond
 

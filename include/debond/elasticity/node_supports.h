@@ -8,6 +8,7 @@
 
 #include <debond/elasticity/boundary_conditions.h>
 #include <debond/elasticity/boundary_face.h>
+#include <debond/elasticity/edge_coefficients.h>
 #include <debond/elasticity/rigid_motions.h>
 #include <debond/linear_algebra/dof_vector.h>
 
@@ -95,12 +96,14 @@ namespace Debond
           const BoundaryConditions             &conditions);
 
     /// Notes what @p condition prescribes at the nodes of these faces, those of
-    /// its boundaries. Throws SupportError if that contradicts another support
-    /// or the foundation, is not finite, or if a roller is not flat.
+    /// its boundaries; at @p edges the coefficients of its values. Throws
+    /// SupportError if that contradicts another support or the foundation, is
+    /// not finite, or if a roller is not flat.
     void
     prescribe(const std::vector<BoundaryFace<dim>> &faces,
               const PrescribedDisplacement<dim>    &condition,
-              const BoundaryConditions             &conditions);
+              const BoundaryConditions             &conditions,
+              const EdgeCoefficients<dim>          &edges);
 
     /// What prescribe() has noted of a node; nothing of most.
     PrescribedNode<dim>

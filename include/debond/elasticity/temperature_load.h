@@ -35,7 +35,7 @@ namespace Debond
                         const Loads<dim>                 &loads);
 
   /// The same as the displacements see it: of degree 1 the means, of degree 2
-  /// for each cell the values at the points of BernsteinSimplex.
+  /// for each cell the values at the points of strain_rule().
   template <int dim>
   std::vector<double>
   thermal_stresses(const dealii::DoFHandler<dim> &dof_handler,

@@ -8,9 +8,11 @@
 #include <deal.II/fe/mapping_fe.h>
 #include <deal.II/grid/tria.h>
 #include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/full_matrix.h>
 
 #include <debond/contact/contact_space.h>
 #include <debond/elasticity/boundary_conditions.h>
+#include <debond/elasticity/edge_coefficients.h>
 #include <debond/elasticity/load_factors.h>
 #include <debond/elasticity/node_supports.h>
 #include <debond/elasticity/rigid_motions.h>
@@ -23,11 +25,13 @@ namespace Debond
 {
   /**
    * The unknowns of elasticity on simplices of degree 1 or 2: the Cartesian
-   * components of the displacement at each vertex, and of degree 2 those of the
-   * coefficient of each edge (see bernstein()), except at the contact nodes,
-   * where they are the components in the node's own frame: first u_nu (one
-   * degree of freedom, so that the unilateral constraint is a simple bound),
-   * then the tangential ones. A vertex where contact sides of different normals
+   * components of the displacement at each node (vertices, and of degree 2
+   * middles of edges) except at the contact nodes. There they are the
+   * components in the node's own frame: first u_nu (one degree of freedom, so
+   * that the unilateral constraint is a simple bound), then the tangential
+   * ones; at edges of contact faces they are those of a coefficient, see
+   * EdgeCoefficients. The degrees of freedom of node n are dim n, dim n + 1,
+   * ... A vertex where contact sides of different normals
    * meet has one u_nu for each of them; if tangential displacements are fixed
    * there, it is clamped. Faces that make one side of a polygon that stands for
    * a smooth one (see VertexNormals) have one normal, their mean. What is said
@@ -82,10 +86,19 @@ namespace Debond
     const std::vector<DisplacementFrame<dim>> &
     frames() const;
 
-    /// The columns are the Cartesian directions of the unknowns of a node
-    /// (CellNodes::indices); null where the unknowns are Cartesian.
-    const dealii::Tensor<2, dim> *
-    directions(const unsigned int node_index) const;
+    /// The edges whose unknowns are coefficients.
+    const EdgeCoefficients<dim> &
+    edges() const;
+
+    /// Takes the matrix of a cell, for the Cartesian values at its nodes, to
+    /// the unknowns.
+    void
+    to_unknowns(const std::vector<dealii::types::global_dof_index> &cell_dofs,
+                dealii::FullMatrix<double> &cell_matrix) const;
+
+    /// Where the degrees of freedom are.
+    std::vector<dealii::Point<dim>>
+    positions() const;
 
     unsigned int
     n_dofs() const;
@@ -129,28 +142,24 @@ namespace Debond
     DofVector
     lifting(const LoadFactors factors = 1.) const;
 
-    /// The Cartesian components of the displacement u = w + G, at every vertex
-    /// and of the coefficient of every edge.
+    /// The Cartesian components of the displacement u = w + G at every node:
+    /// the vector of the finite element field.
     DofVector
     cartesian_displacement(const DofVector  &w,
                            const LoadFactors factors = 1.) const;
-
-    /// The same displacement's values at vertices and in the middles of edges,
-    /// from such coefficients: deal.II's degrees of freedom.
-    DofVector
-    nodal_values(const DofVector &cartesian_displacement) const;
 
     /// The vector w of a displacement that is given by its Cartesian
     /// components; constrained degrees of freedom are zero.
     DofVector
     from_cartesian(const DofVector &cartesian_displacement) const;
 
-    /// Cartesian forces as forces in the unknowns' frames.
+    /// Cartesian nodal forces as forces on the unknowns.
     DofVector
     in_frames(const DofVector &forces) const;
 
-    /// The forces in the unknowns' frames (such as a residual) as Cartesian
-    /// components.
+    /// The forces on the unknowns (such as a residual) as Cartesian components;
+    /// at edges of contact faces they remain those on coefficients, of which
+    /// sums are the same.
     DofVector
     cartesian_forces(const DofVector &forces) const;
 
@@ -168,6 +177,7 @@ namespace Debond
     const dealii::FESystem<dim>  fe;
     dealii::DoFHandler<dim>      dofs;
 
+    EdgeCoefficients<dim> contact_edges;
     NodeSupports<dim>     node_supports;
     ContactSpace<dim>     contact_space;
     FreeRigidMotions<dim> free_motions;

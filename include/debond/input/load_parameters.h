@@ -13,13 +13,37 @@
 
 namespace Debond
 {
+  /// What acts on a boundary, as an expression.
+  struct SurfaceLoad
+  {
+    std::string kind; ///< "Traction", "Pressure" or "Force"
+    std::string boundary;
+    std::string expression;
+
+    /// Of the scene.
+    std::string
+    entry() const;
+
+    /// Of the expression: a pressure has one.
+    unsigned int
+    n_components(const unsigned int dimension) const;
+  };
+
+
+
   /// f_0 and f_2 as expressions in x, y[, z], components separated by ';'.
   struct LoadParameters
   {
     std::string body_force; ///< empty for none
 
-    /// By the name of the boundary; those without traction are left out.
+    /// By the name of the boundary; those without one are left out.
     std::map<std::string, std::string> tractions;
+    std::map<std::string, std::string> pressures;
+    std::map<std::string, std::string> forces;
+
+    /// All of these.
+    std::vector<SurfaceLoad>
+    on_boundaries() const;
 
     std::string temperature_change; ///< one expression, empty for none
 

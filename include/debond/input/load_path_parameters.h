@@ -31,7 +31,7 @@ namespace Debond
     /// Those of prescribed displacements, as many; empty if they are the same.
     std::vector<double> displacement_factors;
 
-    /// What has no factor: names of boundaries with a traction, "body force".
+    /// What has no factor: names of boundaries with loads, "body force".
     std::set<std::string> dead_loads;
 
     /// Whether bonds return to branches that they have left.

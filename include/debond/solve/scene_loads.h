@@ -2,6 +2,8 @@
 #ifndef debond_solve_scene_loads_h
 #define debond_solve_scene_loads_h
 
+#include <deal.II/grid/tria.h>
+
 #include <debond/elasticity/load_vector.h>
 #include <debond/input/load_parameters.h>
 #include <debond/mesh/body.h>
@@ -11,20 +13,16 @@
 
 namespace Debond
 {
-  /// The entry of a traction on faces of this id.
-  std::string
-  traction_entry(const LoadParameters            &loads,
-                 const BoundaryNames             &boundaries,
-                 const dealii::types::boundary_id id);
-
   /// The dead loads or the others of a scene, on the faces of a mesh whose
-  /// boundaries have these names.
+  /// boundaries have these names. A total force is spread over those that the
+  /// mesh has.
   template <int dim>
   Loads<dim>
-  make_loads(const LoadParameters        &parameters,
-             const std::set<std::string> &dead_loads,
-             const bool                   wants_dead,
-             const BoundaryNames         &boundaries);
+  make_loads(const LoadParameters             &parameters,
+             const std::set<std::string>      &dead_loads,
+             const bool                        wants_dead,
+             const BoundaryNames              &boundaries,
+             const dealii::Triangulation<dim> &mesh);
 } // namespace Debond
 
 #endif
