@@ -316,35 +316,44 @@ namespace Debond
 
 
 
+    /// Entries that cannot be together with what @p others say, and why.
+    using Refusals = std::vector<std::tuple<bool, std::string, std::string>>;
+
+    void
+    refuse(const Refusals                 &refusals,
+           const std::vector<std::string> &others,
+           ParameterTable                 &table)
+    {
+      for (const auto &[is_set, entry, reason] : refusals)
+        if (is_set)
+          table.reject(entry, reason, others);
+    }
+
+
+
     /// What cannot be together with quadratic displacements.
     void
     check_degree(const Parameters &p, ParameterTable &table)
     {
       if (p.degree == 1)
         return;
-      using Rule        = ContactQuadratureParameters::Rule;
-      const auto refuse = [&](const bool         is_set,
-                              const std::string &entry,
-                              const std::string &reason) {
-        if (is_set)
-          table.reject(entry, reason, {"Mesh/Degree"});
-      };
-      refuse(p.quadrature.rule != Rule::gauss,
-             "Contact law/Quadrature",
-             "Mesh/Degree = 2 needs gauss N, N from 1 to " +
-               std::string(p.dimension == 2 ? "99" : "7"));
-      refuse(!p.supports.gap.empty() || !p.supports.gaps.empty(),
-             "Contact law/Initial gap",
-             "there is none with Mesh/Degree = 2");
-      refuse(p.solver.linear_solver == "multigrid",
-             "Solver/Linear solver",
-             "Mesh/Degree = 2 needs a direct one");
-      refuse(p.solver.prove,
-             "Solver/Prove",
-             "needs a bond for each node, which Mesh/Degree = 2 has not");
-      refuse(p.load_path.arc,
-             "Load path/Arc",
-             "needs a bond for each node, which Mesh/Degree = 2 has not");
+      using Rule = ContactQuadratureParameters::Rule;
+      const std::string no_bonds =
+        "needs a bond for each node, which Mesh/Degree = 2 has not";
+      refuse({{p.quadrature.rule != Rule::gauss,
+               "Contact law/Quadrature",
+               "Mesh/Degree = 2 needs gauss N, N from 1 to " +
+                 std::string(p.dimension == 2 ? "99" : "7")},
+              {!p.supports.gap.empty() || !p.supports.gaps.empty(),
+               "Contact law/Initial gap",
+               "there is none with Mesh/Degree = 2"},
+              {p.solver.linear_solver == "multigrid",
+               "Solver/Linear solver",
+               "Mesh/Degree = 2 needs a direct one"},
+              {p.solver.prove, "Solver/Prove", no_bonds},
+              {p.load_path.arc, "Load path/Arc", no_bonds}},
+             {"Mesh/Degree"},
+             table);
     }
 
 
@@ -365,32 +374,28 @@ namespace Debond
                      "belongs to the given loads, not to those of a load path",
                      {"Load path/Factors"});
     }
+
+
+
     /// What cannot be together with meshes that are refined.
     void
     check_accuracy(const Parameters &p, ParameterTable &table)
     {
-      if (!p.accuracy.is_adaptive())
-        return;
-      const auto refuse = [&](const bool         is_set,
-                              const std::string &entry,
-                              const std::string &reason) {
-        if (is_set)
-          table.reject(entry,
-                       reason,
-                       {"Accuracy/Target",
-                        "Accuracy/Maximum unknowns",
-                        "Certificate/Target"});
-      };
-      refuse(p.solver.method == "euclidean bundle",
-             "Solver/Method",
-             "meshes that are refined need automatic, energy bundle or "
-             "majorise minimise");
-      refuse(p.solver.linear_solver == "multigrid",
-             "Solver/Linear solver",
-             "meshes that are refined need a direct one");
-      refuse(p.solver.prove,
-             "Solver/Prove",
-             "nothing is proved on meshes that are refined");
+      if (p.accuracy.is_adaptive())
+        refuse({{p.solver.method == "euclidean bundle",
+                 "Solver/Method",
+                 "meshes that are refined need automatic, energy bundle or "
+                 "majorise minimise"},
+                {p.solver.linear_solver == "multigrid",
+                 "Solver/Linear solver",
+                 "meshes that are refined need a direct one"},
+                {p.solver.prove,
+                 "Solver/Prove",
+                 "nothing is proved on meshes that are refined"}},
+               {"Accuracy/Target",
+                "Accuracy/Maximum unknowns",
+                "Certificate/Target"},
+               table);
     }
   } // namespace
 
