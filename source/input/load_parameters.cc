@@ -196,7 +196,7 @@ namespace Debond
           path,
           "the body has no boundary " + name +
             (known.empty() ?
-               "; physical groups of curves, in 3D of surfaces, are the boundaries, and its file has none: make them in Gmsh, such as Physical Curve(\"left\") = {4}" :
+               "; physical groups of curves, in 3D of surfaces, are the boundaries, and its file has none: make them in Gmsh, such as Physical Curve(\"left\") = {4}, or name faces here by Parts, such as boundary: y < 1e-6" :
                ", but " + join(known, ", ")) +
             (body.inner_groups.count(name) > 0 ?
                "; the group of this name lies inside the body" :

@@ -109,12 +109,18 @@ namespace Debond
       "Mesh/File",
       body.file,
       Pattern("a text"),
-      "A Gmsh file in ASCII, version 2.2 or 4.1; its path is relative to the scene's folder. Physical groups of curves (in 3D: of surfaces) are the boundaries and those of surfaces (volumes) the regions that the scene can name, by their names or else their numbers");
+      "A mesh, or a geometry to be meshed, in any format that Gmsh reads: .msh, .unv, .bdf, .geo, .step, .brep and others; its path is relative to the scene's folder. Physical groups of curves (in 3D: of surfaces) are the boundaries and those of surfaces (volumes) the regions that the scene can name, by their names or else their numbers; Parts name boundaries without a group");
     table.bind("Mesh/Scale",
                body.scale,
                quantity(),
                "What the lengths of the file are multiplied by",
                "length per the file's");
+    table.bind(
+      "Mesh/Size",
+      body.size,
+      quantity(true),
+      "How long the edges of cells are if the File is a geometry. 0 leaves it to the file, or to Gmsh",
+      "length");
     table.bind(
       "Mesh/Generator",
       body.generator,
@@ -135,7 +141,7 @@ namespace Debond
 
 
 
-  std::shared_ptr<const BodyDescription>
+  std::shared_ptr<BodyDescription>
   make_body(const std::string &scene,
             const unsigned int dimension,
             BodyParameters     body,
@@ -181,7 +187,7 @@ namespace Debond
                              "Mesh/Source");
     };
     belong_to(Source::box, "box", "Mesh/Rotation");
-    belong_to(Source::file, "file", "Mesh/File, Mesh/Scale");
+    belong_to(Source::file, "file", "Mesh/File, Mesh/Scale, Mesh/Size");
     belong_to(Source::generator, "generator", "Mesh/Generator, Mesh/Arguments");
     if (body.source == Source::box)
       table.without_effect("Mesh/Refinements",

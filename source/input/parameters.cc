@@ -409,12 +409,12 @@ namespace Debond
     p.scene = scene;
     complete_loads(p.dimension, p.materials.everywhere, p.loads, *this);
     complete_load_path(p.loads, p.supports, p.load_path, *this);
-    p.body = with_parts(make_body(scene, p.dimension, body, *this),
-                        parts,
-                        p.dimension,
-                        p.loads.constants,
-                        *this);
-    p.law  = laws.make_law(*this);
+    if (const auto made = make_body(scene, p.dimension, body, *this))
+      {
+        add_parts(*made, parts, p.dimension, p.loads.constants, *this);
+        p.body = made;
+      }
+    p.law = laws.make_law(*this);
     complete_output(scene, p.output, *this);
 
     // What depends on more than one entry.

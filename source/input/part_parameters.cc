@@ -5,7 +5,7 @@
 #include <debond/contact/field_value.h>
 #include <debond/input/expression.h>
 #include <debond/input/part_parameters.h>
-#include <debond/mesh/parted_body.h>
+#include <debond/mesh/body.h>
 
 #include <stdexcept>
 
@@ -56,10 +56,16 @@ namespace Debond
       if (is_of_boundary)
         {
           part.boundary = dealii::Utilities::trim(text.substr(0, colon));
-          if (boundaries.count(part.boundary) == 0)
+          if (boundaries.count(part.boundary) == 0 &&
+              part.boundary != whole_boundary)
             throw std::invalid_argument(
-              "the body has no boundary " + part.boundary + ", but " +
-              join({boundaries.begin(), boundaries.end()}, ", "));
+              words("the body has no boundary ",
+                    part.boundary,
+                    ", but ",
+                    join({boundaries.begin(), boundaries.end()}, ", "),
+                    boundaries.empty() ? "" : " and ",
+                    whole_boundary,
+                    ", which is all of it"));
         }
       part.contains =
         make_condition<dim>(name,
@@ -71,18 +77,18 @@ namespace Debond
 
 
     template <int dim>
-    std::shared_ptr<const BodyDescription>
-    make_parts(const std::shared_ptr<const BodyDescription> &description,
-               const std::map<std::string, std::string>     &texts,
-               const std::map<std::string, double>          &constants,
-               ParameterTable                               &table)
+    void
+    make_parts(BodyDescription                          &description,
+               const std::map<std::string, std::string> &texts,
+               const std::map<std::string, double>      &constants,
+               ParameterTable                           &table)
     {
-      const auto body = std::dynamic_pointer_cast<const Body<dim>>(description);
+      auto                  &body = dynamic_cast<Body<dim> &>(description);
       std::vector<Part<dim>> parts;
       for (const auto &[name, text] : texts)
         try
           {
-            parts.push_back(make_part(*body, name, text, constants));
+            parts.push_back(make_part(body, name, text, constants));
           }
         catch (const std::invalid_argument &error)
           {
@@ -90,7 +96,7 @@ namespace Debond
                          error.what(),
                          {"Dimension", "Loads/Constants"});
           }
-      return std::make_shared<const PartedBody<dim>>(body, parts);
+      body.parts = parts;
     }
   } // namespace
 
@@ -104,21 +110,21 @@ namespace Debond
       parts,
       Pattern("an expression, or the name of a boundary, a colon and an "
               "expression"),
-      "A piece of a boundary or of the body, by a condition on x, y (and z in 3D) such as 'bottom: x > 0.05' or 'y > 0.02'; its name can stand wherever that of a boundary (a region) can. Faces (cells) belong to it if their centre does");
+      "A piece of a boundary or of the body, by a condition on x, y (and z in 3D) such as 'bottom: x > 0.05' or 'y > 0.02'; its name can stand wherever that of a boundary (a region) can. 'boundary: y < 1e-6' is of all outer faces, which need no name of their own. Faces (cells) belong to it if their centre does");
   }
 
 
 
-  std::shared_ptr<const BodyDescription>
-  with_parts(const std::shared_ptr<const BodyDescription> &body,
-             const std::map<std::string, std::string>     &parts,
-             const unsigned int                            dimension,
-             const std::map<std::string, double>          &constants,
-             ParameterTable                               &table)
+  void
+  add_parts(BodyDescription                          &body,
+            const std::map<std::string, std::string> &parts,
+            const unsigned int                        dimension,
+            const std::map<std::string, double>      &constants,
+            ParameterTable                           &table)
   {
-    if (parts.empty() || !body)
-      return body;
-    return dimension == 2 ? make_parts<2>(body, parts, constants, table) :
-                            make_parts<3>(body, parts, constants, table);
+    if (dimension == 2)
+      make_parts<2>(body, parts, constants, table);
+    else
+      make_parts<3>(body, parts, constants, table);
   }
 } // namespace Debond

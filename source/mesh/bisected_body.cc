@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/mesh/bisected_body.h>
-#include <debond/mesh/simplex_interpolation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -49,7 +48,7 @@ namespace Debond
 
   template <int dim>
   std::set<std::string>
-  BisectedBody<dim>::boundaries() const
+  BisectedBody<dim>::whole_boundaries() const
   {
     return whole->boundaries();
   }
@@ -58,7 +57,7 @@ namespace Debond
 
   template <int dim>
   std::set<std::string>
-  BisectedBody<dim>::regions() const
+  BisectedBody<dim>::whole_regions() const
   {
     return whole->regions();
   }
@@ -85,7 +84,7 @@ namespace Debond
 
   template <int dim>
   double
-  BisectedBody<dim>::n_vertices_on(const std::string &boundary) const
+  BisectedBody<dim>::n_whole_vertices_on(const std::string &boundary) const
   {
     return bisection.n_vertices_on(names.boundaries.at(boundary));
   }
@@ -108,7 +107,7 @@ namespace Debond
 
   template <int dim>
   PieceNames
-  BisectedBody<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
+  BisectedBody<dim>::make_whole_mesh(dealii::Triangulation<dim> &mesh) const
   {
     bisection.make_mesh(mesh);
     return names;
@@ -117,22 +116,10 @@ namespace Debond
 
 
   template <int dim>
-  std::unique_ptr<const Body<dim>>
-  BisectedBody<dim>::coarser() const
+  std::unique_ptr<Body<dim>>
+  BisectedBody<dim>::coarser_whole() const
   {
     return nullptr;
-  }
-
-
-
-  template <int dim>
-  std::vector<dealii::Tensor<1, dim>>
-  BisectedBody<dim>::interpolate(
-    const dealii::Triangulation<dim>          &mesh,
-    const std::vector<dealii::Tensor<1, dim>> &values,
-    const std::vector<dealii::Point<dim>>     &points) const
-  {
-    return interpolate_on_simplices(mesh, values, points);
   }
 
 

@@ -20,7 +20,7 @@ namespace Debond
 
   template <int dim>
   std::set<std::string>
-  BodyPiece<dim>::boundaries() const
+  BodyPiece<dim>::whole_boundaries() const
   {
     return whole->boundaries();
   }
@@ -29,7 +29,7 @@ namespace Debond
 
   template <int dim>
   std::set<std::string>
-  BodyPiece<dim>::regions() const
+  BodyPiece<dim>::whole_regions() const
   {
     return whole->regions();
   }
@@ -56,7 +56,7 @@ namespace Debond
 
   template <int dim>
   double
-  BodyPiece<dim>::n_vertices_on(const std::string &boundary) const
+  BodyPiece<dim>::n_whole_vertices_on(const std::string &boundary) const
   {
     return whole->n_vertices_on(boundary);
   }
@@ -82,8 +82,8 @@ namespace Debond
 
 
   template <int dim>
-  std::unique_ptr<const Body<dim>>
-  BodyPiece<dim>::coarser() const
+  std::unique_ptr<Body<dim>>
+  BodyPiece<dim>::coarser_whole() const
   {
     return whole->coarser();
   }

@@ -148,7 +148,7 @@ namespace Debond
 
   template <int dim>
   std::set<std::string>
-  Box<dim>::boundaries() const
+  Box<dim>::whole_boundaries() const
   {
     std::set<std::string> names;
     for (const auto &[side, unused] : box_sides<dim>())
@@ -160,7 +160,7 @@ namespace Debond
 
   template <int dim>
   std::set<std::string>
-  Box<dim>::regions() const
+  Box<dim>::whole_regions() const
   {
     return {};
   }
@@ -193,7 +193,7 @@ namespace Debond
 
   template <int dim>
   double
-  Box<dim>::n_vertices_on(const std::string &side) const
+  Box<dim>::n_whole_vertices_on(const std::string &side) const
   {
     const unsigned int boundary = box_sides<dim>().at(side);
     double             corners = 1., faces = 1.;
@@ -226,7 +226,7 @@ namespace Debond
 
   template <int dim>
   PieceNames
-  Box<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
+  Box<dim>::make_whole_mesh(dealii::Triangulation<dim> &mesh) const
   {
     make_box(parameters, mesh);
     return {box_boundaries<dim>(), {}};
@@ -235,8 +235,8 @@ namespace Debond
 
 
   template <int dim>
-  std::unique_ptr<const Body<dim>>
-  Box<dim>::coarser() const
+  std::unique_ptr<Body<dim>>
+  Box<dim>::coarser_whole() const
   {
     // Of the directions in which cells can be joined.
     double shortest = std::numeric_limits<double>::infinity();
@@ -251,7 +251,7 @@ namespace Debond
         coarse.cells[d] = (coarse.cells[d] + 1) / 2;
     if (coarse.cells == parameters.cells)
       return nullptr;
-    return std::make_unique<const Box>(coarse);
+    return std::make_unique<Box>(coarse);
   }
 
 

@@ -146,7 +146,7 @@ namespace Debond
 
   template <int dim>
   PieceNames
-  BoxPiece<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
+  BoxPiece<dim>::make_whole_mesh(dealii::Triangulation<dim> &mesh) const
   {
     const BoxParameters &whole             = box->parameters;
     const auto [begin, end]                = range();

@@ -79,6 +79,21 @@ namespace Debond
 
 
   template <int dim>
+  void
+  SourceMesh<dim>::refine(const unsigned int n_refinements)
+  {
+    if (n_refinements == 0)
+      return;
+    if (mesh.all_reference_cells_are_simplex())
+      throw std::invalid_argument(
+        "A mesh of triangles or tetrahedra is not refined, but one of "
+        "quadrilaterals or hexahedra.");
+    mesh.refine_global(n_refinements);
+  }
+
+
+
+  template <int dim>
   std::unique_ptr<SourceMesh<dim>>
   generate_mesh(const std::string &name,
                 const std::string &arguments,
@@ -112,6 +127,8 @@ namespace Debond
 
 
 
+  template struct SourceMesh<2>;
+  template struct SourceMesh<3>;
   template decltype(generate_mesh<2>) generate_mesh<2>;
   template decltype(generate_mesh<3>) generate_mesh<3>;
 } // namespace Debond

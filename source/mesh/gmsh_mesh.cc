@@ -1,107 +1,228 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/grid/grid_tools.h>
-#include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/vector.h>
 #include <deal.II/numerics/rtree.h>
 
 #include <debond/base/atomic_file.h>
 #include <debond/base/text.h>
-#include <debond/mesh/msh_file.h>
 #include <debond/mesh/source_mesh.h>
 
+#include <dlfcn.h>
+#include <gmsh.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <clocale>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
 
 namespace Debond
 {
   namespace
   {
-    /// The faces of a cell in Gmsh's numbering, each with its corners in the
-    /// order in which they are passed with the cell on the left (in 3D: that
-    /// is counterclockwise from outside).
-    const std::vector<std::vector<unsigned int>> &
-    faces_of(const MshFile::ElementType type)
+    /// What Gmsh does not tell of a file.
+    struct FileText
     {
-      using Faces                      = std::vector<std::vector<unsigned int>>;
-      static const Faces triangle      = {{0, 1}, {1, 2}, {2, 0}};
-      static const Faces quadrilateral = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
-      static const Faces tetrahedron   = {{0, 2, 1},
-                                          {0, 1, 3},
-                                          {1, 2, 3},
-                                          {0, 3, 2}};
-      static const Faces hexahedron    = {{0, 3, 2, 1},
-                                          {4, 5, 6, 7},
-                                          {0, 1, 5, 4},
-                                          {1, 2, 6, 5},
-                                          {2, 3, 7, 6},
-                                          {3, 0, 4, 7}};
-      switch (type)
+      double version  = 0.; ///< of .msh
+      bool   has_mark = false;
+
+      /// Of version 2.0, where some files have the groups' dimensions and some
+      /// have not, by dimension (or -1) and group.
+      std::map<std::pair<int, int>, std::string> names;
+    };
+
+    /// Throws if a section in ASCII has more lines than it says, which Gmsh
+    /// would leave out.
+    FileText
+    look_into(const std::string &file_name)
+    {
+      std::ifstream input = open_plain_file(file_name);
+      if (!input)
+        throw std::invalid_argument(file_name + " cannot be read");
+      FileText    text;
+      double     &version = text.version;
+      std::size_t n_lines = 0, n_said = 0, most_lines = 0;
+      std::string line, section;
+      std::getline(input, line);
+      text.has_mark = line.rfind("\xef\xbb\xbf", 0) == 0;
+      if (text.has_mark)
+        line.erase(0, 3);
+      if (line.empty() || line[0] != '$')
+        return text;
+      do
         {
-          case MshFile::triangle:
-            return triangle;
-          case MshFile::quadrilateral:
-            return quadrilateral;
-          case MshFile::tetrahedron:
-            return tetrahedron;
-          default:
-            return hexahedron;
+          line.erase(line.find_last_not_of(" \t\r") + 1);
+          if (const std::size_t quote = line.find('"');
+              section == "$PhysicalNames" && version == 2. &&
+              quote != std::string::npos)
+            {
+              std::istringstream numbers(line.substr(0, quote));
+              int                dimension = -1, group = 0, second = 0;
+              numbers >> group;
+              if (numbers >> second)
+                dimension = std::exchange(group, second);
+              text.names[{dimension, group}] =
+                line.substr(quote + 1, line.rfind('"') - quote - 1);
+            }
+          if (line.empty() || (line[0] != '$' && n_lines++ > 0))
+            continue;
+          std::istringstream numbers(line);
+          int                is_binary = 0;
+          std::size_t        n_blocks  = 0;
+          if (line[0] == '$')
+            {
+              if (most_lines > 0 && n_lines > most_lines)
+                throw std::invalid_argument(words(file_name,
+                                                  ": ",
+                                                  section,
+                                                  " says that it has ",
+                                                  n_said,
+                                                  ", but ",
+                                                  n_lines - most_lines,
+                                                  " more lines follow"));
+              section = line;
+              n_lines = most_lines = 0;
+              if (section == "$NOD" || section == "$NO")
+                version = 1.;
+            }
+          else if (section == "$MeshFormat")
+            numbers >> version >> is_binary;
+          else if (section == "$Nodes" || section == "$Elements" ||
+                   section == "$NOD" || section == "$ELM")
+            {
+              if (version >= 4.)
+                numbers >> n_blocks;
+              numbers >> n_said;
+              const bool has_tags = version >= 4. && section == "$Nodes";
+              most_lines          = 1 + n_blocks + (has_tags ? 2 : 1) * n_said;
+            }
+          if (is_binary != 0)
+            break;
         }
+      while (std::getline(input, line));
+      return text;
     }
 
 
 
-    int
-    dimension_of(const MshFile::ElementType type)
+    /// Gmsh while a file is read. It reads no settings of the user, and what it
+    /// changes of the process, which is the locale, variables of the
+    /// environment and OpenMP's threads, is put back.
+    class GmshSession
     {
-      switch (type)
-        {
-          case MshFile::point:
-            return 0;
-          case MshFile::line:
-            return 1;
-          case MshFile::triangle:
-          case MshFile::quadrilateral:
-            return 2;
-          default:
-            return 3;
-        }
+    public:
+      GmshSession()
+      {
+        for (const char *name : {"PATH", "PYTHONPATH"})
+          if (const char *value = std::getenv(name))
+            environment[name] = value;
+        if (void *const get = dlsym(RTLD_DEFAULT, "omp_get_max_threads"))
+          n_threads = reinterpret_cast<int (*)()>(get)();
+        gmsh::initialize(0, nullptr, false);
+        gmsh::option::setNumber("General.Terminal", 0);
+        gmsh::logger::start();
+      }
+
+      GmshSession(const GmshSession &) = delete;
+
+      ~GmshSession()
+      {
+        gmsh::logger::stop();
+        gmsh::finalize();
+        if (void *const set = dlsym(RTLD_DEFAULT, "omp_set_num_threads"))
+          reinterpret_cast<void (*)(int)>(set)(n_threads);
+        for (const char *name : {"PATH", "PYTHONPATH"})
+          unsetenv(name);
+        for (const auto &[name, value] : environment)
+          setenv(name.c_str(), value.c_str(), 1);
+        std::setlocale(LC_ALL, locale.c_str());
+        std::error_code ignored;
+        std::filesystem::remove(copy, ignored);
+      }
+
+      /// Opens a file, or a copy of it if Gmsh does not know how it begins.
+      void
+      open(const std::string &file_name, const bool has_mark)
+      {
+        if (has_mark)
+          {
+            copy = std::filesystem::temp_directory_path() /
+                   ("debond-" + std::to_string(getpid()) +
+                    std::filesystem::path(file_name).extension().string());
+            std::ifstream input(file_name, std::ios::binary);
+            input.seekg(3);
+            std::ofstream(copy, std::ios::binary) << input.rdbuf();
+          }
+        gmsh::open(has_mark ? copy.string() : file_name);
+      }
+
+      /// What Gmsh has had to say.
+      static std::string
+      errors()
+      {
+        std::vector<std::string> log, found;
+        gmsh::logger::get(log);
+        for (const std::string &line : log)
+          if (line.rfind("Error: ", 0) == 0 || line.rfind("Warning: ", 0) == 0)
+            found.push_back(printable(line.substr(line.find(' ') + 1)));
+        return join(found, "; ");
+      }
+
+    private:
+      const std::string locale = std::setlocale(LC_ALL, nullptr);
+      std::map<std::string, std::string> environment;
+      int                                n_threads = 1;
+      std::filesystem::path              copy;
+    };
+
+
+
+    /// Of a face, sorted; invalid ones fill up.
+    using FaceKey = std::array<unsigned int, 4>;
+
+    FaceKey
+    key(std::vector<unsigned int> corners)
+    {
+      FaceKey result;
+      result.fill(dealii::numbers::invalid_unsigned_int);
+      std::sort(corners.begin(), corners.end());
+      std::copy_n(corners.begin(),
+                  std::min<std::size_t>(corners.size(), 4),
+                  result.begin());
+      return result;
     }
 
 
 
-    /// Makes a triangulation of the elements of a file, and checks that it is
-    /// a body.
+    /**
+     * Makes a triangulation of what Gmsh reads, and checks that it is a body.
+     * All checks are those of simplices: other cells are looked at as they will
+     * be crossed, cut into simplices from their centre and the centres of their
+     * quadrilaterals. If there are cells of several kinds, or prisms or
+     * pyramids, these simplices are the mesh.
+     */
     template <int dim>
     class GmshMesh
     {
     public:
-      GmshMesh(const std::string &file_name, const double scale)
+      GmshMesh(const std::string &file_name,
+               const double       scale,
+               const double       size)
         : file_name(file_name)
       {
-        std::ifstream input = open_plain_file(file_name);
-        if (!input)
-          throw std::invalid_argument(file_name + " cannot be read");
-        // Some editors begin a file with the mark of UTF-8.
-        std::string begin(7, ' ');
-        input.read(begin.data(), 7);
-        const std::size_t mark =
-          begin.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3 : 0;
-        if (begin.compare(mark, 4, "$NOD") == 0)
-          throw std::invalid_argument(
-            file_name + " is of Gmsh's version 1; this makes one that is read: "
-                        "gmsh old.msh -0 -o new.msh -format msh41");
-        input.clear();
-        input.seekg(static_cast<std::streamoff>(mark));
-        file = read_msh(input, file_name);
-        take_vertices(scale);
-        take_cells();
-        orient_cells();
+        read(scale, size);
+        check_cells();
+        cut_cells();
         take_faces();
+        take_groups();
         check_hanging_nodes();
         check_connection();
       }
@@ -109,64 +230,74 @@ namespace Debond
       std::unique_ptr<SourceMesh<dim>>
       make()
       {
-        auto source = std::make_unique<SourceMesh<dim>>();
-
-        GroupIds                           boundary_ids, region_ids;
+        auto     source = std::make_unique<SourceMesh<dim>>();
+        GroupIds boundary_ids, region_ids;
         std::vector<dealii::CellData<dim>> cell_data;
-        for (const Cell &cell : cells)
-          {
-            cell_data.emplace_back(
-              static_cast<unsigned int>(cell.vertices.size()));
-            cell_data.back().vertices    = in_lines(cell.vertices);
-            cell_data.back().material_id = region_ids.id(cell.groups);
-          }
-        dealii::SubCellData subcells;
-        for (const Face &face : boundary)
-          {
-            const auto groups = face_groups.find(face.sorted);
-            if (groups == face_groups.end())
-              continue;
-            const auto add = [&](auto &faces) {
-              faces.emplace_back(
-                static_cast<unsigned int>(face.corners.size()));
-              faces.back().vertices    = in_lines(face.corners);
-              faces.back().boundary_id = boundary_ids.id(groups->second);
-            };
-            if constexpr (dim == 2)
-              add(subcells.boundary_lines);
-            else
-              add(subcells.boundary_quads);
-          }
+        dealii::SubCellData                subcells;
+        const auto add = [](auto &list, const auto &corners) -> auto &
+        {
+          list.emplace_back(static_cast<unsigned int>(corners.size()));
+          std::copy(corners.begin(),
+                    corners.end(),
+                    list.back().vertices.begin());
+          return list.back();
+        };
+        if (is_hypercube)
+          for (const Element &cell : cells)
+            add(cell_data, cell.corners).material_id =
+              region_ids.id(cell.groups);
+        else
+          for (const Simplex &simplex : simplices)
+            add(cell_data, simplex.corners).material_id =
+              region_ids.id(cells[simplex.cell].groups);
+        for (const auto &[unused, face] : outer_faces)
+          if constexpr (dim == 2)
+            add(subcells.boundary_lines, face.corners).boundary_id =
+              boundary_ids.id(face.groups);
+          else
+            add(subcells.boundary_quads, face.corners).boundary_id =
+              boundary_ids.id(face.groups);
+
         take_names(boundary_ids, dim - 1, source->names.boundaries);
         take_names(region_ids, dim, source->names.regions);
         for (const int group : inner_groups)
-          source->inner_groups.insert(name_of(dim - 1, group));
-        if (!twins.empty())
+          source->inner_groups.insert(names.at({dim - 1, group}));
+        if (n_twins > 0)
           source->names.notes.push_back(
-            words("there are ", twins.size(), " nodes", on_one_place));
+            words("there are ", n_twins, " nodes", on_one_place));
+        if (is_of_higher_order)
+          source->names.notes.push_back(
+            "the file's elements are of higher order, of which the corners are "
+            "taken: sides are straight between them");
 
+        dealii::GridTools::delete_unused_vertices(vertices,
+                                                  cell_data,
+                                                  subcells);
         if (is_hypercube)
-          dealii::GridTools::consistently_order_cells(cell_data);
+          {
+            dealii::GridTools::invert_all_negative_measure_cells(vertices,
+                                                                 cell_data);
+            dealii::GridTools::consistently_order_cells(cell_data);
+          }
         source->mesh.create_triangulation(vertices, cell_data, subcells);
         return source;
       }
 
     private:
-      using Vertices = std::vector<unsigned int>;
-      using Groups   = std::set<int>;
+      using Corners = std::vector<unsigned int>;
+      using Groups  = std::set<int>;
 
-      struct Cell
+      struct Element
       {
-        const MshFile::Element *element;
-        Vertices                vertices; ///< in Gmsh's order
-        Groups                  groups;
+        std::size_t tag;     ///< Gmsh's
+        Corners     corners; ///< in deal.II's order
+        Groups      groups;
       };
 
-      struct Face
+      struct Simplex
       {
-        Vertices    sorted;
-        Vertices    corners; ///< passed with the cell on the left
-        std::size_t cell;
+        std::array<unsigned int, dim + 1> corners;
+        std::size_t                       cell; ///< that it is a part of
       };
 
       /// One id for each combination of groups, 0 for none.
@@ -175,274 +306,393 @@ namespace Debond
         unsigned int
         id(const Groups &groups)
         {
-          return groups.empty() ?
-                   0 :
-                   ids
-                     .emplace(groups, static_cast<unsigned int>(ids.size() + 1))
-                     .first->second;
+          const auto next = static_cast<unsigned int>(ids.size() + 1);
+          return groups.empty() ? 0 : ids.emplace(groups, next).first->second;
         }
 
         std::map<Groups, unsigned int> ids;
       };
 
       [[noreturn]] void
-      fail(const unsigned int line, const std::string &message) const
+      fail(const std::string &message) const
       {
-        throw std::invalid_argument(file_name + ":" + std::to_string(line) +
-                                    ": " + message);
+        throw std::invalid_argument(file_name + ": " + message);
       }
 
-      /// From Gmsh's order, around a quadrilateral or a hexahedron's bottom and
-      /// top, to deal.II's, line by line.
-      Vertices
-      in_lines(Vertices corners) const
+      std::string
+      element(const std::size_t cell) const
       {
-        for (std::size_t v = 0; is_hypercube && v + 3 < corners.size(); v += 4)
-          std::swap(corners[v + 2], corners[v + 3]);
-        return corners;
+        return "element " + std::to_string(cells[cell].tag);
       }
 
-      /// Takes the vertices that cells use, in the file's order.
+      /// Has Gmsh read the file, or mesh its geometry.
       void
-      take_vertices(const double scale)
+      read(const double scale, const double size)
       {
-        Vertices index(file.vertices.size(),
-                       dealii::numbers::invalid_unsigned_int);
-        for (const MshFile::Element &element : file.elements)
-          if (dimension_of(element.type) > dim)
-            fail(element.line, "a cell in 3D, but the scene has Dimension = 2");
-          else if (dimension_of(element.type) == dim)
-            for (const unsigned int v : element.vertices)
-              index[v] = 0;
-        double least_z = std::numeric_limits<double>::max();
-        double most_z = -least_z, size = 0.;
-        for (std::size_t v = 0; v < index.size(); ++v)
-          if (index[v] == 0)
-            {
-              index[v] = static_cast<unsigned int>(vertices.size());
-              dealii::Point<dim> vertex;
-              for (unsigned int d = 0; d < dim; ++d)
-                {
-                  vertex[d] = scale * file.vertices[v][d];
-                  size      = std::max(size, std::abs(file.vertices[v][d]));
-                }
-              vertices.push_back(vertex);
-              least_z = std::min(least_z, file.vertices[v][2]);
-              most_z  = std::max(most_z, file.vertices[v][2]);
-            }
-        if (dim == 2 && most_z - least_z > tolerance * size)
-          throw std::invalid_argument(
-            file_name +
-            ": z must be the same at all nodes of a plane mesh, "
-            "but it goes from " +
-            std::to_string(least_z) + " to " + std::to_string(most_z) +
-            "; a body in 3D has cells in 3D, and needs Dimension = 3");
-        for (MshFile::Element &element : file.elements)
-          for (unsigned int &v : element.vertices)
-            v = index[v];
-      }
-
-      void
-      take_cells()
-      {
-        std::map<Vertices, std::size_t> known;
-        for (MshFile::Element &element : file.elements)
+        text = look_into(file_name);
+        GmshSession gmsh;
+        // Gmsh knows groups of entities. In old files elements of one entity
+        // may be in several groups: Gmsh is to take the groups for entities.
+        is_old = text.version > 0. && text.version < 4.;
+        gmsh::option::setNumber("Mesh.SwitchElementTags", is_old ? 1 : 0);
+        bool is_geometry = false;
+        try
           {
-            if (dimension_of(element.type) != dim)
-              continue;
-            if (element.type == MshFile::prism ||
-                element.type == MshFile::pyramid)
-              fail(element.line,
-                   "prisms and pyramids are not read, but tetrahedra or "
-                   "hexahedra");
-            if (!cells.empty() && element.type != cells.front().element->type)
-              fail(
-                element.line,
-                "the mesh has cells of two kinds, this one and that of line " +
-                  std::to_string(cells.front().element->line));
-
-            Vertices sorted = element.vertices;
-            std::sort(sorted.begin(), sorted.end());
-            if (std::adjacent_find(sorted.begin(), sorted.end()) !=
-                sorted.end())
-              fail(element.line, "a cell that has one node twice");
-            const auto [first, is_new] = known.emplace(sorted, cells.size());
-            if (is_new)
-              cells.push_back({&element, element.vertices, element.groups});
-            else // Version 2.2 repeats a cell for each of its groups.
-              cells[first->second].groups.insert(element.groups.begin(),
-                                                 element.groups.end());
+            gmsh.open(file_name, text.has_mark);
+            if (gmsh::model::getDimension() > dim)
+              fail("a body in 3D, but the scene has Dimension = 2");
+            std::vector<std::size_t> tags;
+            std::vector<double>      coordinates, unused;
+            gmsh::model::mesh::getNodes(tags, coordinates, unused);
+            is_geometry = tags.empty();
+            if (!is_geometry && size > 0.)
+              fail("the file has a mesh, where Size is for geometries");
+            if (is_geometry && size > 0.)
+              for (const char *option :
+                   {"Mesh.MeshSizeMin", "Mesh.MeshSizeMax"})
+                gmsh::option::setNumber(option, size / scale);
+            if (is_geometry)
+              gmsh::model::mesh::generate(dim);
+            else
+              gmsh::model::mesh::unpartition();
+            take_nodes(scale);
+            cells = elements(dim);
+            faces = elements(dim - 1);
           }
+        catch (const std::invalid_argument &)
+          {
+            throw;
+          }
+        catch (...)
+          {
+            const std::string errors = GmshSession::errors();
+            fail("Gmsh does not read this" +
+                 (errors.empty() ? errors : ": " + errors));
+          }
+        // As Gmsh does when it saves a mesh.
+        const auto is_grouped = [](const Element &cell) {
+          return !cell.groups.empty();
+        };
+        if (is_geometry && std::any_of(cells.begin(), cells.end(), is_grouped))
+          cells.erase(std::stable_partition(cells.begin(),
+                                            cells.end(),
+                                            is_grouped),
+                      cells.end());
+      }
+
+      void
+      take_nodes(const double scale)
+      {
+        std::vector<std::size_t> tags;
+        std::vector<double>      coordinates, unused;
+        gmsh::model::mesh::getNodes(tags, coordinates, unused);
+        for (std::size_t i = 0; i < tags.size(); ++i)
+          {
+            dealii::Point<dim> vertex;
+            for (unsigned int d = 0; d < dim; ++d)
+              vertex[d] = scale * coordinates[3 * i + d];
+            vertex_of[tags[i]] = static_cast<unsigned int>(vertices.size());
+            vertices.push_back(vertex);
+            heights.push_back(scale * coordinates[3 * i + 2]);
+          }
+      }
+
+      std::vector<Element>
+      elements(const int dimension)
+      {
+        std::vector<Element> result;
+        gmsh::vectorpair     entities;
+        gmsh::model::getEntities(entities, dimension);
+        for (const auto &[unused, entity] : entities)
+          {
+            std::vector<int> tags_of_groups = {entity};
+            if (!is_old)
+              gmsh::model::getPhysicalGroupsForEntity(dimension,
+                                                      entity,
+                                                      tags_of_groups);
+            Groups groups;
+            for (const int tag : tags_of_groups)
+              if (tag != 0)
+                groups.insert(std::abs(tag));
+            for (const int group : groups)
+              {
+                std::string name;
+                gmsh::model::getPhysicalName(dimension, group, name);
+                for (const int d : {-1, dimension})
+                  if (const auto own = text.names.find({d, group});
+                      own != text.names.end())
+                    name = own->second;
+                names[{dimension, group}] =
+                  name.empty() ? std::to_string(group) : printable(name);
+              }
+
+            std::vector<int>                      types;
+            std::vector<std::vector<std::size_t>> tags, nodes;
+            gmsh::model::mesh::getElements(
+              types, tags, nodes, dimension, entity);
+            for (std::size_t k = 0; k < types.size(); ++k)
+              {
+                std::string         kind;
+                int                 unused_dim, order, n_nodes, n_corners;
+                std::vector<double> unused_points;
+                gmsh::model::mesh::getElementProperties(types[k],
+                                                        kind,
+                                                        unused_dim,
+                                                        order,
+                                                        n_nodes,
+                                                        unused_points,
+                                                        n_corners);
+                is_of_higher_order =
+                  is_of_higher_order || (dimension == dim && order > 1);
+                for (std::size_t e = 0; e < tags[k].size(); ++e)
+                  {
+                    Corners corners;
+                    for (int v = 0; v < n_corners; ++v)
+                      corners.push_back(
+                        vertex_of.at(nodes[k][e * n_nodes + v]));
+                    // Around a quadrilateral, or line by line.
+                    const bool has_quadrilateral =
+                      corners.size() == 8 || corners.size() == 5 ||
+                      (corners.size() == 4 && dimension == 2);
+                    for (std::size_t v = 0;
+                         has_quadrilateral && v + 3 < corners.size();
+                         v += 4)
+                      std::swap(corners[v + 2], corners[v + 3]);
+                    result.push_back({tags[k][e], corners, groups});
+                  }
+              }
+          }
+        return result;
+      }
+
+      /// Checks the cells one by one, and joins those that stand in the file
+      /// once for each of their groups.
+      void
+      check_cells()
+      {
         if (cells.empty())
-          throw std::invalid_argument(
-            file_name + ": the mesh has no " +
+          fail(
+            std::string("the mesh has no ") +
             (dim == 2 ?
                "triangles or quadrilaterals" :
                "tetrahedra or hexahedra; is it one for Dimension = 2?") +
-            (file.elements.empty() ?
+            (faces.empty() ?
                "" :
                std::string(
                  "; where there are physical groups, Gmsh saves nothing else: add a Physical ") +
                  (dim == 2 ? "Surface" : "Volume")));
-        cell_faces   = &faces_of(cells.front().element->type);
-        is_hypercube = cells.front().element->type == MshFile::quadrilateral ||
-                       cells.front().element->type == MshFile::hexahedron;
+        std::map<Corners, std::size_t> known;
+        std::vector<Element>           different;
+        std::set<std::size_t>          kinds;
+        double least_z = heights[cells[0].corners[0]], most_z = least_z,
+               size = 0.;
+        for (const Element &cell : cells)
+          {
+            Corners corners = cell.corners;
+            std::sort(corners.begin(), corners.end());
+            if (std::adjacent_find(corners.begin(), corners.end()) !=
+                corners.end())
+              fail(words("element ", cell.tag, " has one node twice"));
+            const auto [first, is_new] =
+              known.emplace(corners, different.size());
+            if (is_new)
+              different.push_back(cell);
+            else
+              different[first->second].groups.insert(cell.groups.begin(),
+                                                     cell.groups.end());
+            kinds.insert(corners.size());
+            for (const unsigned int v : corners)
+              {
+                if (!std::isfinite(vertices[v].norm()))
+                  fail("a coordinate is no finite number");
+                size    = std::max(size, vertices[v].norm());
+                least_z = std::min(least_z, heights[v]);
+                most_z  = std::max(most_z, heights[v]);
+              }
+          }
+        cells        = std::move(different);
+        is_hypercube = kinds == std::set<std::size_t>{1u << dim};
+        is_cut       = !is_hypercube && kinds != std::set<std::size_t>{dim + 1};
+        if (dim == 2 && !(most_z - least_z <= tolerance * size))
+          fail("z must be the same at all nodes of a plane mesh, but it goes "
+               "from " +
+               std::to_string(least_z) + " to " + std::to_string(most_z) +
+               "; a body in 3D has cells in 3D, and needs Dimension = 3");
       }
 
-      dealii::Point<dim>
-      centre(const Vertices &corners) const
+      unsigned int
+      add_centre(const Corners &corners)
       {
         dealii::Point<dim> sum;
         for (const unsigned int v : corners)
-          sum += vertices[v];
-        return sum / static_cast<double>(corners.size());
+          sum += vertices[v] / static_cast<double>(corners.size());
+        vertices.push_back(sum);
+        return static_cast<unsigned int>(vertices.size() - 1);
       }
 
-      /// The parts of a face, a line in 2D and triangles in 3D.
-      std::vector<std::array<dealii::Point<dim>, dim>>
-      parts(const Vertices &corners) const
+      /// A face itself, or the triangles that a quadrilateral is cut into.
+      std::vector<Corners>
+      parts(const Corners &face)
       {
-        if constexpr (dim == 2)
-          return {{{vertices[corners[0]], vertices[corners[1]]}}};
-        else
+        if (face.size() == dim)
+          return {face};
+        const auto [centre, is_new] = centres.emplace(key(face), 0);
+        if (is_new)
+          centre->second = add_centre(face);
+        const unsigned int c = centre->second;
+        return {{face[0], face[1], c},
+                {face[1], face[3], c},
+                {face[3], face[2], c},
+                {face[2], face[0], c}};
+      }
+
+      void
+      cut_cells()
+      {
+        for (std::size_t c = 0; c < cells.size(); ++c)
           {
-            if (corners.size() == 3)
-              return {{{vertices[corners[0]],
-                        vertices[corners[1]],
-                        vertices[corners[2]]}}};
-            std::vector<std::array<dealii::Point<dim>, dim>> triangles;
-            for (std::size_t v = 0; v < corners.size(); ++v)
-              triangles.push_back({{vertices[corners[v]],
-                                    vertices[corners[(v + 1) % 4]],
-                                    centre(corners)}});
-            return triangles;
+            const Corners corners = cells[c].corners;
+            if (corners.size() == dim + 1)
+              {
+                add_simplex(corners, c);
+                continue;
+              }
+            if (corners.size() > 8 || corners.size() == 7)
+              fail(element(c) + " is of a kind that is not read");
+            const auto kind = dealii::ReferenceCell::n_vertices_to_type(
+              dim, static_cast<unsigned int>(corners.size()));
+            const unsigned int centre = add_centre(corners);
+            for (const unsigned int f : kind.face_indices())
+              {
+                Corners face;
+                for (const unsigned int v :
+                     kind.face_reference_cell(f).vertex_indices())
+                  face.push_back(corners[kind.face_to_cell_vertices(f, v, 1)]);
+                for (Corners part : parts(face))
+                  {
+                    part.push_back(centre);
+                    add_simplex(part, c);
+                  }
+              }
           }
       }
 
-      /// The volumes between the cell's centre and the parts of its faces,
-      /// relative to the cell's size: the least one, and their sum.
-      std::pair<double, double>
-      relative_volumes(const Vertices &cell) const
-      {
-        const dealii::Point<dim> middle = centre(cell);
-        double                   size   = 0.;
-        for (const unsigned int v : cell)
-          size = std::max(size, middle.distance(vertices[v]));
-
-        double least = std::numeric_limits<double>::max(), sum = 0.;
-        for (const auto &face : *cell_faces)
-          for (const auto &part : parts(corners_of(cell, face)))
-            {
-              dealii::Tensor<2, dim> edges;
-              for (unsigned int d = 0; d < dim; ++d)
-                edges[d] = (part[d] - middle) / size;
-              const double volume = dealii::determinant(edges);
-              least               = std::min(least, volume);
-              sum += volume;
-            }
-        return {least, sum};
-      }
-
-      static Vertices
-      corners_of(const Vertices &cell, const Vertices &face)
-      {
-        Vertices corners;
-        for (const unsigned int v : face)
-          corners.push_back(cell[v]);
-        return corners;
-      }
-
-      /// Turns cells that are inside out.
+      /// With its corners in an order that makes its volume positive.
       void
-      orient_cells()
+      add_simplex(const Corners &corners, const std::size_t cell)
       {
         // Aspects up to 1e4 in 3D have more, rounding makes less.
-        constexpr double flat = 1e-13;
-        for (Cell &cell : cells)
+        constexpr double       flat    = 1e-13;
+        Simplex                simplex = {{}, cell};
+        dealii::Tensor<2, dim> edges;
+        double                 size = 0.;
+        std::copy(corners.begin(), corners.end(), simplex.corners.begin());
+        for (unsigned int d = 0; d < dim; ++d)
           {
-            Vertices &corners = cell.vertices;
-            if (relative_volumes(corners).second < 0.)
-              {
-                if (dim == 3 && is_hypercube)
-                  std::swap_ranges(corners.begin(),
-                                   corners.begin() + 4,
-                                   corners.begin() + 4);
-                else // around the other way
-                  std::swap(corners[1], corners[is_hypercube ? 3 : 2]);
-              }
-            const auto [least, sum] = relative_volumes(corners);
-            if (!(sum > flat))
-              fail(cell.element->line, "a flat cell");
-            if (!(least > flat))
-              fail(cell.element->line,
-                   "a cell so distorted that its centre does not see all of "
-                   "its faces");
+            edges[d] = vertices[corners[d + 1]] - vertices[corners[0]];
+            size     = std::max(size, edges[d].norm());
           }
+        const double volume = dealii::determinant(edges / size);
+        if (!(std::abs(volume) > flat))
+          fail(element(cell) + " is flat" +
+               (corners.size() == cells[cell].corners.size() ?
+                  "" :
+                  ", or its centre does not see all of its faces"));
+        if (volume < 0.)
+          std::swap(simplex.corners[dim - 1], simplex.corners[dim]);
+        simplices.push_back(simplex);
       }
 
-      /// Finds the faces of the boundary, and the groups of faces.
+      /// Finds the faces of simplices outside and inside of the body.
       void
       take_faces()
       {
-        std::vector<Face> faces;
-        for (std::size_t c = 0; c < cells.size(); ++c)
-          for (const auto &face : *cell_faces)
-            {
-              const Vertices corners = corners_of(cells[c].vertices, face);
-              Vertices       sorted  = corners;
-              std::sort(sorted.begin(), sorted.end());
-              faces.push_back({sorted, corners, c});
-            }
-        std::sort(faces.begin(), faces.end(), [](const Face &a, const Face &b) {
-          return a.sorted < b.sorted;
-        });
+        struct Side
+        {
+          FaceKey     face;
+          bool        is_left; ///< where the simplex is
+          std::size_t cell;
 
-        std::map<Vertices, bool> is_outside;
-        for (std::size_t f = 0; f < faces.size();)
+          bool
+          operator<(const Side &other) const
           {
-            const Face &face = faces[f];
-            std::size_t n    = 1;
-            while (f + n < faces.size() && faces[f + n].sorted == face.sorted)
-              ++n;
-            if (n > 2 ||
-                (n == 2 && same_side(face.corners, faces[f + 1].corners)))
-              fail(cells[faces[f + 1].cell].element->line,
-                   "a cell that overlaps that of line " +
-                     std::to_string(cells[face.cell].element->line));
-            is_outside[face.sorted] = n == 1;
-            if (n == 1)
-              boundary.push_back(face);
-            else
-              neighbours.push_back({face.cell, faces[f + 1].cell});
-            f += n;
+            return std::tie(face, cell) < std::tie(other.face, other.cell);
           }
-
-        for (const MshFile::Element &element : file.elements)
-          if (dimension_of(element.type) == dim - 1 && !element.groups.empty())
+        };
+        std::vector<Side> sides;
+        for (const Simplex &simplex : simplices)
+          for (unsigned int v = 0; v <= dim; ++v)
             {
-              Vertices sorted = element.vertices;
-              std::sort(sorted.begin(), sorted.end());
-              const auto face = is_outside.find(sorted);
-              if (face == is_outside.end())
-                fail(element.line,
-                     "an element of the boundary that is the face of no cell");
-              (face->second ? face_groups[sorted] : inner_groups)
-                .insert(element.groups.begin(), element.groups.end());
+              Corners corners(simplex.corners.begin(), simplex.corners.end());
+              corners.erase(corners.begin() + v);
+              bool is_left = v % 2 == 1;
+              for (unsigned int i = 0; i < dim; ++i)
+                for (unsigned int j = i + 1; j < dim; ++j)
+                  is_left = is_left != (corners[i] > corners[j]);
+              sides.push_back({key(corners), is_left, simplex.cell});
+            }
+        std::sort(sides.begin(), sides.end());
+        const auto is_next = [&](const std::size_t s) {
+          return s + 1 < sides.size() && sides[s + 1].face == sides[s].face;
+        };
+        for (std::size_t s = 0; s < sides.size(); ++s)
+          if (!is_next(s))
+            outside.push_back({sides[s].face, sides[s].cell});
+          else if (is_next(s + 1) || sides[s].is_left == sides[s + 1].is_left)
+            fail(sides[s].cell == sides[s + 1].cell ?
+                   element(sides[s].cell) +
+                     " is so distorted that its centre does not see all of "
+                     "its faces" :
+                   element(sides[s + 1].cell) + " overlaps " +
+                     element(sides[s].cell));
+          else
+            {
+              inside.push_back(sides[s].face);
+              neighbours.push_back({sides[s].cell, sides[s + 1].cell});
+              ++s;
             }
       }
 
-      /// Whether a face's corners are passed in the same sense by its two
-      /// cells, which then lie on one side of it.
-      static bool
-      same_side(const Vertices &one, const Vertices &other)
+      /// Finds the groups of the boundary's faces, and those inside.
+      void
+      take_groups()
       {
-        const auto next = [](const Vertices &corners, const unsigned int v) {
-          const auto at = std::find(corners.begin(), corners.end(), v) + 1;
-          return at == corners.end() ? corners.front() : *at;
-        };
-        if (dim == 2)
-          return one.front() == other.front();
-        return next(one, one.front()) == next(other, one.front());
+        for (Element &face : faces)
+          {
+            if (face.groups.empty())
+              continue;
+            const bool           is_quadrilateral = face.corners.size() > dim;
+            std::vector<Corners> pieces           = {face.corners};
+            if (is_quadrilateral && centres.count(key(face.corners)) > 0)
+              pieces = parts(face.corners);
+            bool is_outside = true;
+            for (const Corners &piece : pieces)
+              {
+                const auto outer =
+                  std::lower_bound(outside.begin(),
+                                   outside.end(),
+                                   std::make_pair(key(piece), std::size_t(0)));
+                if (outer != outside.end() && outer->first == key(piece))
+                  continue;
+                is_outside = false;
+                if (!std::binary_search(inside.begin(),
+                                        inside.end(),
+                                        key(piece)))
+                  fail(words("element ",
+                             face.tag,
+                             ", which is in a group, is the face of no cell"));
+              }
+            if (!is_outside)
+              inner_groups.insert(face.groups.begin(), face.groups.end());
+            else
+              for (const Corners &piece :
+                   is_cut ? pieces : std::vector<Corners>{face.corners})
+                {
+                  Element &outer = outer_faces[key(piece)];
+                  outer.corners  = piece;
+                  outer.groups.insert(face.groups.begin(), face.groups.end());
+                }
+          }
       }
 
       /// Checks that one comes from every cell to every other through faces.
@@ -458,113 +708,92 @@ namespace Debond
         };
         for (const auto &[a, b] : neighbours)
           root[find(a)] = find(b);
-        for (std::size_t c = 0; c < cells.size(); ++c)
+        for (std::size_t c = 0; c < root.size(); ++c)
           if (find(c) != find(0))
-            fail(cells[c].element->line,
-                 "a cell that is not connected through faces with that of "
-                 "line " +
-                   std::to_string(cells[0].element->line) +
-                   (twins.empty() ?
-                      "" :
-                      words(
-                        "; there are ", twins.size(), " nodes", on_one_place)));
+            fail("the mesh is of two bodies or more: " + element(c) +
+                 " is not connected through faces with " + element(0) +
+                 (n_twins == 0 ?
+                    "" :
+                    words("; there are ", n_twins, " nodes", on_one_place)));
       }
 
-      /// Whether a point lies on a face's part.
-      static bool
-      touches(const dealii::Point<dim>                  &point,
-              const std::array<dealii::Point<dim>, dim> &part)
+      /// Normal to what these points span, as long as it is large.
+      static dealii::Tensor<1, dim>
+      normal(const std::vector<dealii::Point<dim>> &points)
       {
-        double size = 0.;
-        for (const auto &corner : part)
-          size = std::max(size, corner.distance(part[0]));
-        // Least squares for the barycentric coordinates.
-        dealii::FullMatrix<double> gram(dim - 1, dim - 1);
-        dealii::Vector<double>     projection(dim - 1), xi(dim - 1);
-        for (unsigned int i = 0; i + 1 < dim; ++i)
-          {
-            projection(i) = (part[i + 1] - part[0]) * (point - part[0]);
-            for (unsigned int j = 0; j + 1 < dim; ++j)
-              gram(i, j) = (part[i + 1] - part[0]) * (part[j + 1] - part[0]);
-          }
-        gram.gauss_jordan();
-        gram.vmult(xi, projection);
-        dealii::Tensor<1, dim> distance = point - part[0];
-        double                 rest     = 1.;
-        bool                   inside   = true;
-        for (unsigned int i = 0; i + 1 < dim; ++i)
-          {
-            distance -= xi(i) * (part[i + 1] - part[0]);
-            rest -= xi(i);
-            inside = inside && xi(i) > -tolerance;
-          }
-        return inside && rest > -tolerance &&
-               distance.norm() < tolerance * size;
+        if constexpr (dim == 2)
+          return dealii::cross_product_2d(points[1] - points[0]);
+        else
+          return dealii::cross_product_3d(points[1] - points[0],
+                                          points[2] - points[0]);
       }
 
-      /// Two vertices at one place are no hanging node, but a crack.
+      /// Checks that no vertex lies on a face of the boundary. Two vertices at
+      /// one place are no hanging node, but a crack.
       void
       check_hanging_nodes()
       {
         std::set<unsigned int> on_boundary;
-        for (const Face &face : boundary)
-          on_boundary.insert(face.corners.begin(), face.corners.end());
-        const Vertices candidates(on_boundary.begin(), on_boundary.end());
-        std::vector<dealii::Point<dim>> points;
+        for (const auto &[face, unused] : outside)
+          on_boundary.insert(face.begin(), face.begin() + dim);
+        const Corners candidates(on_boundary.begin(), on_boundary.end());
+        std::vector<dealii::Point<dim>> places;
         for (const unsigned int v : candidates)
-          points.push_back(vertices[v]);
-        const auto tree = dealii::pack_rtree_of_indices(points);
+          places.push_back(vertices[v]);
+        const auto tree = dealii::pack_rtree_of_indices(places);
 
-        for (const Face &face : boundary)
-          for (const auto &part : parts(face.corners))
-            {
-              dealii::BoundingBox<dim> box(
-                std::vector<dealii::Point<dim>>(part.begin(), part.end()));
-              const auto  &ends = box.get_boundary_points();
-              const double near_by =
-                tolerance * ends.first.distance(ends.second);
-              box.extend(near_by);
-              std::vector<std::size_t> near;
-              tree.query(boost::geometry::index::intersects(box),
-                         std::back_inserter(near));
-              for (const std::size_t i : near)
-                if (const unsigned int v = candidates[i]; std::binary_search(
-                      face.sorted.begin(), face.sorted.end(), v))
+        std::set<unsigned int> twins;
+        for (const auto &[face, cell] : outside)
+          {
+            std::vector<dealii::Point<dim>> corners;
+            for (unsigned int v = 0; v < dim; ++v)
+              corners.push_back(vertices[face[v]]);
+            dealii::BoundingBox<dim> box(corners);
+            const auto              &ends = box.get_boundary_points();
+            const double near_by = tolerance * ends.first.distance(ends.second);
+            box.extend(near_by);
+            std::vector<std::size_t> near;
+            tree.query(boost::geometry::index::intersects(box),
+                       std::back_inserter(near));
+            for (const std::size_t i : near)
+              {
+                if (std::find(face.begin(), face.end(), candidates[i]) !=
+                    face.end())
                   continue;
-                else if (std::any_of(face.corners.begin(),
-                                     face.corners.end(),
-                                     [&](const unsigned int corner) {
-                                       return vertices[v].distance(
-                                                vertices[corner]) <= near_by;
-                                     }))
-                  twins.insert(v);
-                else if (touches(vertices[v], part))
+                const auto n     = normal(corners);
+                double     least = std::numeric_limits<double>::max(), sum = 0.;
+                for (unsigned int v = 0; v < dim; ++v)
+                  {
+                    auto with_it = corners;
+                    with_it[v]   = places[i];
+                    least = std::min(least, places[i].distance(corners[v]));
+                    sum += normal(with_it).norm();
+                  }
+                if (least <= near_by)
+                  twins.insert(candidates[i]);
+                else if (std::abs(n * (places[i] - corners[0])) <=
+                           near_by * n.norm() &&
+                         sum <= (1. + tolerance) * n.norm())
                   {
                     std::ostringstream place;
-                    place << vertices[v];
-                    fail(cells[face.cell].element->line,
-                         "a cell with a hanging node on its face, at (" +
-                           place.str() + ")");
+                    place << places[i];
+                    fail(element(cell) +
+                         " has a hanging node on its face, at (" + place.str() +
+                         ")");
                   }
-            }
-      }
-
-      std::string
-      name_of(const int dimension, const int group) const
-      {
-        const auto name = file.names.find({dimension, group});
-        return name != file.names.end() ? printable(name->second) :
-                                          std::to_string(group);
+              }
+          }
+        n_twins = twins.size();
       }
 
       /// The names of the groups of a dimension that ids were given for.
       template <typename Names>
       void
-      take_names(const GroupIds &ids, const int dimension, Names &names) const
+      take_names(const GroupIds &ids, const int dimension, Names &result) const
       {
         for (const auto &[groups, id] : ids.ids)
           for (const int group : groups)
-            names[name_of(dimension, group)].insert(id);
+            result[names.at({dimension, group})].insert(id);
       }
 
       /// Nodes at the place of another one: cracks, or forgotten.
@@ -575,17 +804,27 @@ namespace Debond
       /// Relative to a face's size.
       static constexpr double tolerance = 1e-8;
 
-      const std::string                                file_name;
-      MshFile                                          file;
-      std::vector<dealii::Point<dim>>                  vertices;
-      std::vector<Cell>                                cells;
-      const std::vector<Vertices>                     *cell_faces   = nullptr;
-      bool                                             is_hypercube = false;
-      std::vector<Face>                                boundary;
-      std::vector<std::pair<std::size_t, std::size_t>> neighbours;
-      std::map<Vertices, Groups> face_groups;  ///< by sorted corners
-      Groups                     inner_groups; ///< those of faces inside
-      std::set<unsigned int>     twins;
+      const std::string                             file_name;
+      FileText                                      text;
+      bool                                          is_old             = false;
+      bool                                          is_of_higher_order = false;
+      std::unordered_map<std::size_t, unsigned int> vertex_of; ///< by tag
+      std::vector<dealii::Point<dim>>               vertices;  ///< and centres
+      std::vector<double>                           heights;   ///< z
+      std::vector<Element>                          cells, faces;
+
+      /// By dimension and number of the group.
+      std::map<std::pair<int, int>, std::string> names;
+
+      bool                            is_hypercube = false, is_cut = false;
+      std::vector<Simplex>            simplices;
+      std::map<FaceKey, unsigned int> centres;
+      std::vector<std::pair<FaceKey, std::size_t>>     outside; ///< with cells
+      std::vector<FaceKey>                             inside;
+      std::vector<std::pair<std::size_t, std::size_t>> neighbours; ///< cells
+      std::map<FaceKey, Element> outer_faces; ///< in groups, of the mesh
+      Groups                     inner_groups;
+      std::size_t                n_twins = 0;
     };
   } // namespace
 
@@ -593,9 +832,11 @@ namespace Debond
 
   template <int dim>
   std::unique_ptr<SourceMesh<dim>>
-  read_gmsh_mesh(const std::string &file_name, const double scale)
+  read_gmsh_mesh(const std::string &file_name,
+                 const double       scale,
+                 const double       size)
   {
-    return GmshMesh<dim>(file_name, scale).make();
+    return GmshMesh<dim>(file_name, scale, size).make();
   }
 
 

@@ -3,7 +3,6 @@
 
 #include <debond/mesh/crossed_mesh.h>
 #include <debond/mesh/mesh_body.h>
-#include <debond/mesh/simplex_interpolation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -97,7 +96,7 @@ namespace Debond
 
   template <int dim>
   std::set<std::string>
-  MeshBody<dim>::boundaries() const
+  MeshBody<dim>::whole_boundaries() const
   {
     return keys(source->names.boundaries);
   }
@@ -106,7 +105,7 @@ namespace Debond
 
   template <int dim>
   std::set<std::string>
-  MeshBody<dim>::regions() const
+  MeshBody<dim>::whole_regions() const
   {
     return keys(source->names.regions);
   }
@@ -147,7 +146,7 @@ namespace Debond
 
   template <int dim>
   double
-  MeshBody<dim>::n_vertices_on(const std::string &boundary) const
+  MeshBody<dim>::n_whole_vertices_on(const std::string &boundary) const
   {
     const Counts &counts = on_boundaries.at(boundary);
     if (is_simplicial)
@@ -182,7 +181,7 @@ namespace Debond
 
   template <int dim>
   PieceNames
-  MeshBody<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
+  MeshBody<dim>::make_whole_mesh(dealii::Triangulation<dim> &mesh) const
   {
     if (is_simplicial)
       {
@@ -200,24 +199,12 @@ namespace Debond
 
 
   template <int dim>
-  std::unique_ptr<const Body<dim>>
-  MeshBody<dim>::coarser() const
+  std::unique_ptr<Body<dim>>
+  MeshBody<dim>::coarser_whole() const
   {
     return n_refinements > 0 ?
-             std::make_unique<const MeshBody>(make, n_refinements - 1) :
+             std::make_unique<MeshBody>(make, n_refinements - 1) :
              nullptr;
-  }
-
-
-
-  template <int dim>
-  std::vector<dealii::Tensor<1, dim>>
-  MeshBody<dim>::interpolate(
-    const dealii::Triangulation<dim>          &mesh,
-    const std::vector<dealii::Tensor<1, dim>> &values,
-    const std::vector<dealii::Point<dim>>     &points) const
-  {
-    return interpolate_on_simplices(mesh, values, points);
   }
 
 

@@ -93,7 +93,7 @@ namespace Debond
 
   template <int dim>
   PieceNames
-  MeshPiece<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
+  MeshPiece<dim>::make_whole_mesh(dealii::Triangulation<dim> &mesh) const
   {
     std::vector<typename HalvedMesh<dim>::CellIterator> parts;
     for (const auto &cell : cells)

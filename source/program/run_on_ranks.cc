@@ -47,7 +47,7 @@ namespace Debond
         std::dynamic_pointer_cast<const Box<dim>>(parameters.body);
       const auto mesh =
         std::dynamic_pointer_cast<const MeshBody<dim>>(parameters.body);
-      refuse(box == nullptr && mesh == nullptr,
+      refuse(!dynamic_cast<const Body<dim> &>(*parameters.body).parts.empty(),
              "Parts",
              "several ranks share no bodies with parts");
       refuse(mesh != nullptr && mesh->is_of_simplices(),

@@ -10,7 +10,7 @@
 #include <debond/mesh/bisected_body.h>
 #include <debond/mesh/box.h>
 #include <debond/mesh/mesh_body.h>
-#include <debond/mesh/parted_body.h>
+#include <debond/mesh/body.h>
 
 #include <random>
 
@@ -267,11 +267,10 @@ namespace
     refine_at_random<dim>(
       std::to_string(dim) + "D, box", box, on_box_side<dim>, 2., n_marks);
 
-    const auto with_part = std::make_shared<const PartedBody<dim>>(
-      box,
-      std::vector<Part<dim>>{
-        {"glued", "bottom", [](const Point<dim> &p) { return p[0] > 0.4; }},
-        {"far", "", [](const Point<dim> &p) { return p[0] > 0.5; }}});
+    const auto with_part = std::make_shared<Box<dim>>(unit);
+    with_part->parts     = {
+      {"glued", "bottom", [](const Point<dim> &p) { return p[0] > 0.4; }},
+      {"far", "", [](const Point<dim> &p) { return p[0] > 0.5; }}};
     refine_at_random<dim>(
       std::to_string(dim) + "D, box with parts",
       with_part,

@@ -4,7 +4,8 @@
 // their names, and what the names of the sides stand for then.
 
 #include <debond/mesh/box.h>
-#include <debond/mesh/parted_body.h>
+
+#include <cmath>
 
 #include "../check.h"
 
@@ -15,22 +16,24 @@ template <int dim>
 void
 test()
 {
-  const auto box = std::make_shared<const Box<dim>>(
-    BoxParameters{{{2., 1., 1.}}, {{8, 4, 2}}});
-  const auto beyond = [](const double x) {
+  const BoxParameters box    = {{{2., 1., 1.}}, {{8, 4, 2}}};
+  const auto          beyond = [](const double x) {
     return [x](const Point<dim> &p) { return p[0] > x; };
   };
   // Their edges follow the mesh but for that of "cut".
-  const std::vector<Part<dim>> parts = {{"glued", "bottom", beyond(0.5)},
-                                        {"end", "bottom", beyond(1.5)},
-                                        {"cut", "top", beyond(0.6)},
-                                        {"far", "", beyond(1.)},
-                                        {"upper", "", [](const Point<dim> &p) {
-                                           return p[1] > 0.5;
-                                         }}};
-  const PartedBody<dim>        body(box, parts);
-  Triangulation<dim>           mesh;
-  const PieceNames             names = body.make_mesh(mesh);
+  const std::vector<Part<dim>> parts = {
+    {"glued", "bottom", beyond(0.5)},
+    {"end", "bottom", beyond(1.5)},
+    {"cut", "top", beyond(0.6)},
+    {"far", "", beyond(1.)},
+    {"upper", "", [](const Point<dim> &p) { return p[1] > 0.5; }},
+    {"ends", "boundary", [](const Point<dim> &p) {
+       return std::abs(p[0] - 1.) > 1. - 1e-6;
+     }}};
+  Box<dim> body(box);
+  body.parts = parts;
+  Triangulation<dim> mesh;
+  const PieceNames   names = body.make_mesh(mesh);
   std::cout << dim << "D" << std::endl;
   for (const std::string &note : names.notes)
     std::cout << note << std::endl;
@@ -52,11 +55,13 @@ test()
               return names.boundaries.at(name).count(face->boundary_id()) > 0;
             };
             const bool bottom = p[1]<1e-12, top = p[1]> 1. - 1e-12;
-            good_faces =
-              good_faces && on("bottom") == bottom && on("top") == top &&
-              on("glued") == (bottom && p[0] > 0.5) &&
-              on("end") == (bottom && p[0] > 1.5) &&
-              on("cut") == (top && p[0] > 0.6) && on("left") == (p[0] < 1e-12);
+            good_faces        = good_faces && on("bottom") == bottom &&
+                         on("top") == top &&
+                         on("glued") == (bottom && p[0] > 0.5) &&
+                         on("end") == (bottom && p[0] > 1.5) &&
+                         on("cut") == (top && p[0] > 0.6) &&
+                         on("left") == (p[0] < 1e-12) &&
+                         on("ends") == (on("left") || on("right"));
           }
     }
   check("faces have the names of their parts and sides", good_faces);
@@ -81,17 +86,14 @@ test()
   const auto coarser = body.coarser();
   check("a coarser body has the parts",
         coarser && coarser->boundaries() == body.boundaries());
-  const PartedBody<dim> narrow(box, {{"end", "bottom", beyond(1.8)}});
-  check("and none if a part has no face in it",
-        !narrow.coarser() == (dim == 2));
-  print_error([&] {
-    Triangulation<dim> other;
-    PartedBody<dim>(box, {{"none", "bottom", beyond(2.)}}).make_mesh(other);
-  });
-  print_error([&] {
-    Triangulation<dim> other;
-    PartedBody<dim>(box, {{"none", "", beyond(2.)}}).make_mesh(other);
-  });
+  body.parts = {{"end", "bottom", beyond(1.8)}};
+  check("and none if a part has no face in it", !body.coarser() == (dim == 2));
+  for (const std::string of : {"bottom", "boundary", ""})
+    print_error([&] {
+      body.parts = {{"none", of, beyond(2.)}};
+      Triangulation<dim> other;
+      body.make_mesh(other);
+    });
 }
 
 

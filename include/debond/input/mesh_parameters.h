@@ -16,7 +16,7 @@ namespace Debond
 
   /// The body, a Body<dimension>, of the file @p scene. Adds an error to the
   /// table and returns null if there is none.
-  std::shared_ptr<const BodyDescription>
+  std::shared_ptr<BodyDescription>
   make_body(const std::string &scene,
             const unsigned int dimension,
             BodyParameters     body,

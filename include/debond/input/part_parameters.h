@@ -6,7 +6,6 @@
 #include <debond/mesh/body.h>
 
 #include <map>
-#include <memory>
 #include <string>
 
 namespace Debond
@@ -16,15 +15,14 @@ namespace Debond
   void
   bind_parts(std::map<std::string, std::string> &parts, ParameterTable &table);
 
-  /// The @p body, a Body<dimension>, with these parts; itself if there are
-  /// none. Conditions may use the @p constants. Texts that make no part are
-  /// left in the table as errors.
-  std::shared_ptr<const BodyDescription>
-  with_parts(const std::shared_ptr<const BodyDescription> &body,
-             const std::map<std::string, std::string>     &parts,
-             const unsigned int                            dimension,
-             const std::map<std::string, double>          &constants,
-             ParameterTable                               &table);
+  /// Gives the @p body, a Body<dimension>, these parts. Conditions may use the
+  /// @p constants. Texts that make no part are left in the table as errors.
+  void
+  add_parts(BodyDescription                          &body,
+            const std::map<std::string, std::string> &parts,
+            const unsigned int                        dimension,
+            const std::map<std::string, double>      &constants,
+            ParameterTable                           &table);
 } // namespace Debond
 
 #endif

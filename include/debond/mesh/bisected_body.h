@@ -42,10 +42,10 @@ namespace Debond
     }
 
     std::set<std::string>
-    boundaries() const override;
+    whole_boundaries() const override;
 
     std::set<std::string>
-    regions() const override;
+    whole_regions() const override;
 
     double
     n_cells() const override;
@@ -54,7 +54,7 @@ namespace Debond
     n_vertices() const override;
 
     double
-    n_vertices_on(const std::string &boundary) const override;
+    n_whole_vertices_on(const std::string &boundary) const override;
 
     /// With as many cells as there would be if they were alike. Refined it is
     /// no box of so many cells.
@@ -62,16 +62,11 @@ namespace Debond
     shape() const override;
 
     PieceNames
-    make_mesh(dealii::Triangulation<dim> &mesh) const override;
+    make_whole_mesh(dealii::Triangulation<dim> &mesh) const override;
 
     /// None: a solution goes from mesh to mesh by extend().
-    std::unique_ptr<const Body<dim>>
-    coarser() const override;
-
-    std::vector<dealii::Tensor<1, dim>>
-    interpolate(const dealii::Triangulation<dim>          &mesh,
-                const std::vector<dealii::Tensor<1, dim>> &values,
-                const std::vector<dealii::Point<dim>> &points) const override;
+    std::unique_ptr<Body<dim>>
+    coarser_whole() const override;
 
   private:
     BisectedBody(const BisectedBody              &coarse,

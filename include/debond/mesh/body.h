@@ -9,6 +9,7 @@
 #include <debond/linear_algebra/multigrid/interpolation.h>
 
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -50,6 +51,20 @@ namespace Debond
     {}
 
     const std::string part; ///< its name
+  };
+
+  /// All outer faces, with names or without, unless a body has a boundary of
+  /// this name.
+  constexpr const char *whole_boundary = "boundary";
+
+  /// A piece of a boundary, or of the body, with a name of its own: the faces
+  /// (cells) whose centre satisfies a condition. Parts may overlap.
+  template <int dim>
+  struct Part
+  {
+    std::string                                     name;
+    std::string                                     boundary; ///< or none
+    std::function<bool(const dealii::Point<dim> &)> contains;
   };
 
   struct PieceNames
@@ -136,23 +151,37 @@ namespace Debond
   class Body : public BodyDescription
   {
   public:
+    /// That have names beside those of the whole body's boundaries and regions.
+    std::vector<Part<dim>> parts;
+
+    std::set<std::string>
+    boundaries() const final;
+
+    std::set<std::string>
+    regions() const final;
+
+    /// Of a part: at most those of its boundary, or of the body.
+    double
+    n_vertices_on(const std::string &boundary) const final;
+
     /// Fills an empty triangulation and says which ids the boundaries() and
     /// regions() have. Throws std::invalid_argument if the body is none,
     /// PartError if a part has no face or cell.
-    virtual PieceNames
-    make_mesh(dealii::Triangulation<dim> &mesh) const = 0;
+    PieceNames
+    make_mesh(dealii::Triangulation<dim> &mesh) const;
 
     /// The same body with about half as many cells in each direction, null if
-    /// there is none.
-    virtual std::unique_ptr<const Body>
-    coarser() const = 0;
+    /// there is none in which each part has a face (a cell).
+    std::unique_ptr<Body>
+    coarser() const;
 
     /// The P1 field with @p values at the vertices of @p mesh, which is the one
-    /// of make_mesh(), at points of the body.
+    /// of make_mesh(), at points of the body. Points beside the mesh, as on the
+    /// curved side of a finer one, belong to a cell next to them.
     virtual std::vector<dealii::Tensor<1, dim>>
     interpolate(const dealii::Triangulation<dim>          &mesh,
                 const std::vector<dealii::Tensor<1, dim>> &values,
-                const std::vector<dealii::Point<dim>>     &points) const = 0;
+                const std::vector<dealii::Point<dim>>     &points) const;
 
     /// The meshes of the coarser bodies as far as they are good for multigrid,
     /// finest first, down to one that takes nothing to solve; interpolation is
@@ -167,6 +196,23 @@ namespace Debond
     /// are. One for all if there is no other.
     virtual std::vector<unsigned int>
     slabs(const dealii::Triangulation<dim> &mesh) const;
+
+  private:
+    /// The same of the body without its parts.
+    virtual std::set<std::string>
+    whole_boundaries() const = 0;
+
+    virtual std::set<std::string>
+    whole_regions() const = 0;
+
+    virtual double
+    n_whole_vertices_on(const std::string &boundary) const = 0;
+
+    virtual PieceNames
+    make_whole_mesh(dealii::Triangulation<dim> &mesh) const = 0;
+
+    virtual std::unique_ptr<Body>
+    coarser_whole() const = 0;
   };
 } // namespace Debond
 

@@ -26,10 +26,10 @@ namespace Debond
   {
   public:
     std::set<std::string>
-    boundaries() const override;
+    whole_boundaries() const override;
 
     std::set<std::string>
-    regions() const override;
+    whole_regions() const override;
 
     double
     n_cells() const override;
@@ -38,7 +38,7 @@ namespace Debond
     n_vertices() const override;
 
     double
-    n_vertices_on(const std::string &boundary) const override;
+    n_whole_vertices_on(const std::string &boundary) const override;
 
     BodyShape
     shape() const override;
@@ -46,8 +46,8 @@ namespace Debond
     bool
     has_coarse_levels() const override;
 
-    std::unique_ptr<const Body<dim>>
-    coarser() const override;
+    std::unique_ptr<Body<dim>>
+    coarser_whole() const override;
 
     std::vector<dealii::Tensor<1, dim>>
     interpolate(const dealii::Triangulation<dim>          &mesh,

@@ -46,11 +46,11 @@ namespace Debond
     explicit Box(const BoxParameters &parameters);
 
     std::set<std::string>
-    boundaries() const override;
+    whole_boundaries() const override;
 
     /// None.
     std::set<std::string>
-    regions() const override;
+    whole_regions() const override;
 
     double
     n_cells() const override;
@@ -59,7 +59,7 @@ namespace Debond
     n_vertices() const override;
 
     double
-    n_vertices_on(const std::string &side) const override;
+    n_whole_vertices_on(const std::string &side) const override;
 
     BodyShape
     shape() const override;
@@ -68,13 +68,13 @@ namespace Debond
     has_coarse_levels() const override;
 
     PieceNames
-    make_mesh(dealii::Triangulation<dim> &mesh) const override;
+    make_whole_mesh(dealii::Triangulation<dim> &mesh) const override;
 
     /// Half as many cells in the directions in which they are shortest: those
     /// of stretched cells get rounder first. Odd numbers are rounded up: a box
     /// of one cell is its own coarsest.
-    std::unique_ptr<const Body<dim>>
-    coarser() const override;
+    std::unique_ptr<Body<dim>>
+    coarser_whole() const override;
 
     std::vector<dealii::Tensor<1, dim>>
     interpolate(const dealii::Triangulation<dim>          &mesh,

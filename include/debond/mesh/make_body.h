@@ -20,8 +20,9 @@ namespace Debond
 
     Source        source = Source::box;
     BoxParameters box;
-    std::string   file;              ///< of Gmsh
+    std::string   file;              ///< that Gmsh reads
     double        scale = 1.;        ///< of the lengths in the file
+    double        size  = 0.;        ///< of cells of a geometry, if not 0
     std::string   generator;         ///< a function of dealii::GridGenerator
     std::string   arguments;         ///< of that function
     unsigned int  n_refinements = 0; ///< unless it is a box
@@ -29,7 +30,7 @@ namespace Debond
 
   /// A Body<dimension>. Throws std::invalid_argument if there is no such
   /// function or file, or no body in it.
-  std::shared_ptr<const BodyDescription>
+  std::shared_ptr<BodyDescription>
   make_body(const unsigned int dimension, const BodyParameters &parameters);
 } // namespace Debond
 

@@ -23,10 +23,10 @@ namespace Debond
     MeshBody(const Source &make, const unsigned int n_refinements);
 
     std::set<std::string>
-    boundaries() const override;
+    whole_boundaries() const override;
 
     std::set<std::string>
-    regions() const override;
+    whole_regions() const override;
 
     double
     n_cells() const override;
@@ -35,7 +35,7 @@ namespace Debond
     n_vertices() const override;
 
     double
-    n_vertices_on(const std::string &boundary) const override;
+    n_whole_vertices_on(const std::string &boundary) const override;
 
     /// The box that encloses the body, measured on a mesh of some hundred
     /// cells, and as many cells in it as there would be if it was filled as the
@@ -49,18 +49,11 @@ namespace Debond
     has_coarse_levels() const override;
 
     PieceNames
-    make_mesh(dealii::Triangulation<dim> &mesh) const override;
+    make_whole_mesh(dealii::Triangulation<dim> &mesh) const override;
 
     /// The one with a refinement less.
-    std::unique_ptr<const Body<dim>>
-    coarser() const override;
-
-    /// Points beside the mesh, as on the curved side of a finer one, belong to
-    /// a cell next to them.
-    std::vector<dealii::Tensor<1, dim>>
-    interpolate(const dealii::Triangulation<dim>          &mesh,
-                const std::vector<dealii::Tensor<1, dim>> &values,
-                const std::vector<dealii::Point<dim>> &points) const override;
+    std::unique_ptr<Body<dim>>
+    coarser_whole() const override;
 
     std::vector<CoarseLevel<dim>>
     coarse_levels(const dealii::Triangulation<dim> &mesh,

@@ -26,7 +26,7 @@ namespace Debond
 
     /// Faces between the piece and what is not there have an id without a name.
     PieceNames
-    make_mesh(dealii::Triangulation<dim> &mesh) const override;
+    make_whole_mesh(dealii::Triangulation<dim> &mesh) const override;
 
     std::vector<unsigned int>
     slabs(const dealii::Triangulation<dim> &mesh) const override;

@@ -37,7 +37,9 @@ namespace Debond
    */
   template <int dim>
   std::unique_ptr<SourceMesh<dim>>
-  read_gmsh_mesh(const std::string &file_name, const double scale);
+  read_gmsh_mesh(const std::string &file_name,
+                 const double       scale,
+                 const double       size);
 
   /**
    * What deal.II's GridGenerator::generate_from_name_and_arguments() makes,

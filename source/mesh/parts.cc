@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/mesh/parted_body.h>
+#include <deal.II/base/bounding_box.h>
+
+#include <debond/base/text.h>
+#include <debond/mesh/parts.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -86,7 +88,7 @@ namespace Debond
 
     /// Coordinates at which a part's edge cuts lines of the mesh, by the axis
     /// along which these run.
-    using CutPositions = std::array<std::set<double>, 3>;
+    using CutPositions = std::array<std::set<std::string>, 3>;
 
     /// Adds those on the edges of a face or cell.
     template <int dim, typename Iterator>
@@ -111,141 +113,38 @@ namespace Debond
                   const dealii::Point<dim> middle    = 0.5 * (in + out);
                   (part.contains(middle) ? in : out) = middle;
                 }
-              positions[axis].insert(out[axis]);
+              positions[axis].insert(words(out[axis]));
             }
     }
 
 
 
-    /// The least numbers of cells of a box, not below its own, with which there
-    /// are vertices at the cuts; nothing if it takes more than ten times as
-    /// many, or an edge is not along the mesh: that cuts at many places.
-    std::optional<std::array<unsigned int, 3>>
-    fitting_cells(const CutPositions &positions, const BodyShape &box)
+    /// Where a body lies, for messages.
+    template <int dim>
+    std::string
+    extent_of(const dealii::Triangulation<dim> &mesh)
     {
-      constexpr double            tolerance  = 1e-6;
-      constexpr std::size_t       most_edges = 2;
-      bool                        is_other   = false;
-      std::array<unsigned int, 3> cells;
-      for (unsigned int axis = 0; axis < 3; ++axis)
-        {
-          const auto own = static_cast<unsigned int>(box.cells[axis]);
-          cells[axis]    = own;
-          std::set<double> places;
-          for (const double position : positions[axis])
-            places.insert(std::round(position / box.lengths[axis] / tolerance));
-          if (places.size() > most_edges)
-            return {};
-          const auto is_between = [&](const double position) {
-            const double lines = position / box.lengths[axis] * cells[axis];
-            return std::abs(lines - std::round(lines)) > tolerance;
-          };
-          while (std::any_of(positions[axis].begin(),
-                             positions[axis].end(),
-                             is_between))
-            if (++cells[axis] > 10 * own)
-              return {};
-          is_other = is_other || cells[axis] != own;
-        }
-      if (!is_other)
-        return {};
-      return cells;
+      const dealii::BoundingBox<dim> box(mesh.get_vertices());
+      std::string                    text = "; the body has ";
+      for (unsigned int d = 0; d < dim; ++d)
+        text += words(d == 0 ? "" : ", ",
+                      "xyz"[d],
+                      " from ",
+                      box.lower_bound(d),
+                      " to ",
+                      box.upper_bound(d));
+      return text;
     }
   } // namespace
 
 
 
   template <int dim>
-  PartedBody<dim>::PartedBody(const std::shared_ptr<const Body<dim>> &whole,
-                              const std::vector<Part<dim>>           &parts)
-    : whole(whole)
-    , parts(parts)
-  {
-    this->inner_groups = whole->inner_groups;
-  }
-
-
-
-  template <int dim>
-  std::set<std::string>
-  PartedBody<dim>::boundaries() const
-  {
-    std::set<std::string> names = whole->boundaries();
-    for (const Part<dim> &part : parts)
-      if (!part.boundary.empty())
-        names.insert(part.name);
-    return names;
-  }
-
-
-
-  template <int dim>
-  std::set<std::string>
-  PartedBody<dim>::regions() const
-  {
-    std::set<std::string> names = whole->regions();
-    for (const Part<dim> &part : parts)
-      if (part.boundary.empty())
-        names.insert(part.name);
-    return names;
-  }
-
-
-
-  template <int dim>
-  double
-  PartedBody<dim>::n_cells() const
-  {
-    return whole->n_cells();
-  }
-
-
-
-  template <int dim>
-  double
-  PartedBody<dim>::n_vertices() const
-  {
-    return whole->n_vertices();
-  }
-
-
-
-  template <int dim>
-  double
-  PartedBody<dim>::n_vertices_on(const std::string &boundary) const
-  {
-    for (const Part<dim> &part : parts)
-      if (part.name == boundary)
-        return whole->n_vertices_on(part.boundary);
-    return whole->n_vertices_on(boundary);
-  }
-
-
-
-  template <int dim>
-  BodyShape
-  PartedBody<dim>::shape() const
-  {
-    return whole->shape();
-  }
-
-
-
-  template <int dim>
-  bool
-  PartedBody<dim>::has_coarse_levels() const
-  {
-    return whole->has_coarse_levels();
-  }
-
-
-
-  template <int dim>
   PieceNames
-  PartedBody<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
+  name_parts(const std::vector<Part<dim>> &parts,
+             const PieceNames             &before,
+             dealii::Triangulation<dim>   &mesh)
   {
-    const PieceNames before = whole->make_mesh(mesh);
-
     std::set<dealii::types::boundary_id> boundary_ids;
     std::set<dealii::types::material_id> material_ids;
     for (const auto &cell : mesh.active_cell_iterators())
@@ -287,9 +186,10 @@ namespace Debond
             face->set_boundary_id(
               faces.id(face->boundary_id(),
                        parts_of(face, [&](const Part<dim> &part) {
-                         return !part.boundary.empty() &&
-                                before.boundaries.at(part.boundary)
-                                    .count(face->boundary_id()) > 0;
+                         const auto of = before.boundaries.find(part.boundary);
+                         return of != before.boundaries.end() ?
+                                  of->second.count(face->boundary_id()) > 0 :
+                                  part.boundary == whole_boundary;
                        })));
       }
 
@@ -299,25 +199,35 @@ namespace Debond
     for (std::size_t p = 0; p < parts.size(); ++p)
       {
         const std::string kind = parts[p].boundary.empty() ? "cell" : "face";
+        const bool        is_of_all = parts[p].boundary == whole_boundary &&
+                               before.boundaries.count(whole_boundary) == 0;
         if (n_inside[p] == 0)
           throw PartError(parts[p].name,
-                          "no " + kind + " has its centre in this part");
+                          words("no ",
+                                is_of_all ? "outer " : "",
+                                kind,
+                                " has its centre in this part",
+                                is_of_all ? extent_of(mesh) : ""));
+        if (is_of_all)
+          names.notes.push_back(words("the part ",
+                                      parts[p].name,
+                                      " has ",
+                                      n_inside[p],
+                                      n_inside[p] == 1 ? " face" : " faces"));
         if (n_cut[p] == 0)
           continue;
-        std::string note = "the edge of the part " + parts[p].name + " cuts " +
-                           std::to_string(n_cut[p]) + ' ' + kind +
-                           (n_cut[p] == 1 ? "" : "s") +
-                           "; where the centre is decides";
-        const BodyShape box = shape();
-        if (box.is_box)
-          if (const auto fitting = fitting_cells(positions[p], box))
-            {
-              note += "; with ";
-              for (unsigned int axis = 0; axis < dim; ++axis)
-                note +=
-                  (axis == 0 ? "" : ", ") + std::to_string((*fitting)[axis]);
-              note += " cells it would cut none";
-            }
+        std::string note = words("the edge of the part ",
+                                 parts[p].name,
+                                 " cuts ",
+                                 n_cut[p],
+                                 ' ' + kind,
+                                 n_cut[p] == 1 ? "" : "s",
+                                 "; where the centre is decides");
+        // An edge across the mesh cuts at many places.
+        for (unsigned int axis = 0; axis < dim; ++axis)
+          if (positions[p][axis].size() <= 2)
+            for (const std::string &position : positions[p][axis])
+              note += words("; put vertices at ", "xyz"[axis], " = ", position);
         names.notes.push_back(note);
       }
     return names;
@@ -325,60 +235,6 @@ namespace Debond
 
 
 
-  template <int dim>
-  std::unique_ptr<const Body<dim>>
-  PartedBody<dim>::coarser() const
-  {
-    const std::shared_ptr<const Body<dim>> coarse = whole->coarser();
-    if (!coarse)
-      return nullptr;
-    auto body = std::make_unique<const PartedBody>(coarse, parts);
-    try
-      {
-        dealii::Triangulation<dim> mesh;
-        body->make_mesh(mesh);
-      }
-    catch (const PartError &)
-      {
-        return nullptr;
-      }
-    return body;
-  }
-
-
-
-  template <int dim>
-  std::vector<dealii::Tensor<1, dim>>
-  PartedBody<dim>::interpolate(
-    const dealii::Triangulation<dim>          &mesh,
-    const std::vector<dealii::Tensor<1, dim>> &values,
-    const std::vector<dealii::Point<dim>>     &points) const
-  {
-    return whole->interpolate(mesh, values, points);
-  }
-
-
-
-  template <int dim>
-  std::vector<CoarseLevel<dim>>
-  PartedBody<dim>::coarse_levels(
-    const dealii::Triangulation<dim> &mesh,
-    const std::vector<unsigned int>  &vertices) const
-  {
-    return whole->coarse_levels(mesh, vertices);
-  }
-
-
-
-  template <int dim>
-  std::vector<unsigned int>
-  PartedBody<dim>::slabs(const dealii::Triangulation<dim> &mesh) const
-  {
-    return whole->slabs(mesh);
-  }
-
-
-
-  template class PartedBody<2>;
-  template class PartedBody<3>;
+  template decltype(name_parts<2>) name_parts<2>;
+  template decltype(name_parts<3>) name_parts<3>;
 } // namespace Debond
