@@ -29,8 +29,9 @@ namespace Debond
   {
     if (dead_forces.size() > 0)
       live_forces -= dead_forces;
+    const dealii::Quadrature<dim> rule = strain_rule<dim>(unknowns.degree());
     if (unknowns.degree() == 2)
-      for (const dealii::Point<dim> &point : strain_rule<dim>(2).get_points())
+      for (const dealii::Point<dim> &point : rule.get_points())
         {
           unsigned int vertex  = 0;
           double       largest = 1.;
