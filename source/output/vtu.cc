@@ -357,7 +357,10 @@ namespace Debond
 
               Patch patch;
               patch.n_subdivisions = 1;
-              patch.patch_index    = static_cast<unsigned int>(patches.size());
+              // Without it cells have no type in the file.
+              patch.reference_cell =
+                dealii::ReferenceCells::get_hypercube<dim - 1>();
+              patch.patch_index = static_cast<unsigned int>(patches.size());
               patch.data.reinit(
                 values[k].size() + of_share.size(),
                 dealii::GeometryInfo<dim - 1>::vertices_per_cell);
