@@ -259,26 +259,6 @@ namespace Debond
 
 
   void
-  ParameterTable::bind(const std::string &path,
-                       bool              &variable,
-                       const std::string &documentation)
-  {
-    bind(path, variable, one_of({"true", "false"}), documentation);
-  }
-
-
-
-  void
-  ParameterTable::bind(const std::string     &path,
-                       std::set<std::string> &variable,
-                       const std::string     &documentation)
-  {
-    bind(path, variable, Pattern("a list of names"), documentation);
-  }
-
-
-
-  void
   ParameterTable::declare(const std::string &path,
                           const std::string &default_value,
                           const Pattern     &pattern,

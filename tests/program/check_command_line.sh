@@ -71,8 +71,8 @@ subsection Study
 end
 STUDY
 expect_code 2 "$debond" study.prm
-grep -qx "debond: study.prm: this is a study; run scripts/study study.prm" \
-  errors || fail "a study: $(cat errors)"
+grep -qx "debond: study.prm:1: unknown subsection Study; .*scripts/study" errors ||
+  fail "a study: $(cat errors)"
 expect_code 2 "$debond" --study study.prm
 grep -q "scripts/study" errors || fail "--study: $(cat errors)"
 printf '\xef\xbb\xbfset Dimension = 3\n' >mark.prm
@@ -111,6 +111,17 @@ for value in $'Output/Directory=a\nb' $'Output/Directory=\x1b]0;title' \
   $'\x1b[2J=1'; do
   refused "--set: " plain.prm --set "$value"
 done
+
+refused "--set: unknown parameter Solver/Euclidean bundle/Proximal wieght; did you \
+mean Solver/Euclidean bundle/Proximal weight?" plain.prm \
+  --set "Solver/Euclidean bundle/Proximal wieght=1"
+refused "--set: cannot read 'Material/Young modulus': expected Section/Parameter=value" \
+  plain.prm --set "Material/Young modulus"
+refused "--set: Material/Young modulus = -3: expected a number from 1e-100 to 1e100" \
+  plain.prm --set "Material/Young modulus=-3"
+refused "--set: unknown parameter Proximal weight; did you mean Solver/Euclidean" \
+  plain.prm --set "Proximal weight=1"
+refused "unrecognised option '--validat'; see debond --help" plain.prm --validat
 
 # Files that do not end, or never begin.
 mkfifo pipe

@@ -11,6 +11,7 @@
 #include <ostream>
 #include <set>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -83,16 +84,17 @@ namespace Debond
          const std::string &documentation,
          const std::string &units = "none");
 
+    /// A bool, or a set of any names.
+    template <typename T>
     void
-    bind(const std::string &path,
-         bool              &variable,
-         const std::string &documentation);
-
-    /// Any names.
-    void
-    bind(const std::string     &path,
-         std::set<std::string> &variable,
-         const std::string     &documentation);
+    bind(const std::string &path, T &variable, const std::string &documentation)
+    {
+      const bool is_switch = std::is_same_v<T, bool>;
+      bind(path,
+           variable,
+           is_switch ? one_of({"true", "false"}) : Pattern("a list of names"),
+           documentation);
+    }
 
     /// One of the @p choices, each a name and the value it stands for.
     template <typename T>

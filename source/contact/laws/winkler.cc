@@ -103,8 +103,11 @@ namespace Debond
                   &t = bonds.strength, &G = bonds.energy;
       if (t.empty() && G.empty())
         {
+          const std::string &missing =
+            a.empty() ? stiffness_path : threshold_path;
           if (a.empty() || M.empty())
-            table.reject((a.empty() ? stiffness_path : threshold_path) + suffix,
+            table.reject(table.is_set(missing + suffix) ? missing + suffix :
+                                                          missing,
                          "bonds need a stiffness and a threshold, or two of "
                          "these, Bond strength and Fracture energy");
           return;
