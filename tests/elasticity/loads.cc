@@ -100,7 +100,7 @@ struct Bar
 void
 test_plane()
 {
-  Bar<2>   bar({{40, 4, 1}});
+  Bar<2>   bar(std::array<unsigned int, 3>{{40, 4, 1}});
   Loads<2> loads;
   loads.tractions[top] = {{field<2>([](const Point<2> &p) {
     return Tensor<1, 2>({0., p[0] < 0.2 ? 0.69 : -0.345});
@@ -177,7 +177,7 @@ test_plane()
 void
 test_solid()
 {
-  Bar<3> bar({{7, 1, 3}});
+  Bar<3> bar(std::array<unsigned int, 3>{{7, 1, 3}});
   check("x^2 z^2 in 3D",
         std::abs(bar.on_top([](const Point<3> &p) {
           return std::pow(p[0] * p[2], 2);

@@ -90,8 +90,7 @@ namespace
       loads.tractions[*names.at(sides.pressed).begin()] = {
         {std::make_shared<dealii::Functions::ConstantFunction<dim>>(
           down.begin_raw(), dim)}};
-      if (piece != nullptr)
-        Material material;
+      Material material;
       material.young_modulus = 69.;
       material.poisson_ratio = 0.33;
       problem->assemble(material, loads);
