@@ -148,13 +148,17 @@ def draw_body(directory, length, stress, field):
                                            linestyles="--", label="at rest"))
         axes.set(xlabel="x" + length, ylabel="y" + length)
     if grid.dim == 2 and profile:
-        # With the displacements of the nearest points of the boundary.
-        own = numpy.unique(faces)
+        # With displacements between the two nearest points of the boundary.
         nodes = numpy.array([profile["x"], profile["y"]]).T
-        nearest = own[[((rest[own] - node)**2).sum(axis=1).argmin()
-                       for node in nodes]]
-        show_nodes(axes, profile, nodes + scale * u[nearest, :2],
-                   max(4., min(20., 2000. / len(nodes))))
+        own = numpy.unique(faces)
+        own = own[numpy.unique((rest[own] / grid.size).round(6), axis=0,
+                               return_index=True)[1]]
+        for k, node in enumerate(nodes.copy()):
+            distance = numpy.linalg.norm(rest[own] - node, axis=1)
+            i, j = numpy.argsort(distance)[:2]
+            nodes[k] += scale * numpy.average(
+                u[own[[i, j]], :2], 0, [distance[j], distance[i]])
+        show_nodes(axes, profile, nodes, max(4., min(20., 2000. / len(nodes))))
     if grid.dim == 2:
         legend_above(axes)
     axes.autoscale_view()

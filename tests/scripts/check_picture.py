@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Pictures of a run in 2D, of quadratic displacements and in 3D, of a load path and a
+proof; what is read of the files is what the run found."""
+import json
+import os
+import subprocess
+
+import numpy
+
+from common import DEBOND, SOURCE, near
+
+from debond import picture, prm
+
+RUNS = {
+    "plane": ["benchmark-40x4.prm", "Solver/Method=automatic"],
+    "quadratic": ["benchmark-40x4.prm", "Solver/Method=automatic",
+                  "Mesh/Degree=2", "Contact law/Quadrature=gauss 4"],
+    "solid": ["bar-3d.prm", "Solver/Method=automatic"],
+    "path": ["benchmark-40x4.prm", "Solver/Method=automatic",
+             "Load path/Factors=0:0.25:1.25, 1:-0.25:0"],
+    "proof": ["benchmark-40x4.prm", "Solver/Method=majorise minimise",
+              "Contact law/Bond stiffness=1e5", "Contact law/Bond threshold=2e-4",
+              "Solver/Prove=true"]}
+PICTURES = {"path": ["load_path"], "proof": ["proof"]}
+
+for name, (scene, *settings) in RUNS.items():
+    subprocess.run([DEBOND, SOURCE / "prm" / scene] + [
+        word for setting in [*settings, f"Output/Directory={name}"]
+        for word in ("--set", setting)], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([SOURCE / "scripts" / "picture", name, "--units", "m, GPa"],
+                   check=True, stdout=subprocess.DEVNULL)
+    for drawn in ["body", "contact", *PICTURES.get(name, [])]:
+        for ending in "png", "svg":
+            assert os.path.getsize(f"{name}/{drawn}.{ending}") > 10000, drawn
+    with open(name + "/summary.json") as file:
+        summary = json.load(file)
+    grid = picture.Grid([name + "/body.vtu"])
+    assert len(grid.cells) == summary["cells"]
+    u = grid.at_points("displacement")
+    near(numpy.linalg.norm(u, axis=1).max(), summary["largest_displacement"],
+         1e-5)
+    near(grid.in_cells("von_mises").max(), summary["largest_von_mises"], 1e-5)
+    faces, owners = grid.boundary()
+    corners = grid.points[faces]
+    if grid.dim == 2:
+        size = numpy.linalg.norm(corners[:, 1] - corners[:, 0], axis=1).sum()
+        near(size, 2 * (0.4 + 0.04), 1e-5)
+    else:
+        size = numpy.linalg.norm(numpy.cross(
+            corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
+            axis=1).sum() / 2
+        near(size, 4 * 0.4 * 0.04 + 2 * 0.04**2, 1e-5)
+    assert set(map(tuple, numpy.sort(faces))) <= {
+        tuple(sorted(set(cell) - {corner})) for cell in
+        grid.cells[owners].tolist() for corner in cell}
+
+# A path by named columns, and a column that there is not.
+picture.draw_path("path", ["contact_reaction_y over mean_top_y"])
+try:
+    picture.draw_path("path", ["force over factor"])
+    raise AssertionError("There is no column force.")
+except prm.BadInput as error:
+    assert "contact_reaction_y" in str(error)
+
+# The colours leave out few cells and say which.
+_, axes = picture.plt.subplots()
+cells = axes.add_collection(picture.PolyCollection(numpy.zeros((1000, 3, 2))))
+picture.colour(axes, cells, numpy.append(numpy.linspace(0, 1, 999), 50.), "s")
+bar = axes.figure.axes[-1].get_xlabel()
+assert bar == "s; 5 cells above 0.996 cut off, the largest is 50", bar
+
+# S and g that Output/Matrices writes are those of A and f.
+subprocess.run([DEBOND, SOURCE / "prm" / "benchmark-40x4.prm", "--set",
+                "Mesh/Cells=10, 2", "--set", "Solver/Method=automatic", "--set",
+                "Output/Directory=m", "--set", "Output/Matrices=true"],
+               check=True, stdout=subprocess.DEVNULL)
+
+
+def read(file):
+    with open(f"m/{file}.mtx") as lines:
+        kind = next(lines).split()[2:]
+        m, n, *_ = map(int, next(lines).split())
+        numbers = numpy.array([line.split() for line in lines], dtype=float)
+    matrix = numpy.zeros((m, n))
+    if kind[0] == "coordinate":
+        i, j = numbers[:, :2].astype(int).T - 1
+        matrix[i, j] = numbers[:, 2]
+    elif kind[2] == "symmetric":
+        j, i = numpy.triu_indices(n)
+        matrix[i, j] = numbers[:, 0]
+    else:
+        matrix = numbers.reshape(n, m).T
+    if kind[2] == "symmetric":
+        matrix = matrix + numpy.tril(matrix, -1).T
+    return matrix
+
+
+A, S, F = read("A"), read("S"), read("frames")
+f, g, contact = (read(name)[:, 0] for name in ("f", "g", "contact"))
+kept = contact.astype(int) - 1
+rest = numpy.setdiff1d(numpy.arange(len(A)), kept)
+inner = numpy.linalg.solve(A[numpy.ix_(rest, rest)], numpy.column_stack(
+    [A[numpy.ix_(rest, kept)], f[rest]]))
+mixed = A[numpy.ix_(kept, rest)] @ inner
+assert abs(A[numpy.ix_(kept, kept)] - mixed[:, :-1] - S).max() < 1e-11 * S.max()
+assert abs(f[kept] - mixed[:, -1] - g).max() < 1e-11 * abs(g).max()
+assert abs(F.T @ F - numpy.eye(len(F))).max() < 1e-14
+near(read("weights").sum(), 0.4 - 0.04, 1e-12)  # the corners have the rest
+assert not read("bounds").any()
