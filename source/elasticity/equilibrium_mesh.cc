@@ -2,7 +2,6 @@
 #include <deal.II/base/quadrature_lib.h>
 
 #include <debond/elasticity/equilibrium_mesh.h>
-#include <debond/elasticity/linear_simplex.h>
 #include <debond/elasticity/side_moments.h>
 
 #include <algorithm>
@@ -227,9 +226,6 @@ namespace Debond
           all_places.emplace_back();
           for (unsigned int v = 0; v <= dim; ++v)
             all_places.back().vertices.push_back(cell->vertex_index(v));
-          if (LinearSimplex<dim>(cell).volume < 0.)
-            std::swap(all_places.back().vertices[dim - 1],
-                      all_places.back().vertices[dim]);
           all_places.back().cells.assign(dim + 1, cell);
         }
   }
@@ -417,8 +413,7 @@ namespace Debond
                                      normal,
                                      measure,
                                      element,
-                                     static_cast<unsigned int>(
-                                       cell->active_cell_index()),
+                                     cell,
                                      cell->material_id(),
                                      {}};
               for (unsigned int k = 0; k < dim; ++k)

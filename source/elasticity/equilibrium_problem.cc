@@ -4,7 +4,6 @@
 #include <deal.II/lac/sparsity_pattern.h>
 
 #include <debond/elasticity/equilibrium_problem.h>
-#include <debond/elasticity/linear_simplex.h>
 #include <debond/elasticity/side_moments.h>
 #include <debond/elasticity/trace_constant.h>
 
@@ -53,28 +52,27 @@ namespace Debond
 
 
 
+    /// Of each active cell int epsilon(u) : C epsilon(u).
     template <int dim>
-    dealii::SymmetricTensor<2, dim>
-    elastic_stress(const Material                        &material,
-                   const dealii::SymmetricTensor<2, dim> &strain)
+    std::vector<double>
+    strain_energies(const ElasticFields<dim> &fields, const DofVector &u)
     {
-      return 2. * material.shear_modulus() * strain +
-             material.template lame_lambda<dim>() * trace(strain) *
-               dealii::unit_symmetric_tensor<dim>();
-    }
-
-
-
-    /// Of a point of the cell.
-    template <int dim>
-    std::array<double, dim + 1>
-    barycentric_of(const LinearSimplex<dim>                  &simplex,
-                   const typename EquilibriumMesh<dim>::Cell &cell,
-                   const dealii::Point<dim>                  &point)
-    {
-      std::array<double, dim + 1> result;
-      for (unsigned int v = 0; v <= dim; ++v)
-        result[v] = 1. + simplex.gradients[v] * (point - cell->vertex(v));
+      CellStresses<dim>   stresses(fields,
+                                 u,
+                                 1.,
+                                 strain_rule<dim>(fields.unknowns().degree()),
+                                 dealii::update_JxW_values);
+      const auto         &values = stresses.values();
+      std::vector<double> result;
+      for (const auto &cell :
+           fields.unknowns().dof_handler().active_cell_iterators())
+        {
+          stresses.reinit(cell);
+          result.push_back(0.);
+          for (const unsigned int q : values.quadrature_point_indices())
+            result.back() += values.JxW(q) * (symmetrize(stresses.gradient(q)) *
+                                              stresses.elastic_stress(q));
+        }
       return result;
     }
   } // namespace
@@ -250,7 +248,7 @@ namespace Debond
   EquilibriumProblem<dim>::condense(const std::vector<double> &weights) const
   {
     const Eigen::VectorXd &loads = mesh.loads_on_sides();
-    DofVector f(static_cast<unsigned int>(loads.size()));
+    DofVector              f(static_cast<unsigned int>(loads.size()));
     std::copy(loads.begin(), loads.end(), f.begin());
     dealii::DynamicSparsityPattern pattern(f.size());
     for (const Place &place : mesh.places())
@@ -329,37 +327,48 @@ namespace Debond
 
   template <int dim>
   double
-  EquilibriumProblem<dim>::elastic_functional(
-    const std::vector<CellDisplacement<dim>> &u) const
+  EquilibriumProblem<dim>::elastic_functional(const ElasticFields<dim> &fields,
+                                              const DofVector          &u) const
   {
-    double sum = 0.;
-    for (const double energy : strain_energies(u))
-      sum += 0.5 * energy;
-    for (const auto &cell : mesh.triangulation().active_cell_iterators())
-      if (const double p = mesh.thermal_stress(cell); p != 0.)
-        {
-          const CellDisplacement<dim> &own = u[cell->active_cell_index()];
-          const BernsteinSimplex<dim>  simplex(cell, own.degree);
-          for (unsigned int q = 0; q < simplex.n_points; ++q)
-            sum -= std::abs(simplex.weight) * p *
-                   trace(own.strain(simplex, simplex.point(q)));
-        }
+    CellStresses<dim>                   stresses(fields,
+                               u,
+                               1.,
+                               strain_rule<dim>(fields.unknowns().degree()),
+                               dealii::update_values |
+                                 dealii::update_JxW_values);
+    const auto                         &values = stresses.values();
+    double                              sum    = 0.;
+    std::vector<dealii::Tensor<1, dim>> integrals; // of u over active cells
+    for (const auto &cell :
+         fields.unknowns().dof_handler().active_cell_iterators())
+      {
+        stresses.reinit(cell);
+        integrals.emplace_back();
+        const double p = mesh.thermal_stress(Cell(cell));
+        for (const unsigned int q : values.quadrature_point_indices())
+          {
+            const dealii::SymmetricTensor<2, dim> epsilon =
+              symmetrize(stresses.gradient(q));
+            sum += values.JxW(q) * (0.5 * epsilon * stresses.elastic_stress(q) -
+                                    p * trace(epsilon));
+            integrals.back() += values.JxW(q) * stresses.displacement(q);
+          }
+      }
     const Eigen::VectorXd &loads = mesh.loads_on_sides();
     for (const Place &place : mesh.places())
       for (unsigned int i = 0; i < place.sides.size(); ++i)
         {
-          const CellDisplacement<dim> &own =
-            u[place.cells[i]->active_cell_index()];
-          if (place.body_force != dealii::Tensor<1, dim>())
-            sum -= std::abs(LinearSimplex<dim>(place.cells[i]).volume) /
-                   place.parts_of_a_cell() * (place.body_force * own.mean());
+          const Cell &cell = place.cells[i];
+          sum -= place.body_force * integrals[cell->active_cell_index()] /
+                 place.parts_of_a_cell();
 
           // Only sides of the boundary have loads.
           const unsigned int first = unknowns_of_a_side<dim> * place.sides[i];
           if (loads.segment<unknowns_of_a_side<dim>>(first).isZero(0.))
             continue;
           const Side &side = mesh.sides()[place.sides[i]];
-          const auto  l    = side_unknowns(own.on_side(side.vertices));
+          const auto  l    = side_unknowns(
+            SideDisplacement<dim>(fields.unknowns(), u, cell, side.vertices));
           for (unsigned int k = 0; k < dim; ++k)
             for (unsigned int d = 0; d < dim; ++d)
               sum -= loads(first + dim * k + d) * (l[k] * side.directions[d]);
@@ -371,35 +380,10 @@ namespace Debond
 
   template <int dim>
   std::vector<double>
-  EquilibriumProblem<dim>::strain_energies(
-    const std::vector<CellDisplacement<dim>> &u) const
+  EquilibriumProblem<dim>::element_energies(const ElasticFields<dim> &fields,
+                                            const DofVector          &u) const
   {
-    std::vector<double> result;
-    for (const auto &cell : mesh.triangulation().active_cell_iterators())
-      {
-        const CellDisplacement<dim> &own = u[cell->active_cell_index()];
-        const BernsteinSimplex<dim>  simplex(cell, own.degree);
-        const Material              &material = materials(cell->material_id());
-        result.push_back(0.);
-        for (unsigned int q = 0; q < simplex.n_points; ++q)
-          {
-            const dealii::SymmetricTensor<2, dim> epsilon =
-              own.strain(simplex, simplex.point(q));
-            result.back() += std::abs(simplex.weight) *
-                             (epsilon * elastic_stress(material, epsilon));
-          }
-      }
-    return result;
-  }
-
-
-
-  template <int dim>
-  std::vector<double>
-  EquilibriumProblem<dim>::element_energies(
-    const std::vector<CellDisplacement<dim>> &u) const
-  {
-    const std::vector<double> of_cells = strain_energies(u);
+    const std::vector<double> of_cells = strain_energies(fields, u);
     std::vector<double>       result;
     for (const Place &place : mesh.places())
       {
@@ -417,12 +401,12 @@ namespace Debond
 
   template <int dim>
   std::vector<double>
-  EquilibriumProblem<dim>::load_rests(
-    const std::vector<CellDisplacement<dim>> &u) const
+  EquilibriumProblem<dim>::load_rests(const ElasticFields<dim> &fields,
+                                      const DofVector          &u) const
   {
     if (mesh.load_rests().empty())
       return {};
-    const std::vector<double> energies = strain_energies(u);
+    const std::vector<double> energies = strain_energies(fields, u);
     std::vector<double>       result(energies.size(), 0.);
     for (const auto &rest : mesh.load_rests())
       {
@@ -441,43 +425,61 @@ namespace Debond
   template <int dim>
   std::vector<double>
   EquilibriumProblem<dim>::constitutive_gaps(
-    const std::vector<CellDisplacement<dim>> &u,
-    const std::vector<Eigen::VectorXd>       &stresses) const
+    const ElasticFields<dim>           &fields,
+    const DofVector                    &u,
+    const std::vector<Eigen::VectorXd> &stresses) const
   {
+    // The middle of a cell is the centre of an element, or its vertices are
+    // corners and centre.
+    std::vector<dealii::Point<dim>> points =
+      dealii::QGaussSimplex<dim>(1).get_points();
+    const auto reference_cell = dealii::ReferenceCells::get_simplex<dim>();
+    for (const unsigned int v : reference_cell.vertex_indices())
+      points.push_back(reference_cell.template vertex<dim>(v));
+    CellStresses<dim>   elastic(fields, u, 1., points);
+    const auto         &dofs = fields.unknowns().dof_handler();
     std::vector<double> gaps(mesh.triangulation().n_active_cells(), 0.);
     for (unsigned int element = 0; element < mesh.places().size(); ++element)
       {
-        const Place                   &place  = mesh.places()[element];
-        const EquilibriumElement<dim> &shape  = all_elements[element];
-        const Eigen::VectorXd         &stress = stresses[element];
+        const Place           &place  = mesh.places()[element];
+        const Eigen::VectorXd &stress = stresses[element];
         for (unsigned int i = 0; i < place.cells.size(); ++i)
           {
-            const Cell                  &cell = place.cells[i];
-            const CellDisplacement<dim> &own  = u[cell->active_cell_index()];
-            const BernsteinSimplex<dim>  simplex(cell, own.degree);
+            const Cell     &cell     = place.cells[i];
             const Material &material = materials(cell->material_id());
             const auto      local    = corners_of_side<dim>(
               static_cast<unsigned int>(place.vertices.size()), i);
+            elastic.reinit(typename ElasticFields<dim>::Cell(
+              &dofs.get_triangulation(), cell->level(), cell->index(), &dofs));
+            // Of points; what is no corner of the side is the centre.
+            std::array<unsigned int, dim + 1> numbers;
+            numbers[dim] =
+              place.vertices.size() == dim + 1 ? 0 : 1 + dim * (dim + 1) / 2;
+            for (unsigned int k = 0; k < dim; ++k)
+              {
+                unsigned int v = 0;
+                while (cell->vertex_index(v) != place.vertices[local[k]])
+                  ++v;
+                numbers[k] = 1 + v;
+                if (numbers[dim] != 0)
+                  numbers[dim] -= v;
+              }
             // Linear, as both stresses are.
             LinearStress<dim> difference =
               stress.segment<n_of_part<dim>>(n_of_part<dim> * i);
             for (unsigned int corner = 0; corner <= dim; ++corner)
               {
-                const dealii::Point<dim> &point =
-                  corner < dim ? shape.corners[local[corner]] : shape.centre;
-                const dealii::SymmetricTensor<2, dim> elastic = elastic_stress(
-                  material,
-                  own.strain(simplex,
-                             barycentric_of<dim>(simplex, cell, point)));
+                const dealii::SymmetricTensor<2, dim> of_u =
+                  elastic.elastic_stress(numbers[corner]);
                 for (unsigned int k = 0; k < n_at_corner<dim>; ++k)
                   difference(n_at_corner<dim> * corner + k) -=
-                    elastic.access_raw_entry(k) -
+                    of_u.access_raw_entry(k) -
                     (k < dim ? mesh.thermal_stress(cell) : 0.);
               }
             // A cell's parts have the same measure.
             gaps[cell->active_cell_index()] +=
               0.5 * complementary_energy<dim>(difference,
-                                              std::abs(simplex.volume) /
+                                              cell->measure() /
                                                 place.parts_of_a_cell(),
                                               material);
           }
@@ -509,13 +511,11 @@ namespace Debond
             for (unsigned int corner = 0; corner <= dim; ++corner)
               total.template segment<dim>(n_at_corner<dim> * corner).array() +=
                 mesh.thermal_stress(cell);
-            energy +=
-              0.5 / weight *
-              complementary_energy<dim>(total,
-                                        std::abs(
-                                          LinearSimplex<dim>(cell).volume) /
-                                          place.parts_of_a_cell(),
-                                        materials(cell->material_id()));
+            energy += 0.5 / weight *
+                      complementary_energy<dim>(total,
+                                                cell->measure() /
+                                                  place.parts_of_a_cell(),
+                                                materials(cell->material_id()));
           }
       }
     const MatrixView S = condensed.schur_complement();

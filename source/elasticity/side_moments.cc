@@ -85,35 +85,98 @@ namespace Debond
 
 
 
-  std::array<dealii::Tensor<1, 2>, 2>
-  side_unknowns(const CellDisplacement<2>::OnSide &u)
+  template <int dim>
+  SideDisplacement<dim>::SideDisplacement(
+    const ElasticUnknowns<dim>                               &unknowns,
+    const DofVector                                          &displacement,
+    const typename dealii::Triangulation<dim>::cell_iterator &cell,
+    const std::array<unsigned int, dim>                      &vertices)
+    : fe(unknowns.dof_handler().get_fe())
+    , values(fe.dofs_per_cell)
   {
-    return {{1. / 3. * (u[0] + u[1] + u[2]), 0.5 * (u[1] - u[0])}};
+    const auto &dofs = unknowns.dof_handler();
+    const typename dealii::DoFHandler<dim>::active_cell_iterator dof_cell(
+      &dofs.get_triangulation(), cell->level(), cell->index(), &dofs);
+    dof_cell->get_dof_values(displacement, values);
+    const auto reference_cell = dof_cell->reference_cell();
+    for (unsigned int k = 0; k < dim; ++k)
+      for (const unsigned int v : dof_cell->vertex_indices())
+        if (dof_cell->vertex_index(v) == vertices[k])
+          corners[k] = reference_cell.template vertex<dim>(v);
   }
 
 
 
-  std::array<dealii::Tensor<1, 3>, 3>
-  side_unknowns(const CellDisplacement<3>::OnSide &u)
+  template <int dim>
+  dealii::Tensor<1, dim>
+  SideDisplacement<dim>::operator()(
+    const std::array<double, dim> &barycentric) const
   {
-    dealii::Tensor<1, 3> sum;
-    for (const dealii::Tensor<1, 3> &coefficient : u)
-      sum += coefficient;
-    std::array<dealii::Tensor<1, 3>, 3> result;
-    // 3 int lambda_k of the basis is 3/10 of the corner, 1/5 of the edges
-    // that meet there, and 1/10 of the others.
-    for (unsigned int k = 0; k < 3; ++k)
+    dealii::Point<dim> point;
+    for (unsigned int k = 0; k < dim; ++k)
+      point += barycentric[k] * corners[k];
+    dealii::Tensor<1, dim> result;
+    for (unsigned int i = 0; i < values.size(); ++i)
+      result[fe.system_to_component_index(i).first] +=
+        fe.shape_value(i, point) * values(i);
+    return result;
+  }
+
+
+
+  template <int dim>
+  const std::vector<std::pair<std::array<double, dim>, double>> &
+  side_rule()
+  {
+    static const auto result = [] {
+      const dealii::Quadrature<dim - 1> rule = face_rule<dim>(1);
+      std::vector<std::pair<std::array<double, dim>, double>> points;
+      for (unsigned int q = 0; q < rule.size(); ++q)
+        {
+          points.push_back({{}, (dim - 1.) * rule.weight(q)});
+          points.back().first[0] = 1.;
+          for (unsigned int k = 1; k < dim; ++k)
+            {
+              points.back().first[k] = rule.point(q)[k - 1];
+              points.back().first[0] -= rule.point(q)[k - 1];
+            }
+        }
+      return points;
+    }();
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::array<dealii::Tensor<1, dim>, dim>
+  side_unknowns(const SideDisplacement<dim> &u)
+  {
+    std::array<dealii::Tensor<1, dim>, dim> result;
+    for (const auto &[barycentric, weight] : side_rule<dim>())
       {
-        result[k] = sum + 2. * u[k];
-        for (unsigned int e = 0; e < 3; ++e)
-          if (simplex_edges[e][0] == k || simplex_edges[e][1] == k)
-            result[k] += u[3 + e];
-        result[k] *= 0.1;
+        const dealii::Tensor<1, dim> here = weight * u(barycentric);
+        if constexpr (dim == 2)
+          {
+            // The linear function of xi from -1 to 1 with the same moments.
+            result[0] += here;
+            result[1] += 3. * (barycentric[1] - barycentric[0]) * here;
+          }
+        else
+          for (unsigned int k = 0; k < dim; ++k)
+            result[k] += 3. * barycentric[k] * here;
       }
     return result;
   }
 
 
+
+  template class SideDisplacement<2>;
+  template class SideDisplacement<3>;
+  template decltype(side_rule<2>)     side_rule<2>;
+  template decltype(side_rule<3>)     side_rule<3>;
+  template decltype(side_unknowns<2>) side_unknowns<2>;
+  template decltype(side_unknowns<3>) side_unknowns<3>;
   template decltype(side_traction<2>) side_traction<2>;
   template decltype(side_traction<3>) side_traction<3>;
 } // namespace Debond

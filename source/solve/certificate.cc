@@ -3,6 +3,7 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/contact/exact_energy.h>
+#include <debond/elasticity/side_moments.h>
 #include <debond/elasticity/temperature_load.h>
 #include <debond/mesh/positive_part.h>
 #include <debond/optimization/global/rounded_branches.h>
@@ -16,7 +17,6 @@
 #include <iomanip>
 #include <new>
 #include <sstream>
-#include <type_traits>
 
 namespace Debond
 {
@@ -163,71 +163,23 @@ namespace Debond
 
 
 
-    /// A point of a side with its part of it.
-    template <int dim>
-    struct SideQuadrature
-    {
-      std::array<double, dim> barycentric;
-      double                  weight;
-    };
-
-
-
-    /// Exact up to degree 5.
-    std::vector<SideQuadrature<2>>
-    side_quadrature(std::integral_constant<int, 2>)
-    {
-      const dealii::QGauss<1>        rule(3);
-      std::vector<SideQuadrature<2>> result;
-      for (unsigned int q = 0; q < rule.size(); ++q)
-        result.push_back(
-          {{{1. - rule.point(q)[0], rule.point(q)[0]}}, rule.weight(q)});
-      return result;
-    }
-
-
-
-    std::vector<SideQuadrature<3>>
-    side_quadrature(std::integral_constant<int, 3>)
-    {
-      // (1 - x) dy dx over the unit square.
-      const dealii::QGauss<1>        along(4), across(3);
-      std::vector<SideQuadrature<3>> result;
-      for (unsigned int i = 0; i < along.size(); ++i)
-        for (unsigned int j = 0; j < across.size(); ++j)
-          {
-            const double x = along.point(i)[0];
-            const double y = (1. - x) * across.point(j)[0];
-            result.push_back(
-              {{{1. - x - y, x, y}},
-               2. * (1. - x) * along.weight(i) * across.weight(j)});
-          }
-      return result;
-    }
-
-
-
     /// The normal displacement of a side, of degree 1 or 2.
     template <int dim>
     class Trace
     {
     public:
-      Trace(const SideOf<dim>                        &side,
-            const std::vector<CellDisplacement<dim>> &displacement)
-        : measure(side.measure)
-      {
-        const auto u = displacement[side.cell].on_side(side.vertices);
-        for (unsigned int k = 0; k < u.size(); ++k)
-          coefficients[k] = u[k] * side.normal;
-      }
+      Trace(const SideOf<dim>          &side,
+            const ElasticUnknowns<dim> &unknowns,
+            const DofVector            &displacement)
+        : side(side)
+        , u(unknowns, displacement, side.cell, side.vertices)
+      {}
 
       double
       mean() const
       {
-        double sum = 0.;
-        for (const double coefficient : coefficients)
-          sum += coefficient;
-        return sum / static_cast<double>(coefficients.size());
+        return integral([](const auto &, const double s) { return s; }) /
+               side.measure;
       }
 
       /// Of a function of the barycentric coordinates and the displacement
@@ -236,23 +188,16 @@ namespace Debond
       double
       integral(const Function &function) const
       {
-        static const std::vector<SideQuadrature<dim>> rule =
-          side_quadrature(std::integral_constant<int, dim>());
         double sum = 0.;
-        for (const SideQuadrature<dim> &point : rule)
-          {
-            const auto basis = bernstein(point.barycentric, 2);
-            double     value = 0.;
-            for (unsigned int k = 0; k < coefficients.size(); ++k)
-              value += basis[k] * coefficients[k];
-            sum += point.weight * measure * function(point.barycentric, value);
-          }
+        for (const auto &[barycentric, weight] : side_rule<dim>())
+          sum += weight * side.measure *
+                 function(barycentric, u(barycentric) * side.normal);
         return sum;
       }
 
     private:
-      double                                     measure;
-      std::array<double, n_coefficients(dim, 2)> coefficients;
+      const SideOf<dim>          &side;
+      const SideDisplacement<dim> u;
     };
 
 
@@ -277,10 +222,11 @@ namespace Debond
     /// The least J with given branches.
     template <int dim>
     void
-    bound_fixed_state(const EquilibriumProblem<dim>            &equilibrium,
-                      const BranchMinimum                      &law,
-                      const std::vector<CellDisplacement<dim>> &displacement,
-                      Certificate                              &certificate)
+    bound_fixed_state(const EquilibriumProblem<dim> &equilibrium,
+                      const BranchMinimum           &law,
+                      const ElasticFields<dim>      &fields,
+                      const DofVector               &displacement,
+                      Certificate                   &certificate)
     {
       const std::vector<SideOf<dim>> &sides = equilibrium.contact_sides();
       const Eigen::Index     n = static_cast<Eigen::Index>(sides.size());
@@ -306,7 +252,7 @@ namespace Debond
       Eigen::VectorXd                   r = f;
       for (Eigen::Index i = 0; i < n; ++i)
         {
-          const Trace<dim> trace(sides[i], displacement);
+          const Trace<dim> trace(sides[i], fields.unknowns(), displacement);
           pieces.push_back(law[law.index(trace.mean())]);
           // The integral of the square of the linear function with these means.
           const double weight =
@@ -356,8 +302,9 @@ namespace Debond
       const std::vector<Eigen::VectorXd> stresses =
         equilibrium.stresses(condensed->expand(x));
       certificate.reserve = equilibrium.rounding_of(*condensed, x, stresses);
-      certificate.upper   = equilibrium.elastic_functional(displacement);
-      certificate.gaps = equilibrium.constitutive_gaps(displacement, stresses);
+      certificate.upper = equilibrium.elastic_functional(fields, displacement);
+      certificate.gaps =
+        equilibrium.constitutive_gaps(fields, displacement, stresses);
       for (const auto &stress : equilibrium.mean_stresses(stresses))
         {
           certificate.stresses.emplace_back();
@@ -373,7 +320,7 @@ namespace Debond
                                     sides[i].measure,
                                     tractions,
                                     traction_rounding * largest_traction);
-          const Trace<dim> trace(sides[i], displacement);
+          const Trace<dim> trace(sides[i], fields.unknowns(), displacement);
           const double     of_bonds = trace.integral(
             [&](const auto &, const double s) { return pieces[i].value(s); });
           // Nothing may pull there: what rounding pulls costs this much at the
@@ -387,7 +334,7 @@ namespace Debond
               sides[i].measure * std::abs(trace.mean());
           certificate.lower += bonds;
           certificate.upper += of_bonds;
-          certificate.gaps[sides[i].cell] +=
+          certificate.gaps[sides[i].cell->active_cell_index()] +=
             of_bonds - bonds +
             trace.integral([&](const auto &barycentric, const double s) {
               double traction = 0.;
@@ -501,10 +448,11 @@ namespace Debond
   {
     const bool is_own = &solved == scene.get();
     Assert(is_own || is_for_finer_meshes(), dealii::ExcInternalError());
-    dealii::Timer                            timer;
-    const BranchMinimum                     &law = scene->law().branches();
-    const std::vector<CellDisplacement<dim>> displacement =
-      cell_displacements(solved.problem(), u);
+    dealii::Timer             timer;
+    const BranchMinimum      &law    = scene->law().branches();
+    const ElasticFields<dim> &fields = solved.problem().fields();
+    const DofVector           displacement =
+      solved.problem().unknowns().cartesian_displacement(u);
     const double elastic = elastic_functional(solved, displacement);
     Certificate  certificate;
     certificate.minimum         = minimum;
@@ -520,7 +468,8 @@ namespace Debond
     if (is_own)
       try
         {
-          bound_fixed_state(equilibrium, law, displacement, certificate);
+          bound_fixed_state(
+            equilibrium, law, fields, displacement, certificate);
           const double own = rounding();
           certificate.upper += own;
           certificate.lower -= certificate.reserve + own;
@@ -549,7 +498,7 @@ namespace Debond
             {
               // Shifts soften the whole element.
               const std::vector<double> energies =
-                equilibrium.element_energies(displacement);
+                equilibrium.element_energies(fields, displacement);
               for (unsigned int i = 0; i < certificate.n_sides; ++i)
                 side_energies[i] =
                   energies[equilibrium.contact_sides()[i].element];
@@ -582,8 +531,8 @@ namespace Debond
           certificate.proof_nodes  = bound.nodes;
           if (!certificate.gaps.empty())
             for (unsigned int i = 0; i < bound.losses.size(); ++i)
-              certificate.gaps[equilibrium.contact_sides()[i].cell] +=
-                bound.losses[i];
+              certificate.gaps[equilibrium.contact_sides()[i]
+                                 .cell->active_cell_index()] += bound.losses[i];
           certificate.sides = std::move(bound.sides);
           certificate.lengths =
             certified_lengths(certificate.sides, scene->law());
@@ -592,7 +541,8 @@ namespace Debond
       throw EquilibriumError("no bound was found (" +
                              to_string(certificate.proof_status) + ")");
     // What the equilibrium does not know of the loads: as much as at u.
-    const std::vector<double> rests = equilibrium.load_rests(displacement);
+    const std::vector<double> rests =
+      equilibrium.load_rests(fields, displacement);
     for (unsigned int cell = 0; cell < rests.size(); ++cell)
       {
         certificate.lower -= rests[cell];
@@ -626,13 +576,13 @@ namespace Debond
 
   template <int dim>
   double
-  Certifier<dim>::elastic_functional(
-    const Scene<dim>                         &solved,
-    const std::vector<CellDisplacement<dim>> &displacement) const
+  Certifier<dim>::elastic_functional(const Scene<dim> &solved,
+                                     const DofVector  &displacement) const
   {
+    const ElasticFields<dim> &fields = solved.problem().fields();
     if (&solved == scene.get())
-      return equilibrium.elastic_functional(displacement);
-    return equilibrium_problem(solved).elastic_functional(displacement);
+      return equilibrium.elastic_functional(fields, displacement);
+    return equilibrium_problem(solved).elastic_functional(fields, displacement);
   }
 
 

@@ -163,8 +163,7 @@ namespace
             parameters.solver.proof,
             []() { return true; },
             earlier,
-            true,
-            0.);
+            true);
         };
         certificate = certify(random.kind, scene, result.u, nullptr);
         counts.add_parts(

@@ -234,8 +234,7 @@ namespace
               {},
               []() { return true; },
               is_second ? &earlier : nullptr,
-              true,
-              0.);
+              true);
             if (is_second)
               for (unsigned int i = 0; i < certificate.sides.size(); ++i)
                 n_narrower +=
@@ -287,7 +286,7 @@ namespace
       {
         const DofVector   u           = solution(scene_values + Values{load});
         const Certificate certificate = certifier.certify(
-          *scene, u, {}, []() { return true; }, nullptr, false, 0.);
+          *scene, u, {}, []() { return true; }, nullptr, false);
         is_below = is_below && certificate.lower < certificate.upper;
 
         std::map<double, double> displacements;

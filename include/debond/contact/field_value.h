@@ -4,6 +4,8 @@
 
 #include <deal.II/base/function.h>
 #include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
+#include <deal.II/lac/vector.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +31,23 @@ namespace Debond
 
 
 
+  /// The value. Throws std::invalid_argument with the place if it is not
+  /// finite.
+  template <int dim>
+  double
+  finite(const double value, const dealii::Point<dim> &point)
+  {
+    if (!std::isfinite(value))
+      throw std::invalid_argument(std::string("it is not finite, ") +
+                                  (std::isnan(value) ? "nan" :
+                                   value > 0.        ? "inf" :
+                                                       "-inf") +
+                                  ", at " + point_text(point));
+    return value;
+  }
+
+
+
   /// A component of a field. Throws std::invalid_argument with the place if it
   /// is not finite there.
   template <int dim>
@@ -46,13 +65,7 @@ namespace Debond
       {
         // muParser's functions throw outside of their domains.
       }
-    if (!std::isfinite(value))
-      throw std::invalid_argument(std::string("it is not finite, ") +
-                                  (std::isnan(value) ? "nan" :
-                                   value > 0.        ? "inf" :
-                                                       "-inf") +
-                                  ", at " + point_text(point));
-    return value;
+    return finite(value, point);
   }
 
 
@@ -64,9 +77,18 @@ namespace Debond
                const dealii::Point<dim>    &point)
   {
     AssertDimension(field.n_components, dim);
+    dealii::Vector<double> values(dim);
+    try
+      {
+        field.vector_value(point, values);
+      }
+    catch (const std::exception &)
+      {
+        values = std::numeric_limits<double>::quiet_NaN();
+      }
     dealii::Tensor<1, dim> result;
     for (unsigned int d = 0; d < dim; ++d)
-      result[d] = field_value(field, point, d);
+      result[d] = finite(values[d], point);
     return result;
   }
 

@@ -99,7 +99,7 @@ namespace Debond
       dealii::Tensor<1, dim>              normal;   ///< outward unit normal
       double                              measure;  ///< length or area
       unsigned int                        element;  ///< above it
-      unsigned int                        cell;     ///< above it, active
+      Cell                                cell;     ///< above it, active
       dealii::types::material_id          material;
 
       /// The unknowns of the normal displacement. In 2D its mean and its slope,

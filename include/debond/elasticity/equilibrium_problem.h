@@ -2,8 +2,8 @@
 #ifndef debond_elasticity_equilibrium_problem_h
 #define debond_elasticity_equilibrium_problem_h
 
-#include <debond/elasticity/cell_displacement.h>
 #include <debond/elasticity/equilibrium_mesh.h>
+#include <debond/elasticity/fields.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/by_region.h>
@@ -75,32 +75,31 @@ namespace Debond
     stresses(const DofVector           &unknowns,
              const std::vector<double> &weights = {}) const;
 
-    /// 1/2 a(u,u) - L(u) of the displacement u, given in the order of the
-    /// active cells, for the loads as represented here.
+    /// 1/2 a(u,u) - L(u) of the displacement @p u, the Cartesian values at the
+    /// nodes of @p fields on this mesh, for the loads as represented here.
     double
-    elastic_functional(const std::vector<CellDisplacement<dim>> &u) const;
+    elastic_functional(const ElasticFields<dim> &fields,
+                       const DofVector          &u) const;
 
-    /// Of each active cell int epsilon(u) : C epsilon(u).
+    /// Of each element int epsilon(u) : C epsilon(u).
     std::vector<double>
-    strain_energies(const std::vector<CellDisplacement<dim>> &u) const;
-
-    /// The same of each element.
-    std::vector<double>
-    element_energies(const std::vector<CellDisplacement<dim>> &u) const;
+    element_energies(const ElasticFields<dim> &fields,
+                     const DofVector          &u) const;
 
     /// Of each active cell how much work tractions on its sides may do that is
     /// not in the loads here, nothing if all are linear: by Cauchy's inequality
     /// for the strain energy of u and elementary_trace_constant(), which is of
     /// rectangles, so that it is an estimate.
     std::vector<double>
-    load_rests(const std::vector<CellDisplacement<dim>> &u) const;
+    load_rests(const ElasticFields<dim> &fields, const DofVector &u) const;
 
     /// Of each active cell
     ///     1/2 int |C^{1/2} epsilon(u) - C^{-1/2} (sigma + p 1)|^2
     /// of u as above and of @p stresses without weights.
     std::vector<double>
-    constitutive_gaps(const std::vector<CellDisplacement<dim>> &u,
-                      const std::vector<Eigen::VectorXd>       &stresses) const;
+    constitutive_gaps(const ElasticFields<dim>           &fields,
+                      const DofVector                    &u,
+                      const std::vector<Eigen::VectorXd> &stresses) const;
 
     /// What elimination may have lost of
     ///     c_0 - 1/2 s'S s = -1/2 int (sigma + p 1) : C^{-1} (sigma + p 1)

@@ -4,11 +4,14 @@
 
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
+#include <deal.II/grid/tria.h>
 
-#include <debond/elasticity/cell_displacement.h>
+#include <debond/elasticity/unknowns.h>
 
 #include <array>
 #include <functional>
+#include <utility>
+#include <vector>
 
 namespace Debond
 {
@@ -34,13 +37,41 @@ namespace Debond
                                               &traction,
     const std::array<dealii::Point<dim>, dim> &corners);
 
+  /// A displacement on a side of a cell.
+  template <int dim>
+  class SideDisplacement
+  {
+  public:
+    /// @p displacement: the Cartesian values at the nodes of @p unknowns;
+    /// @p vertices: of the side, in the order of the barycentric coordinates.
+    SideDisplacement(
+      const ElasticUnknowns<dim>                               &unknowns,
+      const DofVector                                          &displacement,
+      const typename dealii::Triangulation<dim>::cell_iterator &cell,
+      const std::array<unsigned int, dim>                      &vertices);
+
+    dealii::Tensor<1, dim>
+    operator()(const std::array<double, dim> &barycentric) const;
+
+  private:
+    const dealii::FiniteElement<dim>   &fe;
+    dealii::Vector<double>              values;  ///< of the cell's nodes
+    std::array<dealii::Point<dim>, dim> corners; ///< on the reference cell
+  };
+
+
+
+  /// Barycentric coordinates with weights, whose sum is 1: those of a side are
+  /// integrated exactly up to degree 5.
+  template <int dim>
+  const std::vector<std::pair<std::array<double, dim>, double>> &
+  side_rule();
+
   /// The unknowns of a side of a displacement, vector by vector, see
   /// EquilibriumElement.
-  std::array<dealii::Tensor<1, 2>, 2>
-  side_unknowns(const CellDisplacement<2>::OnSide &u);
-
-  std::array<dealii::Tensor<1, 3>, 3>
-  side_unknowns(const CellDisplacement<3>::OnSide &u);
+  template <int dim>
+  std::array<dealii::Tensor<1, dim>, dim>
+  side_unknowns(const SideDisplacement<dim> &u);
 } // namespace Debond
 
 #endif

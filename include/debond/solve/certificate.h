@@ -140,9 +140,8 @@ namespace Debond
 
   private:
     double
-    elastic_functional(
-      const Scene<dim>                         &solved,
-      const std::vector<CellDisplacement<dim>> &displacement) const;
+    elastic_functional(const Scene<dim> &solved,
+                       const DofVector  &displacement) const;
 
     const std::shared_ptr<const Scene<dim>> scene;
     const CertifiedMinimum                  minimum;
