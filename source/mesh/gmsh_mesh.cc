@@ -39,8 +39,8 @@ namespace Debond
       std::map<std::pair<int, int>, std::string> names;
     };
 
-    /// Throws if a section in ASCII has more lines than it says, which Gmsh
-    /// would leave out.
+    /// Throws if there are more elements in ASCII than the file says, which
+    /// Gmsh would leave out.
     FileText
     look_into(const std::string &file_name)
     {
@@ -48,66 +48,59 @@ namespace Debond
       if (!input)
         throw std::invalid_argument(file_name + " cannot be read");
       FileText    text;
-      double     &version = text.version;
-      std::size_t n_lines = 0, n_said = 0, most_lines = 0;
       std::string line, section;
+      std::size_t n_lines = 0, n_blocks = 0, n_elements = 0;
       std::getline(input, line);
       text.has_mark = line.rfind("\xef\xbb\xbf", 0) == 0;
       if (text.has_mark)
         line.erase(0, 3);
-      if (line.empty() || line[0] != '$')
-        return text;
-      do
+      bool is_text = !line.empty() && line[0] == '$';
+      for (; is_text; is_text = is_text && std::getline(input, line))
         {
           line.erase(line.find_last_not_of(" \t\r") + 1);
-          if (const std::size_t quote = line.find('"');
-              section == "$PhysicalNames" && version == 2. &&
-              quote != std::string::npos)
+          if (line.empty())
+            continue;
+          const std::size_t  quote = line.find('"');
+          std::istringstream numbers(line.substr(0, quote));
+          if (line[0] == '$')
             {
-              std::istringstream numbers(line.substr(0, quote));
-              int                dimension = -1, group = 0, second = 0;
+              if ((section == "$Elements" || section == "$ELM") &&
+                  n_lines > 1 + n_blocks + n_elements)
+                throw std::invalid_argument(
+                  words(file_name,
+                        ": ",
+                        section,
+                        " says that it has ",
+                        n_elements,
+                        ", but ",
+                        n_lines - 1 - n_blocks - n_elements,
+                        " more lines follow"));
+              section = line;
+              n_lines = 0;
+              if (section == "$NOD" || section == "$NO")
+                text.version = 1.;
+            }
+          else if (n_lines++ == 0 && section == "$MeshFormat")
+            {
+              int is_binary = 0;
+              numbers >> text.version >> is_binary;
+              is_text = is_binary == 0;
+            }
+          else if (n_lines == 1 && text.version >= 4.)
+            numbers >> n_blocks >> n_elements;
+          else if (n_lines == 1)
+            numbers >> n_elements;
+          else if (section == "$PhysicalNames" && text.version == 2. &&
+                   quote != std::string::npos)
+            {
+              int dimension = -1, group = 0, second = 0;
               numbers >> group;
               if (numbers >> second)
                 dimension = std::exchange(group, second);
               text.names[{dimension, group}] =
                 line.substr(quote + 1, line.rfind('"') - quote - 1);
             }
-          if (line.empty() || (line[0] != '$' && n_lines++ > 0))
-            continue;
-          std::istringstream numbers(line);
-          int                is_binary = 0;
-          std::size_t        n_blocks  = 0;
-          if (line[0] == '$')
-            {
-              if (most_lines > 0 && n_lines > most_lines)
-                throw std::invalid_argument(words(file_name,
-                                                  ": ",
-                                                  section,
-                                                  " says that it has ",
-                                                  n_said,
-                                                  ", but ",
-                                                  n_lines - most_lines,
-                                                  " more lines follow"));
-              section = line;
-              n_lines = most_lines = 0;
-              if (section == "$NOD" || section == "$NO")
-                version = 1.;
-            }
-          else if (section == "$MeshFormat")
-            numbers >> version >> is_binary;
-          else if (section == "$Nodes" || section == "$Elements" ||
-                   section == "$NOD" || section == "$ELM")
-            {
-              if (version >= 4.)
-                numbers >> n_blocks;
-              numbers >> n_said;
-              const bool has_tags = version >= 4. && section == "$Nodes";
-              most_lines          = 1 + n_blocks + (has_tags ? 2 : 1) * n_said;
-            }
-          if (is_binary != 0)
-            break;
         }
-      while (std::getline(input, line));
       return text;
     }
 
@@ -164,15 +157,15 @@ namespace Debond
         gmsh::open(has_mark ? copy.string() : file_name);
       }
 
-      /// What Gmsh has had to say.
+      /// What Gmsh has had to say, "Error" or "Warning".
       static std::string
-      errors()
+      messages(const std::string &kind)
       {
         std::vector<std::string> log, found;
         gmsh::logger::get(log);
         for (const std::string &line : log)
-          if (line.rfind("Error: ", 0) == 0 || line.rfind("Warning: ", 0) == 0)
-            found.push_back(printable(line.substr(line.find(' ') + 1)));
+          if (line.rfind(kind + ": ", 0) == 0)
+            found.push_back(printable(line.substr(kind.size() + 2)));
         return join(found, "; ");
       }
 
@@ -275,8 +268,8 @@ namespace Debond
                                                   subcells);
         if (is_hypercube)
           {
-            dealii::GridTools::invert_all_negative_measure_cells(vertices,
-                                                                 cell_data);
+            dealii::GridTools::invert_cells_with_negative_measure(vertices,
+                                                                  cell_data);
             dealii::GridTools::consistently_order_cells(cell_data);
           }
         source->mesh.create_triangulation(vertices, cell_data, subcells);
@@ -339,6 +332,13 @@ namespace Debond
         try
           {
             gmsh.open(file_name, text.has_mark);
+            // It loses groups then, and goes on.
+            const std::string warnings = GmshSession::messages("Warning");
+            if (warnings.find("not found in the Brep") != std::string::npos)
+              fail(
+                "Gmsh does not understand the file's entities, each of which "
+                "has to be a line: " +
+                warnings);
             if (gmsh::model::getDimension() > dim)
               fail("a body in 3D, but the scene has Dimension = 2");
             std::vector<std::size_t> tags;
@@ -365,7 +365,7 @@ namespace Debond
           }
         catch (...)
           {
-            const std::string errors = GmshSession::errors();
+            const std::string errors = GmshSession::messages("Error");
             fail("Gmsh does not read this" +
                  (errors.empty() ? errors : ": " + errors));
           }

@@ -202,7 +202,6 @@ test_errors()
              with("3 1 1 0", "3 0.2 0.2 0")));
   // Counts that do not fit.
   error(with("$Elements\n3", "$Elements\n2"));
-  error(with("$Nodes\n5", "$Nodes\n4"));
   error(with("3\n1 1 2 1 1 1 2\n2 2 2 1 1 1 2 3\n3 2 2 1 1 1 3 4",
              "1\n1 1 2 1 1 1 2"));
   // Two triangles that each have nodes of their own.
