@@ -83,15 +83,6 @@ namespace Debond
 
 
   template <int dim>
-  double
-  BisectedBody<dim>::n_whole_vertices_on(const std::string &boundary) const
-  {
-    return bisection.n_vertices_on(names.boundaries.at(boundary));
-  }
-
-
-
-  template <int dim>
   BodyShape
   BisectedBody<dim>::shape() const
   {

@@ -389,24 +389,6 @@ namespace Debond
 
 
   template <int dim>
-  unsigned int
-  Bisection<dim>::n_vertices_on(
-    const std::set<dealii::types::boundary_id> &boundaries) const
-  {
-    std::vector<bool> is_on(points.size(), false);
-    for (const Simplex &cell : cells)
-      for (unsigned int v = 0; v <= dim; ++v)
-        if (boundaries.count(cell.boundaries[v]) > 0)
-          for (unsigned int w = 0; w <= dim; ++w)
-            if (w != v)
-              is_on[cell.vertices[w]] = true;
-    return static_cast<unsigned int>(
-      std::count(is_on.begin(), is_on.end(), true));
-  }
-
-
-
-  template <int dim>
   void
   Bisection<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
   {

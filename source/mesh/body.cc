@@ -60,20 +60,6 @@ namespace Debond
 
 
   template <int dim>
-  double
-  Body<dim>::n_vertices_on(const std::string &boundary) const
-  {
-    std::string whole = boundary;
-    for (const Part<dim> &part : parts)
-      if (part.name == boundary)
-        whole = part.boundary;
-    return whole_boundaries().count(whole) > 0 ? n_whole_vertices_on(whole) :
-                                                 n_vertices();
-  }
-
-
-
-  template <int dim>
   PieceNames
   Body<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
   {

@@ -55,15 +55,6 @@ namespace Debond
 
 
   template <int dim>
-  double
-  BodyPiece<dim>::n_whole_vertices_on(const std::string &boundary) const
-  {
-    return whole->n_vertices_on(boundary);
-  }
-
-
-
-  template <int dim>
   BodyShape
   BodyPiece<dim>::shape() const
   {

@@ -192,23 +192,6 @@ namespace Debond
 
 
   template <int dim>
-  double
-  Box<dim>::n_whole_vertices_on(const std::string &side) const
-  {
-    const unsigned int boundary = box_sides<dim>().at(side);
-    double             corners = 1., faces = 1.;
-    for (unsigned int d = 0; d < dim; ++d)
-      if (d != boundary / 2)
-        {
-          corners *= parameters.cells[d] + 1.;
-          faces *= parameters.cells[d];
-        }
-    return dim == 2 ? corners : corners + faces;
-  }
-
-
-
-  template <int dim>
   BodyShape
   Box<dim>::shape() const
   {

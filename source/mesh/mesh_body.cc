@@ -55,39 +55,11 @@ namespace Debond
       is_simplicial ?
         n_refinements :
         HalvedMesh<dim>::level_of_units(mesh.n_active_cells(), n_refinements);
-    all = {static_cast<double>(mesh.n_used_vertices()),
-           static_cast<double>(mesh.n_active_lines()),
-           static_cast<double>(dim == 2 ? mesh.n_active_cells() :
-                                          mesh.n_active_faces()),
-           static_cast<double>(dim == 2 ? 0 : mesh.n_active_cells())};
-
-    struct Found
-    {
-      std::set<unsigned int> corners, edges, squares;
-    };
-    std::map<std::string, Found> on_boundary;
-    for (const auto &face : mesh.active_face_iterators())
-      if (face->at_boundary())
-        for (const auto &[name, ids] : coarsest->names.boundaries)
-          if (ids.count(face->boundary_id()) > 0)
-            {
-              Found &found = on_boundary[name];
-              for (const unsigned int v : face->vertex_indices())
-                found.corners.insert(face->vertex_index(v));
-              if constexpr (dim == 3)
-                {
-                  found.squares.insert(face->index());
-                  for (const unsigned int e : face->line_indices())
-                    found.edges.insert(face->line_index(e));
-                }
-              else
-                found.edges.insert(face->index());
-            }
-    for (const auto &[name, found] : on_boundary)
-      on_boundaries[name] = {static_cast<double>(found.corners.size()),
-                             static_cast<double>(found.edges.size()),
-                             static_cast<double>(found.squares.size()),
-                             0.};
+    all                = {static_cast<double>(mesh.n_used_vertices()),
+                          static_cast<double>(mesh.n_active_lines()),
+                          static_cast<double>(dim == 2 ? mesh.n_active_cells() :
+                                                         mesh.n_active_faces()),
+                          static_cast<double>(dim == 2 ? 0 : mesh.n_active_cells())};
     this->inner_groups = coarsest->inner_groups;
     source = unit_level == 0 ? std::move(coarsest) : make(unit_level);
   }
@@ -140,19 +112,6 @@ namespace Debond
   MeshBody<dim>::n_vertices() const
   {
     return is_simplicial ? all.corners : n_vertices_of_level(n_refinements);
-  }
-
-
-
-  template <int dim>
-  double
-  MeshBody<dim>::n_whole_vertices_on(const std::string &boundary) const
-  {
-    const Counts &counts = on_boundaries.at(boundary);
-    if (is_simplicial)
-      return counts.corners;
-    const Counts halved = counts.halved(n_refinements);
-    return halved.corners + halved.squares;
   }
 
 

@@ -22,26 +22,14 @@ test_sizes(const Body<dim> &body)
 {
   Triangulation<dim> mesh;
   const PieceNames   names = body.make_mesh(mesh);
-  std::map<types::boundary_id, std::set<unsigned int>> vertices;
-  for (const auto &cell : mesh.active_cell_iterators())
-    for (const auto &face : cell->face_iterators())
-      if (face->at_boundary())
-        for (const unsigned int v : face->vertex_indices())
-          vertices[face->boundary_id()].insert(face->vertex_index(v));
 
   std::cout << mesh.n_active_cells() << " cells" << std::endl;
   check("number of cells", body.n_cells() == mesh.n_active_cells());
   check("number of vertices", body.n_vertices() == mesh.n_used_vertices());
-  bool same_on_sides = names.boundaries.size() == body.boundaries().size();
-  for (const auto &[name, ids] : names.boundaries)
-    {
-      std::set<unsigned int> on_side;
-      for (const types::boundary_id id : ids)
-        on_side.insert(vertices[id].begin(), vertices[id].end());
-      same_on_sides = same_on_sides && body.boundaries().count(name) > 0 &&
-                      body.n_vertices_on(name) == on_side.size();
-    }
-  check("number of vertices on each side", same_on_sides);
+  bool same = names.boundaries.size() == body.boundaries().size();
+  for (const auto &[name, unused] : names.boundaries)
+    same = same && body.boundaries().count(name) > 0;
+  check("names of sides", same);
 }
 
 

@@ -53,9 +53,6 @@ namespace Debond
     double
     n_vertices() const override;
 
-    double
-    n_whole_vertices_on(const std::string &boundary) const override;
-
     /// With as many cells as there would be if they were alike. Refined it is
     /// no box of so many cells.
     BodyShape

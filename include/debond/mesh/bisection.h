@@ -59,10 +59,6 @@ namespace Debond
     const std::vector<unsigned int> &
     ancestors() const;
 
-    /// Those on the boundaries with these ids.
-    unsigned int
-    n_vertices_on(const std::set<dealii::types::boundary_id> &boundaries) const;
-
     /// Adds to the values at the vertices of this mesh some refinements ago
     /// those of the same P1 function at the vertices that came since.
     template <typename T>

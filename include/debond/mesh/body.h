@@ -117,10 +117,6 @@ namespace Debond
     virtual double
     n_vertices() const = 0;
 
-    /// Of one of boundaries().
-    virtual double
-    n_vertices_on(const std::string &boundary) const = 0;
-
     virtual BodyShape
     shape() const = 0;
 
@@ -159,10 +155,6 @@ namespace Debond
 
     std::set<std::string>
     regions() const final;
-
-    /// Of a part: at most those of its boundary, or of the body.
-    double
-    n_vertices_on(const std::string &boundary) const final;
 
     /// Fills an empty triangulation and says which ids the boundaries() and
     /// regions() have. Throws std::invalid_argument if the body is none,
@@ -204,9 +196,6 @@ namespace Debond
 
     virtual std::set<std::string>
     whole_regions() const = 0;
-
-    virtual double
-    n_whole_vertices_on(const std::string &boundary) const = 0;
 
     virtual PieceNames
     make_whole_mesh(dealii::Triangulation<dim> &mesh) const = 0;

@@ -37,9 +37,6 @@ namespace Debond
     double
     n_vertices() const override;
 
-    double
-    n_whole_vertices_on(const std::string &boundary) const override;
-
     BodyShape
     shape() const override;
 

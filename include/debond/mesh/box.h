@@ -58,9 +58,6 @@ namespace Debond
     double
     n_vertices() const override;
 
-    double
-    n_whole_vertices_on(const std::string &side) const override;
-
     BodyShape
     shape() const override;
 

@@ -34,9 +34,6 @@ namespace Debond
     double
     n_vertices() const override;
 
-    double
-    n_whole_vertices_on(const std::string &boundary) const override;
-
     /// The box that encloses the body, measured on a mesh of some hundred
     /// cells, and as many cells in it as there would be if it was filled as the
     /// body is.
@@ -114,8 +111,7 @@ namespace Debond
       halved(const unsigned int times) const;
     };
 
-    Counts                        all;
-    std::map<std::string, Counts> on_boundaries;
+    Counts all;
 
     /// The mesh of the units' level: all that there is beforehand.
     std::unique_ptr<const SourceMesh<dim>> source;
