@@ -2,7 +2,9 @@
 """Contact solves beside linear solves of the same bodies without contact."""
 
 import argparse
+import glob
 import os
+import pathlib
 import statistics
 import subprocess
 import sys
@@ -11,7 +13,6 @@ from . import cases, plots, report
 from . import study as studies
 
 SOLVERS = ("cholesky", "ml", "hypre")
-FOLDER = os.path.join(cases.SOURCE, "prm", "benchmarks")
 
 
 def measure(study, case, repetitions):
@@ -54,7 +55,7 @@ def measure(study, case, repetitions):
 def write(rows, directory):
     path = os.path.join(directory, "contact_solve")
     report.write_csv(path + ".csv", rows[0], [row.values() for row in rows])
-    report.write(path + ".md", report.markdown(rows[0], [
+    pathlib.Path(path + ".md").write_text(report.markdown(rows[0], [
         [f"{v:.3g}" if isinstance(v, float) else v for v in row.values()]
         for row in rows]))
     plot = plots.Plot("contact-ratio", "", "unknowns",
@@ -82,8 +83,8 @@ def main():
     cases.build("debond debond-baselines")
     os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
     rows = []
-    for file in options.studies or [os.path.join(FOLDER, name)
-                                    for name in sorted(os.listdir(FOLDER))]:
+    for file in options.studies or sorted(glob.glob(
+            os.path.join(cases.SOURCE, "prm", "benchmarks", "*.prm"))):
         study = studies.Study(file, [
             f"Study/Output directory={options.output}/{{study}}"])
         for case in study.cases[:1] if options.quick else study.cases:

@@ -41,8 +41,8 @@ def read_csv(path):
 
 
 class Case:
-    """One run. `values`: those of the sweeps, by which a table names it;
-    `minimum`: the case with the exact minimum of the same J, if wanted."""
+    """One run, `values` those of the sweeps, `minimum` the case with the exact
+    minimum of the same J."""
 
     def __init__(self, label, values, scene, settings, directory):
         self.label, self.values, self.scene = label, values, scene

@@ -3,6 +3,7 @@
 
 import argparse
 import os
+import pathlib
 import shutil
 import subprocess
 
@@ -57,7 +58,8 @@ def copy_study(name):
     page = f"doc/notes/reproduction/{name}.md"
     if os.path.exists(page):
         with open(f"output/{name}/index.md", encoding="utf8") as file:
-            report.write(page, file.read().partition("![")[0].rstrip() + "\n")
+            text = file.read().partition("![")[0].partition("The table with")
+        pathlib.Path(page).write_text(text[0].rstrip() + "\n")
 
 
 def main():

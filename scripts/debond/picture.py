@@ -15,6 +15,8 @@ from .cases import read_csv
 from .plots import plt
 from .prm import BadInput
 
+ABOVE = {"ncol": 7, "loc": "lower center", "bbox_to_anchor": (0.5, 1.),
+         "frameon": False}
 # The largest displacement in a picture, relative to the body's size, and what
 # colours leave out: stress at corners grows without bound with refinement.
 LARGEST_SHOWN = 0.06
@@ -100,16 +102,10 @@ def colour(axes, drawn, values, title):
 
 def show_nodes(axes, profile, place, size):
     """The contact nodes in the colours of their states."""
-    states = numpy.array(profile["state"])
-    for state in dict.fromkeys(states):
-        of = states == state
+    for state in dict.fromkeys(profile["state"]):
+        of = numpy.array(profile["state"]) == state
         axes.scatter(*place[of].T, s=size, color=STATES.get(state, "tab:purple"),
                      label=f"{state} ({of.sum()})", zorder=3)
-
-
-def legend_above(axes):
-    axes.legend(ncol=7, loc="lower center", bbox_to_anchor=(0.5, 1.),
-                frameon=False)
 
 
 def draw_body(directory, length, stress, field):
@@ -160,7 +156,7 @@ def draw_body(directory, length, stress, field):
                 u[own[[i, j]], :2], 0, [distance[j], distance[i]])
         show_nodes(axes, profile, nodes, max(4., min(20., 2000. / len(nodes))))
     if grid.dim == 2:
-        legend_above(axes)
+        axes.legend(**ABOVE)
     axes.autoscale_view()
     axes.set_title(f"displacement x {scale:g}, the largest is {largest:.3g}"
                    f"{length.replace(',', '')}", fontsize=9, pad=22)
@@ -194,7 +190,7 @@ def draw_contact(directory, length, stress):
         draw_surface(directory, profile, both, length)
     else:
         draw_line(profile, both, length, stress)
-    legend_above(both[int("z" in profile)])
+    both[int("z" in profile)].legend(**ABOVE)
     plots.save(figure, directory, "contact")
 
 
@@ -276,7 +272,7 @@ def draw_history(directory):
     history = read_csv(os.path.join(directory, "history.csv"))
     J = history.get("functional", [])
     if len(J) > 2 and J[-1]:
-        figure, axes = plt.subplots(figsize=(8, 4.5))
+        figure, axes = plt.subplots()
         axes.loglog(numpy.arange(1, len(J)), (J[:-1] - J[-1]) / abs(J[-1]),
                     label="J(x_k) - J(x_K)")
         if "v" in history:

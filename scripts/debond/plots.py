@@ -180,18 +180,15 @@ def columns(study, rows, kind):
     plot = Plot(kind.replace(" ", "-").replace("/", "_"),
                 f"{names[0]} over {names[1]}.", names[1], names[0])
     found = studies.groups(study, rows, study.sweeps and study.sweeps[-1])
-    points = [(label, [x.value(row) for row in group],
-               [y.value(row) for row in group])
-              for label, group in found.items()]
-    if all(number is None or number > 0 for _, *both in points
-           for numbers in both for number in numbers):
-        plot.log = "xy"
-        plot.axes.set(xscale="log", yscale="log")
-    for label, *both in points:
+    for label, group in found.items():
+        both = [[value if isinstance(value, (int, float)) else None
+                 for value in map(column.value, group)] for column in (x, y)]
         plot.add(label, *both, "o-")
+    if all(min(*x, *y) > 0 for _, x, y, *_ in plot.curves):
+        plot.axes.set(xscale="log", yscale="log")
     for power in study.powers if plot.curves else ():
-        _, x, y, *_ = plot.curves[0]
-        plot.add(f"{names[1]}^{power:g}", x, y[0] * (x / x[0])**power, "--",
+        _, h, error, *_ = plot.curves[0]
+        plot.add(f"{names[1]}^{power:g}", h, error[0] * (h / h[0])**power, "--",
                  color="0.6", zorder=0)
     return plot
 

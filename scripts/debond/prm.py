@@ -9,18 +9,11 @@ class BadInput(Exception):
     """What is wrong with what the user wrote."""
 
 
-class Entries(dict):
-    """The values of a file by 'Section/Entry', and where each is."""
-
-    def __init__(self):
-        super().__init__()
-        self.where = {}
-
-
-def read(path, entries=None):
-    """Reads a file, with what it includes, as the program does. Which entries
-    there are is for others to say."""
-    entries = Entries() if entries is None else entries
+def read(path, entries=None, places=None):
+    """The values of a file by 'Section/Entry', with what it includes, and in
+    `places` where each is. Which entries there are is for others to say."""
+    entries = {} if entries is None else entries
+    places = {} if places is None else places
     try:
         with open(path, encoding="utf-8-sig") as file:
             lines = file.read().splitlines()
@@ -43,9 +36,9 @@ def read(path, entries=None):
         elif keyword == "set" and "=" in rest:
             name, _, value = rest.partition("=")
             entry = "/".join([*sections, name.strip()])
-            entries[entry], entries.where[entry] = value.strip(), where
+            entries[entry], places[entry] = value.strip(), where
         elif keyword == "include" and rest and not sections:
-            read(os.path.join(os.path.dirname(path), rest), entries)
+            read(os.path.join(os.path.dirname(path), rest), entries, places)
         elif words:
             raise BadInput(f"{where}: cannot read '{words}'")
     if sections or text:

@@ -4,6 +4,7 @@
 import argparse
 import csv
 import os
+import pathlib
 import subprocess
 import sys
 
@@ -17,11 +18,6 @@ def markdown(titles, rows):
     return "".join("| " + " | ".join(
         str(cell).replace("|", "\\|").replace("_", "\\_")
         for cell in line) + " |\n" for line in lines)
-
-
-def write(path, text):
-    with open(path, "w", encoding="utf8") as file:
-        file.write(text)
 
 
 def write_csv(path, titles, rows):
@@ -61,7 +57,7 @@ def write_results(study, program):
     titles, values, texts = table(study, rows)
     write_csv(os.path.join(study.directory, "table.csv"), titles, values)
     text = markdown(titles, texts)
-    write(os.path.join(study.directory, "table.md"), text)
+    pathlib.Path(study.directory, "table.md").write_text(text)
     print("\n" + text, flush=True)
     version = subprocess.run([program, "--version"], check=True, text=True,
                              capture_output=True).stdout.split("\n")
@@ -83,8 +79,8 @@ def write_results(study, program):
               (study.accepted if case in study.cases else ["success"])]
     page += [f"Failed: {line}\n" for line in failed]
     page.append("The table with all digits: [CSV](table.csv).\n")
-    write(os.path.join(study.directory, "index.md"),
-          "\n".join(part for part in page if part.strip()))
+    pathlib.Path(study.directory, "index.md").write_text(
+        "\n".join(part for part in page if part.strip()))
     print(f"Written: {study.directory}/index.md")
     return failed
 
@@ -134,7 +130,7 @@ def main():
         except BadInput as error:
             print(f"study: {error}", file=sys.stderr)
             code = 2
-        worst = worst or code
         if code == 4:
-            break
+            return code
+        worst = worst or code
     return worst

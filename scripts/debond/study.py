@@ -23,32 +23,30 @@ SHORT_NAMES = {"iterations": "/iterations/total", "long": "/iterations/long",
                "seconds": "/timings_s/total"}
 LEVELS = ("level unknowns", "level error", "level ratio",
           "last level unknowns", "least ratio", "largest ratio")
-# More iterations than the best value needs that are still good.
-GOOD_SHARE = 1.1
 
 
 class Study:
     """What a file says, and its cases. Throws BadInput."""
 
-    DEFAULTS = {"Study/Title": "", "Study/Description": "", "Study/Scene": "",
-                "Study/Settings": "", "Study/Methods": "", "Study/Minimum": "",
-                "Study/Columns": "status | iterations | J",
-                "Study/Accepted statuses": "success",
-                "Study/Fields": "false", "Study/Fit window": "1e-3, 1e-8",
-                "Study/Output directory": "output/{study}",
-                "Preparation/Settings": "", "Plots/Kinds": "",
-                "Plots/Fitted cases": "", "Plots/Powers": "",
-                "Reference/File": "", "Reference/Label": "reference",
-                "Reference/Rows": "", "Reference/Key": "value",
-                "Reference/Columns": "", "Reference/Minimum": "0"}
+    DEFAULTS = dict.fromkeys((
+        "Study/Title", "Study/Description", "Study/Scene", "Study/Settings",
+        "Study/Methods", "Study/Minimum", "Preparation/Settings",
+        "Plots/Kinds", "Plots/Fitted cases", "Plots/Powers", "Reference/File",
+        "Reference/Rows", "Reference/Columns"), "")
+    DEFAULTS.update({
+        "Study/Columns": "status | iterations | J",
+        "Study/Accepted statuses": "success", "Study/Fields": "false",
+        "Study/Fit window": "1e-3, 1e-8", "Reference/Label": "reference",
+        "Study/Output directory": "output/{study}",
+        "Reference/Key": "value", "Reference/Minimum": "0"})
     OF_SWEEPS = re.compile(r"Sweep \d+/(Parameter|Label|Values)$|Cases/")
 
     def __init__(self, file, changes=()):
-        entries = prm.read(file)
+        self.file, self.where = file, {}
+        entries = prm.read(file, places=self.where)
         for change in changes:
             name, _, value = change.partition("=")
             entries[name.strip()] = value.strip()
-        self.file, self.where = file, entries.where
         self.folder = os.path.dirname(file)
         for entry in entries:
             if entry not in self.DEFAULTS and not self.OF_SWEEPS.match(entry):
@@ -145,6 +143,9 @@ class Study:
             directories.add((folder, name))
             return os.path.join(self.directory, folder, name)
 
+        needs_minima = not {"J_min", "error", "rate", "window", "convergence",
+                            "fit"}.isdisjoint([*self.kinds, *(
+                                c.kind for c in self.columns.values())])
         preparation = os.path.join(self.directory, "preparation")
         for values in itertools.product(*(s.values for s in self.sweeps)):
             scene, settings = self.scenes[0], dict(self.settings)
@@ -162,7 +163,7 @@ class Study:
             case = cases.Case(label, [value[0] for value in values], scene,
                               settings, directory("cases", label))
             self.cases.append(case)
-            if self.minimum is None and self.needs_minima():
+            if self.minimum is None and needs_minima:
                 settings = {name: text for name, text in settings.items()
                             if not name.startswith("Solver/")}
                 key = scene, tuple(sorted(settings.items()))
@@ -175,11 +176,6 @@ class Study:
         self.minima = list(minima.values())
         self.first = self.preparation and cases.Case(
             "preparation", [], self.scenes[0], self.preparation, preparation)
-
-    def needs_minima(self):
-        return (any(column.kind in ("J_min", "error", "rate", "window")
-                    for column in self.columns.values()) or
-                not {"convergence", "fit"}.isdisjoint(self.kinds))
 
     def all_cases(self):
         return [self.first] * bool(self.first) + self.minima + self.cases
@@ -315,10 +311,9 @@ class Reference:
                    set(self.columns) - set(study.columns))
         if missing:
             raise ValueError("there is no column " + ", ".join(missing))
-        self.rows = [row for row in (dict(zip(table, cells))
-                                     for cells in zip(*table.values()))
-                     if all(is_same(row[name], text)
-                            for name, text in wanted.items())]
+        rows = (dict(zip(table, cells)) for cells in zip(*table.values()))
+        self.rows = [row for row in rows if all(
+            is_same(row[name], text) for name, text in wanted.items())]
 
     def value(self, case, column):
         """What stands beside a cell, a number or None."""
@@ -407,9 +402,9 @@ def best_values(study, rows):
         if n[best] == math.inf:
             continue
         first = last = best
-        while first > 0 and n[first - 1] <= GOOD_SHARE * n[best]:
+        while first > 0 and n[first - 1] <= 1.1 * n[best]:
             first -= 1
-        while last + 1 < len(n) and n[last + 1] <= GOOD_SHARE * n[best]:
+        while last + 1 < len(n) and n[last + 1] <= 1.1 * n[best]:
             last += 1
         result.append({"": name, "h": group[0].h(),
                        "best " + study.sweeps[1].label: x[best],
