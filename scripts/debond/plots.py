@@ -159,7 +159,7 @@ def law(plot, study, rows):
         plot.add(row.case.label, u, density, "o")
         scene = prm.read(row.case.path("parameters.prm"))
         if numpy.ptp(a) + numpy.ptp(M) == 0 and \
-                scene["Contact law/Law"] == "brittle":
+                scene["Contact law/Law"] == "winkler":
             ends = graphs.setdefault((a[0], M[0]), [0., 0.])
             ends[:] = min(ends[0], u.min()), max(ends[1], density.max())
     for (a, M), (least, most) in graphs.items():

@@ -45,6 +45,8 @@ for cells, unknowns, h in zip(found["cells"], found["unknowns"], found["h"]):
 for plot in "displacement", "law", "J-over-unknowns":
     for ending in "png", "svg":
         assert os.path.getsize(f"output/one/plots/{plot}.{ending}") > 5000
+law = pathlib.Path("output/one/plots/law.svg").read_text()
+assert "a = 69, M = 0.002" in law and "a = 6.9, M = 0.002" in law
 assert "J-over-unknowns.png" in open("output/one/index.md").read()
 
 # The same again runs nothing; another value runs alone.
