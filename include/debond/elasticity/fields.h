@@ -139,12 +139,14 @@ namespace Debond
 
 
   /// The rule that integrates products of two strains: one point of degree 1,
-  /// dim + 1 points of degree 2.
+  /// dim + 1 points of degree 2, of which QGaussSimplex would have more.
   template <int dim>
-  dealii::QGaussSimplex<dim>
+  dealii::Quadrature<dim>
   strain_rule(const unsigned int degree)
   {
-    return dealii::QGaussSimplex<dim>(degree);
+    if (degree == 1)
+      return dealii::QGaussSimplex<dim>(1);
+    return dealii::QWitherdenVincentSimplex<dim>(1, /*use_odd_order=*/false);
   }
 
 
