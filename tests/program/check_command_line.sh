@@ -144,7 +144,7 @@ rm pipe {1..41}.prm
 refused "make about 2.1e+11 cells" plain.prm --set Mesh/Source=generator \
   --set "Mesh/Generator=subdivided_hyper_rectangle" \
   --set "Mesh/Arguments=700000, 300000 : 0, 0 : 2, 1 : true"
-refused "unknowns need about" plain.prm --set "Mesh/Cells=300000, 200000" \
+refused "there is not enough memory" plain.prm --set "Mesh/Cells=300000, 200000" \
   --set "Solver/Memory limit=1e30"
 
 # What is wrong with the groups of a mesh, and with what scenes name.
