@@ -9,11 +9,13 @@
 
 #include <dlfcn.h>
 #include <gmsh.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <clocale>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
@@ -154,7 +156,28 @@ namespace Debond
             input.seekg(3);
             std::ofstream(copy, std::ios::binary) << input.rdbuf();
           }
-        gmsh::open(has_mark ? copy.string() : file_name);
+        const std::string name = has_mark ? copy.string() : file_name;
+        // Gmsh crashes on some files that are broken, such as one with an
+        // element of nodes that there are not: better in another process.
+        const pid_t child = fork();
+        if (child == 0)
+          {
+            for (const int crash : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE})
+              std::signal(crash, SIG_DFL);
+            try
+              {
+                gmsh::open(name);
+              }
+            catch (...)
+              {}
+            _exit(0);
+          }
+        int status = 0;
+        if (child > 0 && waitpid(child, &status, 0) == child &&
+            WIFSIGNALED(status))
+          throw std::invalid_argument(file_name +
+                                      ": Gmsh crashes on this file");
+        gmsh::open(name);
       }
 
       /// What Gmsh has had to say, "Error" or "Warning".
