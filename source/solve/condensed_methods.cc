@@ -66,10 +66,8 @@ namespace Debond
                                         scene.adhesion(),
                                         bundle.bundle_size);
       Vector                  x(s.begin(), s.end());
-      add_bundle_result(ProximalBundle<Vector>(bundle).minimize(functional,
-                                                                direction,
-                                                                x,
-                                                                std::ref(watch)),
+      add_bundle_result(ProximalBundle<Vector>(bundle).minimize(
+                          functional, direction, x, std::ref(watch)),
                         result);
       s = eigen_view(x);
       // The functional differs from J by the energy at s = 0.
@@ -158,12 +156,8 @@ namespace Debond
       s = problem.unknowns().contact().trace(*start).cwiseMin(0.);
     // If no contact node is free, there is no metric either.
     if (method == SolverMethod::energy_bundle && s.size() > 0)
-      solve_by_energy_bundle(parameters.energy_bundle,
-                             scene,
-                             condensed,
-                             watch,
-                             s,
-                             result);
+      solve_by_energy_bundle(
+        parameters.energy_bundle, scene, condensed, watch, s, result);
     else
       solve_by_majorise_minimise(MajoriseMinimise(parameters.majorise_minimise),
                                  scene,

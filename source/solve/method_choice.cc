@@ -140,11 +140,11 @@ namespace Debond
     const double bytes = bytes_of_mesh_and_matrix * n;
     const double left  = memory_left(solver.memory_limit);
     if (bytes > left)
-      throw BadInput({problem.scene + ": about " + rounded(n) +
-                      " unknowns need about " + in_gib(bytes) +
-                      " of memory for mesh and matrix alone, there are " +
-                      in_gib(left) +
-                      "; try fewer Mesh/Cells or a higher Solver/Memory limit"});
+      throw BadInput(
+        {problem.scene + ": about " + rounded(n) + " unknowns need about " +
+         in_gib(bytes) + " of memory for mesh and matrix alone, there are " +
+         in_gib(left) +
+         "; try fewer Mesh/Cells or a higher Solver/Memory limit"});
 
     MethodChoice choice = {solver.method, solver.linear_solver, ""};
     if (choice.method == SolverMethod::euclidean_bundle)

@@ -96,7 +96,7 @@ namespace
           }
         const VectorXd now = beta.segment(first, qp.n_cuts());
 
-        const BundleQP::Solution &warm  = qp.solve(now, b, p.u);
+        const BundleQP::Solution &warm = qp.solve(now, b, p.u);
         compare(p, first, now, b, warm, record);
       }
   }

@@ -377,11 +377,10 @@ namespace
     const double strength = own.a * own.M;
     if (!adhesive)
       own.a = 0.;
-    own.quadrature =
-      random.chance(0.5) ?
-        "nodal" :
-        random.choice<std::string>(
-          {"midpoint", "gauss 1", "gauss 2", "gauss 3"});
+    own.quadrature = random.chance(0.5) ?
+                       "nodal" :
+                       random.choice<std::string>(
+                         {"midpoint", "gauss 1", "gauss 2", "gauss 3"});
     attack.set("Contact law/Quadrature", own.quadrature);
 
     const double size =
@@ -426,9 +425,9 @@ namespace
     const bool direct =
       !multigrid && method != "euclidean bundle" && !own.held_by_bonds;
     attack.set("Solver/Search",
-               direct ? random.choice<std::string>(
-                          {"automatic", "full", "none"}) :
-                        "automatic");
+               direct ?
+                 random.choice<std::string>({"automatic", "full", "none"}) :
+                 "automatic");
     attack.set("Solver/Prove",
                direct && own.quadrature == "nodal" && random.chance(0.3) ?
                  "true" :
