@@ -149,7 +149,7 @@ test_plane()
         bar.problem->load_notes().empty() || bar.has_note({"not smooth"}));
   bar.on_top(
     [](const Point<2> &p) { return 0.001 / std::pow(p[0] - 0.2033, 2); });
-  check("a pole's note", bar.has_note({"without bound", "(0.2033, 0.04)"}));
+  check("a pole's note", bar.has_note({"without bound", "(0.2033"}));
 
   check("a body force that jumps",
         std::abs(bar.in_body([](const Point<2> &p) {
@@ -220,6 +220,7 @@ error_of_ring(const unsigned int refinements)
   Material material;
   material.young_modulus = 2.;
   material.poisson_ratio = 0.3;
+  material.hypothesis    = Material::Hypothesis::plane_strain;
   const double p         = 0.1;
   Loads<2>     loads;
   loads.tractions[0] = {{std::make_shared<Functions::ConstantFunction<2>>(p)}};
