@@ -58,7 +58,8 @@ namespace Debond
 
 
     /// Whether a part contains a vertex of a face or cell, asked from a little
-    /// within, since an edge of the part may follow the mesh.
+    /// within, since an edge of the part may follow the mesh, as that of
+    /// "y < 1e-6" does.
     template <int dim, typename Iterator>
     bool
     contains_vertex(const Part<dim>   &part,
@@ -66,7 +67,7 @@ namespace Debond
                     const unsigned int v)
     {
       return part.contains(object->vertex(v) +
-                           1e-6 * (object->center() - object->vertex(v)));
+                           1e-3 * (object->center() - object->vertex(v)));
     }
 
 

@@ -428,7 +428,7 @@ namespace Debond
     result.rounding                   = last.rounding;
     result.status                     = last.status;
     result.losses                     = last.losses;
-    std::vector<CertifiedSide> ranges = std::move(last.ranges);
+    std::vector<CertifiedSide> ranges = last.ranges;
     if (with_deviations && may_go_on())
       {
         const std::vector<double> D = sides.shifts_for_ranges(ranges,

@@ -346,7 +346,7 @@ namespace
                       "Mesh/Lengths=0.4, 0.04, 0.04",
                       "Mesh/Cells=10, 1, 1",
                       "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345); 0",
-                      "Contact law/Quadrature=gauss 8",
+                      "Contact law/Quadrature=gauss 7",
                       "Accuracy/Maximum unknowns=6000"});
   }
 

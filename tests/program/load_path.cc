@@ -1098,14 +1098,12 @@ main(int argc, char *[])
   test_column<2>();
   test_column<3>();
   test_column<2>("gauss 3");
-  test_column<2>("exact");
   test_column<3>("gauss 3");
   test_column_for_good<2>("nodal", 1);
   test_column_for_good<2>("gauss 2", 1);
   test_column_for_good<2>("gauss 3", 2);
   test_column_for_good<3>("gauss 2", 2);
   test_moved_column<2>("gauss 3");
-  test_moved_column<2>("exact");
   test_moved_column<3>("gauss 2");
   test_tack<2>();
   test_tack<3>();
