@@ -169,7 +169,7 @@ def main(debond, scene):
             ["Material/Young modulus core=1"])
     refused("Material/Young modulus core = -1: expected",
             ["Parts/core=x > 0.1", "Material/Young modulus core=-1"])
-    refused("Material/Poisson ratio core: Poisson ratio = 1.1 must lie in (-1, 1)",
+    refused("Material/Poisson ratio core = 1.1: Poisson ratio = 1.1 must lie in (-1, 1)",
             ["Parts/core=x > 0.1", "Material/Poisson ratio core=1.1"])
     refused("the region overlaps core, which has a material of its own as well",
             ["Parts/core=x > 0.1", "Parts/end=x > 0.2",
