@@ -87,7 +87,9 @@ def main(debond):
                            options.split(), check=True,
                            stdout=subprocess.DEVNULL)
             found = functional(debond, dim, file, named)
-            if not isinstance(found, float) or abs(found / J - 1.) > 1e-12:
+            # Nastran's files have few digits.
+            tolerance = 1e-5 if name == "Nastran" else 1e-12
+            if not isinstance(found, float) or abs(found / J - 1.) > tolerance:
                 failures += 1
                 print(f"  {name}: {found!r}")
     return 1 if failures else 0

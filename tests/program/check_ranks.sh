@@ -148,7 +148,6 @@ refused "Certificate/Kind=global" "Certificate/Kind"
 refused "Contact law/Initial gap=1e-4" "Contact law/Initial gap"
 refused "Mesh/Rotation=10" "Mesh/Rotation: .*; run the scene on one rank"
 refused "Probes/end=0.4, 0.005" "Probes/end"
-refused "Loads/Traction top=0; 1/(x-0.3)" "Loads/Traction top"
 refused "Mesh/Cells=3, 1" "Mesh/Cells"
 expect_code 2 mpirun --oversubscribe -n 5 "$debond" plane.prm \
   --set Mesh/Lengths=0.4,8 --set Mesh/Cells=4,80 --set Output/Directory=refused

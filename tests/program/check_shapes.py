@@ -898,25 +898,28 @@ def require(condition, kind, detail):
 
 
 def read_displacement(body, size_of_file):
-    """u in the frames, from displacement.txt, whose order is that of the points
-    in body.vtu; what body.vtu has must be the same to single precision."""
+    """u in the frames, from displacement.txt, whose order is that in which the
+    cells of body.vtu come to their points; what body.vtu has must be the same to single
+    precision."""
     piece = Piece("output/body.vtu")
+    first = {}
+    for k in range(piece.n_points):
+        first.setdefault(piece.points[3 * k:3 * k + 2], k)
     written = [EXACT(line) for line in
                pathlib.Path("output/displacement.txt").read_text().split()]
-    require(len(written) == body.n and piece.n_points == len(body.points),
+    require(len(written) == body.n and len(first) == len(body.points),
             "wrong success: mesh", f"{len(written)} of {body.n} unknowns")
     u = [None] * body.n
     size = max(abs(x) for x in piece.at_points["displacement"])
     worst = 0.
-    for k in range(piece.n_points):
-        place = piece.points[3 * k:3 * k + 2]
+    for n, (place, k) in enumerate(first.items()):
         v = min(range(len(body.points)),
                 key=lambda w: math.dist(place, body.scene.mesh.points[w]))
         require(math.dist(place, body.scene.mesh.points[v])
                 <= 1e-6 * size_of_file and u[2 * v] is None,
                 "wrong success: mesh", f"no vertex at {place}")
         in_file = piece.at_points["displacement"][3 * k:3 * k + 2]
-        pairs = [written[2 * k:2 * k + 2]]
+        pairs = [written[2 * n:2 * n + 2]]
         if body.kinds[2 * v] == body.kinds[2 * v + 1] == "contact":
             # Which of two normals is the first one is not said.
             pairs.append(pairs[0][::-1])
