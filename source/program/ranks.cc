@@ -24,6 +24,9 @@ namespace Debond
   void
   start_mpi()
   {
+    // Who uses this as a library may have started it.
+    if (dealii::Utilities::MPI::job_supports_mpi())
+      return;
     static int                                            argc = 0;
     static char                                         **argv = nullptr;
     static const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);

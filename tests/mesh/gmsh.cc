@@ -36,6 +36,18 @@ write(const std::string &text)
 
 
 template <int dim>
+double
+measure_of(const Triangulation<dim> &mesh)
+{
+  double sum = 0.;
+  for (const auto &cell : mesh.active_cell_iterators())
+    sum += cell->measure();
+  return sum;
+}
+
+
+
+template <int dim>
 std::shared_ptr<const Body<dim>>
 read(const std::string &text, const double scale = 1.)
 {
@@ -262,7 +274,7 @@ test_mixed_cells()
   body->make_mesh(mesh);
   check("a square beside a triangle",
         mesh.n_active_cells() == 5 &&
-          std::abs(GridTools::volume(mesh) - 1.5) < 1e-12 &&
+          std::abs(measure_of(mesh) - 1.5) < 1e-12 &&
           body->regions() == std::set<std::string>{"1", "2"});
 
   // A prism with a pyramid on its oblique side, with groups on a triangle, on
@@ -277,7 +289,7 @@ test_mixed_cells()
   prism->make_mesh(solid);
   check("a prism beside a pyramid",
         solid.n_active_cells() == 22 &&
-          std::abs(GridTools::volume(solid) - 0.5 - 1. / 3.) < 1e-12);
+          std::abs(measure_of(solid) - 0.5 - 1. / 3.) < 1e-12);
   check("faces of theirs",
         prism->boundaries() == std::set<std::string>{"5", "6"} &&
           prism->inner_groups == std::set<std::string>{"7"});
@@ -307,7 +319,7 @@ test_geometry()
     const auto       body =
       std::dynamic_pointer_cast<const Body<2>>(make_body(2, parameters));
     const PieceNames names = body->make_mesh(mesh);
-    check("  the area", std::abs(GridTools::volume(mesh) - 200.) < 1e-9);
+    check("  the area", std::abs(measure_of(mesh) - 200.) < 1e-9);
     return pieces<2>(mesh, names)[name].size();
   };
   check("edges of the foot", n_on(1., "foot") == 20);

@@ -25,7 +25,7 @@ for method in "majorise minimise" "energy bundle" "euclidean bundle"; do
     "$debond" "$scene" --set "Solver/Method=$method" \
       --set "Output/Directory=out" --set "Output/Displacement=true" \
       "${@:2}" >/dev/null
-    sed -i '/"timings_s"/,/}/d; /"peak_memory/d' out/summary.json
+    sed -i '/"timings_s"/,/}/d; /"peak_memory/d; /"memory_estimate/d' out/summary.json
     mv out "$1"
   }
   run first
