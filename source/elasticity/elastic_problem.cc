@@ -122,13 +122,10 @@ namespace Debond
                 const dealii::SymmetricTensor<2, dim> weighted_stress =
                   fe_values.JxW(q) *
                   (stiffness(cell->material_id()) * strains[i]);
-                for (unsigned int j = 0; j <= i; ++j)
+                for (unsigned int j = 0; j < n; ++j)
                   cell_matrix(i, j) += weighted_stress * strains[j];
               }
           }
-        for (unsigned int i = 0; i < n; ++i)
-          for (unsigned int j = 0; j < i; ++j)
-            cell_matrix(j, i) = cell_matrix(i, j);
         elastic_unknowns.to_unknowns(cell_dofs, cell_matrix);
         elastic_unknowns.constraints().distribute_local_to_global(
           cell_matrix, cell_dofs, system_matrix);

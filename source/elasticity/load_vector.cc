@@ -296,8 +296,7 @@ namespace Debond
                                           rule,
                                           dealii::update_values |
                                             dealii::update_quadrature_points |
-                                            dealii::update_normal_vectors |
-                                            dealii::update_JxW_values);
+                                            dealii::update_normal_vectors);
 
       std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
       std::vector<dealii::Tensor<1, dim>>          values(rule.size());
@@ -333,19 +332,25 @@ namespace Debond
                                                loaded.corners[0][d];
                                       }))
                         point[d] = loaded.corners[0][d];
-                    values[q] =
-                      fe_values.JxW(q) * traction(point, loaded.normal);
-                    mean += values[q] / loaded.measure;
-                    mean_size += values[q].norm() / loaded.measure;
+                    values[q] = (dim - 1.) * rule.weight(q) *
+                                traction(point, loaded.normal);
+                    mean += values[q];
+                    mean_size += values[q].norm();
                   }
                 for (unsigned int i = 0; i < dofs.size(); ++i)
                   if (fe.has_support_on_face(i, f))
                     {
                       const unsigned int d =
                         fe.system_to_component_index(i).first;
+                      // Rounded once: a constant traction has the forces of
+                      // its closed form.
+                      long double sum = 0.;
                       for (unsigned int q = 0; q < rule.size(); ++q)
-                        forces(dofs[i]) +=
-                          fe_values.shape_value(i, q) * values[q][d];
+                        sum += static_cast<long double>(
+                                 fe_values.shape_value(i, q)) *
+                               values[q][d];
+                      forces(dofs[i]) +=
+                        loaded.measure * static_cast<double>(sum);
                     }
                 if (notes != nullptr)
                   {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/timer.h>
 
 #include <debond/contact/exact_energy.h>
