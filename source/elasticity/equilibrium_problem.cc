@@ -288,13 +288,24 @@ namespace Debond
         kept.push_back(side.unknowns[k]);
     OtherParts others;
     others.energy = [constant](double, double) { return constant; };
-    return std::make_unique<Condensation>(
-      A,
-      f,
-      kept,
-      [this](const unsigned int i) { return mesh.is_fixed(i); },
-      others,
-      /*is_semidefinite=*/true);
+    try
+      {
+        return std::make_unique<Condensation>(
+          A,
+          f,
+          kept,
+          [this](const unsigned int i) { return mesh.is_fixed(i); },
+          others,
+          /*is_semidefinite=*/true);
+      }
+    catch (const std::runtime_error &)
+      {
+        // It is semidefinite for any body.
+        throw EquilibriumError(
+          "to rounding the matrix of the equilibrated stresses is not positive "
+          "definite; try cells that are less flat, a Poisson ratio farther from "
+          "its limit, or parts that differ less in stiffness");
+      }
   }
 
 

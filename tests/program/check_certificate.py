@@ -233,20 +233,20 @@ def main(debond, n, first):
             "Boundary conditions/Clamped boundaries=top",
             "Loads/Traction top=", "Loads/Traction bottom=0; 0.2",
             "Material/Hypothesis=plane strain",
-            "Material/Poisson ratio=0.4999995"]
+            "Material/Poisson ratio=0.49999999"]
     alone = run(debond, flat)[1]
     result, summary = run(debond, flat + ["Certificate/Kind=global"])
     if summary is None or not (
             summary["functional"] == alone["functional"] and
             "certificate" not in summary and any(
-                note.startswith("There is no certificate:")
+                note.startswith("There is no certificate: to rounding")
                 for note in summary["notes"])):
         failures.append(f"flat cells: exit code {result.returncode}, "
                         f"{result.stderr!r}")
     result, summary = run(debond, flat + [
         "Certificate/Kind=global", "Certificate/Target=0.1"])
     if not (result.returncode == 3 and
-            "There is no certificate:" in result.stderr and
+            "There is no certificate: to rounding" in result.stderr and
             pathlib.Path("output/contact_profile.csv").exists()):
         failures.append(f"flat cells, target: exit code {result.returncode}, "
                         f"{result.stderr!r}")
