@@ -3,204 +3,23 @@
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/numerics/rtree.h>
 
-#include <debond/base/atomic_file.h>
 #include <debond/base/text.h>
+#include <debond/mesh/gmsh_file.h>
 #include <debond/mesh/source_mesh.h>
 
-#include <dlfcn.h>
-#include <gmsh.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <clocale>
 #include <cmath>
-#include <csignal>
-#include <cstdlib>
-#include <filesystem>
 #include <limits>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <tuple>
 #include <unordered_map>
-#include <utility>
 
 namespace Debond
 {
   namespace
   {
-    /// What Gmsh does not tell of a file.
-    struct FileText
-    {
-      double version  = 0.; ///< of .msh
-      bool   has_mark = false;
-
-      /// Of version 2.0, where some files have the groups' dimensions and some
-      /// have not, by dimension (or -1) and group.
-      std::map<std::pair<int, int>, std::string> names;
-    };
-
-    /// Throws if there are more elements in ASCII than the file says, which
-    /// Gmsh would leave out.
-    FileText
-    look_into(const std::string &file_name)
-    {
-      std::ifstream input = open_plain_file(file_name);
-      if (!input)
-        throw std::invalid_argument(file_name + " cannot be read");
-      FileText    text;
-      std::string line, section;
-      std::size_t n_lines = 0, n_blocks = 0, n_elements = 0;
-      std::getline(input, line);
-      text.has_mark = line.rfind("\xef\xbb\xbf", 0) == 0;
-      if (text.has_mark)
-        line.erase(0, 3);
-      bool is_text = !line.empty() && line[0] == '$';
-      for (; is_text; is_text = is_text && std::getline(input, line))
-        {
-          line.erase(line.find_last_not_of(" \t\r") + 1);
-          if (line.empty())
-            continue;
-          const std::size_t  quote = line.find('"');
-          std::istringstream numbers(line.substr(0, quote));
-          if (line[0] == '$')
-            {
-              if ((section == "$Elements" || section == "$ELM") &&
-                  n_lines > 1 + n_blocks + n_elements)
-                throw std::invalid_argument(
-                  words(file_name,
-                        ": ",
-                        section,
-                        " says that it has ",
-                        n_elements,
-                        ", but ",
-                        n_lines - 1 - n_blocks - n_elements,
-                        " more lines follow"));
-              section = line;
-              n_lines = 0;
-              if (section == "$NOD" || section == "$NO")
-                text.version = 1.;
-            }
-          else if (n_lines++ == 0 && section == "$MeshFormat")
-            {
-              int is_binary = 0;
-              numbers >> text.version >> is_binary;
-              is_text = is_binary == 0;
-            }
-          else if (n_lines == 1 && text.version >= 4.)
-            numbers >> n_blocks >> n_elements;
-          else if (n_lines == 1)
-            numbers >> n_elements;
-          else if (section == "$PhysicalNames" && text.version == 2. &&
-                   quote != std::string::npos)
-            {
-              int dimension = -1, group = 0, second = 0;
-              numbers >> group;
-              if (numbers >> second)
-                dimension = std::exchange(group, second);
-              text.names[{dimension, group}] =
-                line.substr(quote + 1, line.rfind('"') - quote - 1);
-            }
-        }
-      return text;
-    }
-
-
-
-    /// Gmsh while a file is read. It reads no settings of the user, and what it
-    /// changes of the process, which is the locale, variables of the
-    /// environment and OpenMP's threads, is put back.
-    class GmshSession
-    {
-    public:
-      GmshSession()
-      {
-        for (const char *name : {"PATH", "PYTHONPATH"})
-          if (const char *value = std::getenv(name))
-            environment[name] = value;
-        if (void *const get = dlsym(RTLD_DEFAULT, "omp_get_max_threads"))
-          n_threads = reinterpret_cast<int (*)()>(get)();
-        gmsh::initialize(0, nullptr, false);
-        gmsh::option::setNumber("General.Terminal", 0);
-        gmsh::logger::start();
-      }
-
-      GmshSession(const GmshSession &) = delete;
-
-      ~GmshSession()
-      {
-        gmsh::logger::stop();
-        gmsh::finalize();
-        if (void *const set = dlsym(RTLD_DEFAULT, "omp_set_num_threads"))
-          reinterpret_cast<void (*)(int)>(set)(n_threads);
-        for (const char *name : {"PATH", "PYTHONPATH"})
-          unsetenv(name);
-        for (const auto &[name, value] : environment)
-          setenv(name.c_str(), value.c_str(), 1);
-        std::setlocale(LC_ALL, locale.c_str());
-        std::error_code ignored;
-        std::filesystem::remove(copy, ignored);
-      }
-
-      /// Opens a file, or a copy of it if Gmsh does not know how it begins.
-      void
-      open(const std::string &file_name, const bool has_mark)
-      {
-        if (has_mark)
-          {
-            copy = std::filesystem::temp_directory_path() /
-                   ("debond-" + std::to_string(getpid()) +
-                    std::filesystem::path(file_name).extension().string());
-            std::ifstream input(file_name, std::ios::binary);
-            input.seekg(3);
-            std::ofstream(copy, std::ios::binary) << input.rdbuf();
-          }
-        const std::string name = has_mark ? copy.string() : file_name;
-        // Gmsh crashes on some files that are broken, such as one with an
-        // element of nodes that there are not: better in another process.
-        const pid_t child = fork();
-        if (child == 0)
-          {
-            for (const int crash : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE})
-              std::signal(crash, SIG_DFL);
-            try
-              {
-                gmsh::open(name);
-              }
-            catch (...)
-              {}
-            _exit(0);
-          }
-        int status = 0;
-        if (child > 0 && waitpid(child, &status, 0) == child &&
-            WIFSIGNALED(status))
-          throw std::invalid_argument(file_name +
-                                      ": Gmsh crashes on this file");
-        gmsh::open(name);
-      }
-
-      /// What Gmsh has had to say, "Error" or "Warning".
-      static std::string
-      messages(const std::string &kind)
-      {
-        std::vector<std::string> log, found;
-        gmsh::logger::get(log);
-        for (const std::string &line : log)
-          if (line.rfind(kind + ": ", 0) == 0)
-            found.push_back(printable(line.substr(kind.size() + 2)));
-        return join(found, "; ");
-      }
-
-    private:
-      const std::string locale = std::setlocale(LC_ALL, nullptr);
-      std::map<std::string, std::string> environment;
-      int                                n_threads = 1;
-      std::filesystem::path              copy;
-    };
-
-
-
     /// Of a face, sorted; invalid ones fill up.
     using FaceKey = std::array<unsigned int, 4>;
 
@@ -341,151 +160,57 @@ namespace Debond
         return "element " + std::to_string(cells[cell].tag);
       }
 
-      /// Has Gmsh read the file, or mesh its geometry.
       void
       read(const double scale, const double size)
       {
-        text = look_into(file_name);
-        GmshSession gmsh;
-        // Gmsh knows groups of entities. In old files elements of one entity
-        // may be in several groups: Gmsh is to take the groups for entities.
-        is_old = text.version > 0. && text.version < 4.;
-        gmsh::option::setNumber("Mesh.SwitchElementTags", is_old ? 1 : 0);
-        bool is_geometry = false;
-        try
+        const GmshFile file = read_gmsh_file(file_name, dim, size / scale);
+        std::unordered_map<std::size_t, unsigned int> vertex_of; // by tag
+        for (std::size_t i = 0; i < file.nodes.size(); ++i)
           {
-            gmsh.open(file_name, text.has_mark);
-            // It loses groups then, and goes on.
-            const std::string warnings = GmshSession::messages("Warning");
-            if (warnings.find("not found in the Brep") != std::string::npos)
-              fail(
-                "Gmsh does not understand the file's entities, each of which "
-                "has to be a line: " +
-                warnings);
-            if (gmsh::model::getDimension() > dim)
-              fail("a body in 3D, but the scene has Dimension = 2");
-            std::vector<std::size_t> tags;
-            std::vector<double>      coordinates, unused;
-            gmsh::model::mesh::getNodes(tags, coordinates, unused);
-            is_geometry = tags.empty();
-            if (!is_geometry && size > 0.)
-              fail("the file has a mesh, where Size is for geometries");
-            if (is_geometry && size > 0.)
-              for (const char *option :
-                   {"Mesh.MeshSizeMin", "Mesh.MeshSizeMax"})
-                gmsh::option::setNumber(option, size / scale);
-            if (is_geometry)
-              gmsh::model::mesh::generate(dim);
-            else
-              gmsh::model::mesh::unpartition();
-            take_nodes(scale);
-            cells = elements(dim);
-            faces = elements(dim - 1);
+            dealii::Point<dim> vertex;
+            for (unsigned int d = 0; d < dim; ++d)
+              vertex[d] = scale * file.coordinates[3 * i + d];
+            vertex_of[file.nodes[i]] =
+              static_cast<unsigned int>(vertices.size());
+            vertices.push_back(vertex);
+            heights.push_back(scale * file.coordinates[3 * i + 2]);
           }
-        catch (const std::invalid_argument &)
+        for (const GmshFile::Elements &elements : file.elements)
           {
-            throw;
-          }
-        catch (...)
-          {
-            const std::string errors = GmshSession::messages("Error");
-            fail("Gmsh does not read this" +
-                 (errors.empty() ? errors : ": " + errors));
+            const bool        is_cell = elements.dimension == dim;
+            const std::size_t n       = elements.n_corners;
+            Groups            groups;
+            for (const auto &[group, name] : elements.groups)
+              {
+                groups.insert(group);
+                names[{elements.dimension, group}] =
+                  name.empty() ? std::to_string(group) : printable(name);
+              }
+            is_of_higher_order =
+              is_of_higher_order || (is_cell && elements.order > 1);
+            for (std::size_t e = 0; e < elements.tags.size(); ++e)
+              {
+                Corners corners;
+                for (std::size_t v = 0; v < n; ++v)
+                  corners.push_back(vertex_of.at(elements.corners[e * n + v]));
+                // Around a quadrilateral, or line by line.
+                if (n == 8 || n == 5 || (n == 4 && elements.dimension == 2))
+                  for (std::size_t v = 0; v + 3 < n; v += 4)
+                    std::swap(corners[v + 2], corners[v + 3]);
+                (is_cell ? cells : faces)
+                  .push_back({elements.tags[e], corners, groups});
+              }
           }
         // As Gmsh does when it saves a mesh.
         const auto is_grouped = [](const Element &cell) {
           return !cell.groups.empty();
         };
-        if (is_geometry && std::any_of(cells.begin(), cells.end(), is_grouped))
+        if (file.is_geometry &&
+            std::any_of(cells.begin(), cells.end(), is_grouped))
           cells.erase(std::stable_partition(cells.begin(),
                                             cells.end(),
                                             is_grouped),
                       cells.end());
-      }
-
-      void
-      take_nodes(const double scale)
-      {
-        std::vector<std::size_t> tags;
-        std::vector<double>      coordinates, unused;
-        gmsh::model::mesh::getNodes(tags, coordinates, unused);
-        for (std::size_t i = 0; i < tags.size(); ++i)
-          {
-            dealii::Point<dim> vertex;
-            for (unsigned int d = 0; d < dim; ++d)
-              vertex[d] = scale * coordinates[3 * i + d];
-            vertex_of[tags[i]] = static_cast<unsigned int>(vertices.size());
-            vertices.push_back(vertex);
-            heights.push_back(scale * coordinates[3 * i + 2]);
-          }
-      }
-
-      std::vector<Element>
-      elements(const int dimension)
-      {
-        std::vector<Element> result;
-        gmsh::vectorpair     entities;
-        gmsh::model::getEntities(entities, dimension);
-        for (const auto &[unused, entity] : entities)
-          {
-            std::vector<int> tags_of_groups = {entity};
-            if (!is_old)
-              gmsh::model::getPhysicalGroupsForEntity(dimension,
-                                                      entity,
-                                                      tags_of_groups);
-            Groups groups;
-            for (const int tag : tags_of_groups)
-              if (tag != 0)
-                groups.insert(std::abs(tag));
-            for (const int group : groups)
-              {
-                std::string name;
-                gmsh::model::getPhysicalName(dimension, group, name);
-                for (const int d : {-1, dimension})
-                  if (const auto own = text.names.find({d, group});
-                      own != text.names.end())
-                    name = own->second;
-                names[{dimension, group}] =
-                  name.empty() ? std::to_string(group) : printable(name);
-              }
-
-            std::vector<int>                      types;
-            std::vector<std::vector<std::size_t>> tags, nodes;
-            gmsh::model::mesh::getElements(
-              types, tags, nodes, dimension, entity);
-            for (std::size_t k = 0; k < types.size(); ++k)
-              {
-                std::string         kind;
-                int                 unused_dim, order, n_nodes, n_corners;
-                std::vector<double> unused_points;
-                gmsh::model::mesh::getElementProperties(types[k],
-                                                        kind,
-                                                        unused_dim,
-                                                        order,
-                                                        n_nodes,
-                                                        unused_points,
-                                                        n_corners);
-                is_of_higher_order =
-                  is_of_higher_order || (dimension == dim && order > 1);
-                for (std::size_t e = 0; e < tags[k].size(); ++e)
-                  {
-                    Corners corners;
-                    for (int v = 0; v < n_corners; ++v)
-                      corners.push_back(
-                        vertex_of.at(nodes[k][e * n_nodes + v]));
-                    // Around a quadrilateral, or line by line.
-                    const bool has_quadrilateral =
-                      corners.size() == 8 || corners.size() == 5 ||
-                      (corners.size() == 4 && dimension == 2);
-                    for (std::size_t v = 0;
-                         has_quadrilateral && v + 3 < corners.size();
-                         v += 4)
-                      std::swap(corners[v + 2], corners[v + 3]);
-                    result.push_back({tags[k][e], corners, groups});
-                  }
-              }
-          }
-        return result;
       }
 
       /// Checks the cells one by one, and joins those that stand in the file
@@ -827,14 +552,11 @@ namespace Debond
       /// Relative to a face's size.
       static constexpr double tolerance = 1e-8;
 
-      const std::string                             file_name;
-      FileText                                      text;
-      bool                                          is_old             = false;
-      bool                                          is_of_higher_order = false;
-      std::unordered_map<std::size_t, unsigned int> vertex_of; ///< by tag
-      std::vector<dealii::Point<dim>>               vertices;  ///< and centres
-      std::vector<double>                           heights;   ///< z
-      std::vector<Element>                          cells, faces;
+      const std::string               file_name;
+      bool                            is_of_higher_order = false;
+      std::vector<dealii::Point<dim>> vertices; ///< and centres
+      std::vector<double>             heights;  ///< z
+      std::vector<Element>            cells, faces;
 
       /// By dimension and number of the group.
       std::map<std::pair<int, int>, std::string> names;

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_mesh_gmsh_file_h
+#define debond_mesh_gmsh_file_h
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  /// What Gmsh makes of a file.
+  struct GmshFile
+  {
+    /// Of one kind in one entity, with corners as tags of nodes.
+    struct Elements
+    {
+      int                        dimension, order, n_corners;
+      std::vector<std::size_t>   tags, corners;
+      std::map<int, std::string> groups; ///< names by number, if they have any
+    };
+
+    bool                     is_geometry = false; ///< meshed on the spot
+    std::vector<std::size_t> nodes;               ///< tags
+    std::vector<double>      coordinates;         ///< three for each
+    std::vector<Elements>    elements;
+  };
+
+  /**
+   * Has Gmsh read a file in any of its formats, with elements of the dimension
+   * @p dim and of one less. A geometry is meshed, with edges of the length
+   * @p size, or of what the file or Gmsh finds good if it is 0. Partitions are
+   * joined. Throws std::invalid_argument with Gmsh's words.
+   */
+  GmshFile
+  read_gmsh_file(const std::string &file_name, int dim, double size);
+} // namespace Debond
+
+#endif
