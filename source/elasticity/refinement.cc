@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/lac/exceptions.h>
-
 #include <debond/elasticity/extended_operator.h>
 #include <debond/elasticity/refinement.h>
 
@@ -22,146 +20,6 @@ namespace Debond
     constexpr unsigned int maximum_refinement_iterations = 2000;
     constexpr unsigned int maximum_refinement_systems    = 500;
   } // namespace
-
-
-
-  CondensedCorrection::CondensedCorrection(
-    const Condensation &condensed_problem)
-    : condensed(condensed_problem)
-  {}
-
-
-
-  void
-  CondensedCorrection::prepare(const Eigen::SparseMatrix<double> &E,
-                               const ActiveSet                   &held)
-  {
-    free.clear();
-    std::vector<unsigned int> place(held.size());
-    for (unsigned int i = 0; i < held.size(); ++i)
-      if (held[i] == 0)
-        {
-          place[i] = static_cast<unsigned int>(free.size());
-          free.push_back(i);
-        }
-    if (free.empty())
-      return;
-
-    const MatrixView   S = condensed.schur_complement();
-    const unsigned int n = static_cast<unsigned int>(free.size());
-    // Where rounding has made S + E indefinite a larger diagonal mends it.
-    for (double shift = 0.; shift < 1e-3;
-         shift = std::max(10. * shift, std::numeric_limits<double>::epsilon()))
-      {
-        factor.reinit(n);
-        for (unsigned int k = 0; k < n; ++k)
-          for (unsigned int l = 0; l < n; ++l)
-            factor(k, l) = S(free[k], free[l]);
-        for (int j = 0; j < E.outerSize(); ++j)
-          for (Eigen::SparseMatrix<double>::InnerIterator entry(E, j); entry;
-               ++entry)
-            if (held[j] == 0 && held[entry.row()] == 0)
-              factor(place[entry.row()], place[j]) += entry.value();
-        for (unsigned int k = 0; k < n; ++k)
-          factor(k, k) *= 1. + shift;
-        factor.set_property(dealii::LAPACKSupport::symmetric);
-        try
-          {
-            factor.compute_cholesky_factorization();
-            return;
-          }
-        catch (const dealii::LACExceptions::ExcSingular &)
-          {}
-      }
-    // Any positive definite matrix is a preconditioner.
-    factor.reinit(n);
-    for (unsigned int k = 0; k < n; ++k)
-      factor(k, k) = std::abs(S(free[k], free[k]));
-    factor.set_property(dealii::LAPACKSupport::symmetric);
-    factor.compute_cholesky_factorization();
-  }
-
-
-
-  DofVector
-  CondensedCorrection::solve(const DofVector &r) const
-  {
-    return condensed.solve(r, [this](const Eigen::VectorXd &g) {
-      Eigen::VectorXd s = Eigen::VectorXd::Zero(g.size());
-      if (free.empty())
-        return s;
-      dealii::Vector<double> s_free(static_cast<unsigned int>(free.size()));
-      for (unsigned int k = 0; k < free.size(); ++k)
-        s_free(k) = g(free[k]);
-      factor.solve(s_free);
-      for (unsigned int k = 0; k < free.size(); ++k)
-        s(free[k]) = s_free(k);
-      return s;
-    });
-  }
-
-
-
-  MultigridCorrection::MultigridCorrection(
-    const Multigrid                                    &cycle,
-    const std::vector<dealii::types::global_dof_index> &contact_normals)
-    : multigrid(cycle)
-    , normals(contact_normals)
-  {}
-
-
-
-  void
-  MultigridCorrection::prepare(const Eigen::SparseMatrix<double> &,
-                               const ActiveSet &held)
-  {
-    active = held;
-  }
-
-
-
-  DofVector
-  MultigridCorrection::solve(const DofVector &r) const
-  {
-    DofVector result(r.size());
-    multigrid.vmult(result, r);
-    for (unsigned int i = 0; i < normals.size(); ++i)
-      if (active[i] != 0)
-        result(normals[i]) = 0.;
-    return result;
-  }
-
-
-
-  template <int dim>
-  LevelCorrection<dim>::LevelCorrection(ElasticLevels<dim> &elastic_levels)
-    : levels(elastic_levels)
-  {}
-
-
-
-  template <int dim>
-  void
-  LevelCorrection<dim>::prepare(const Eigen::SparseMatrix<double> &E,
-                                const ActiveSet                   &held)
-  {
-    std::vector<unsigned int> held_normals;
-    for (unsigned int i = 0; i < held.size(); ++i)
-      if (held[i] != 0)
-        held_normals.push_back(levels.normals(0)[i]);
-    levels.cycle().truncate(0, held_normals, levels.normals(0), E);
-  }
-
-
-
-  template <int dim>
-  DofVector
-  LevelCorrection<dim>::solve(const DofVector &r) const
-  {
-    DofVector result(r.size());
-    levels.cycle().vmult(result, r);
-    return result;
-  }
 
 
 
@@ -592,6 +450,4 @@ namespace Debond
   template decltype(refine_where_needed<3>) refine_where_needed<3>;
   template decltype(refine<2>)              refine<2>;
   template decltype(refine<3>)              refine<3>;
-  template class LevelCorrection<2>;
-  template class LevelCorrection<3>;
 } // namespace Debond

@@ -10,6 +10,7 @@
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/condensed_methods.h>
+#include <debond/solve/method_choice.h>
 #include <debond/solve/refine_result.h>
 
 #include <algorithm>

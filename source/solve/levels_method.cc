@@ -3,6 +3,7 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/contact/functional.h>
+#include <debond/elasticity/contact_condensation.h>
 #include <debond/elasticity/elastic_levels.h>
 #include <debond/elasticity/level_problem.h>
 #include <debond/elasticity/mesh_transfer.h>
@@ -73,7 +74,8 @@ namespace Debond
       const auto may_go_on = [&watch]() { return watch.may_go_on(); };
       const RestrictedFunction     phi(scene.adhesion(),
                                    levels.trace_prolongation(l));
-      LevelProblem<dim>            problem(levels, l, phi, u, may_go_on);
+      LevelCorrection<dim>         cycle(levels, l);
+      LevelProblem<dim>            problem(cycle, phi, u, may_go_on);
       const MajoriseMinimiseResult minimum =
         MajoriseMinimise(of_level).minimize(
           problem,
@@ -247,19 +249,17 @@ namespace Debond
         return;
       }
 
-    LevelProblem<dim>    problem(*levels,
-                              0,
-                              scene.adhesion(),
-                              result.u,
-                              [&watch]() { return watch.may_go_on(); });
-    LevelCorrection<dim> solver(*levels);
+    LevelCorrection<dim> cycle(*levels);
+    LevelProblem<dim>    problem(cycle, scene.adhesion(), result.u, [&watch]() {
+      return watch.may_go_on();
+    });
     minimise_on_all_unknowns(parameters, energy, problem, watch, result);
     // The search was done on a coarser mesh.
     if (wants_search(parameters) && scene.law().branches().size() > 1)
       result.notes.push_back(
         "fronts of bonds are as the search on coarser meshes left them; with "
         "Solver/Linear solver = direct it is done on the finest one");
-    refine_result(scene, solver, watch, result);
+    refine_result(scene, cycle, watch, result);
   }
 
 

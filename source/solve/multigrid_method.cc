@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/elasticity/contact_condensation.h>
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/elasticity/multigrid.h>
 #include <debond/elasticity/multigrid_problem.h>
@@ -132,14 +133,14 @@ namespace Debond
     const Multigrid multigrid(scene.problem(), held);
     result.parts["multigrid setup"] = timer.wall_time();
 
+    MultigridCorrection   cycle(multigrid, normals);
     MultigridProblem<dim> problem(scene.problem(),
                                   scene.adhesion(),
-                                  multigrid,
+                                  cycle,
                                   result.u,
                                   [&watch]() { return watch.may_go_on(); });
-    MultigridCorrection   solver(multigrid, normals);
     minimise_on_all_unknowns(parameters, energy, problem, watch, result);
-    refine_result(scene, solver, watch, result);
+    refine_result(scene, cycle, watch, result);
   }
 
 

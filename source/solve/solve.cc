@@ -3,6 +3,7 @@
 
 #include <debond/base/interrupt.h>
 #include <debond/base/text.h>
+#include <debond/elasticity/contact_condensation.h>
 #include <debond/elasticity/refinement.h>
 #include <debond/input/bad_input.h>
 #include <debond/solve/condensed_methods.h>

@@ -223,13 +223,14 @@ namespace
     bool ended = true, kept = true;
     for (const unsigned int allowed : {0, 1, 5, 10})
       {
-        Vector            u(body.problem.unknowns().n_dofs());
-        Vector            last  = u;
-        unsigned int      asked = 0;
-        LevelProblem<dim> problem(*levels, 0, adhesion, u, [&]() {
+        Vector               u(body.problem.unknowns().n_dofs());
+        Vector               last  = u;
+        unsigned int         asked = 0;
+        LevelCorrection<dim> cycle(*levels);
+        LevelProblem<dim>    problem(cycle, adhesion, u, [&]() {
           return ++asked <= allowed;
         });
-        const auto        result =
+        const auto           result =
           MajoriseMinimise({}).minimize(problem,
                                         [&](const MajoriseMinimiseIteration &) {
                                           last = u;

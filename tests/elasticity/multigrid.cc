@@ -181,7 +181,8 @@ namespace
         const double     J     = exact.functional + condensed.energy_at_zero();
 
         u = 0.;
-        MultigridProblem<dim> large(*body.problem, adhesion, multigrid, u);
+        MultigridCorrection   cycle(multigrid, normals);
+        MultigridProblem<dim> large(*body.problem, adhesion, cycle, u);
         const auto            iterated = MajoriseMinimise({}).minimize(large);
         std::cout << "  " << rule << ": "
                   << to_string(exact.status) + ", " + to_string(iterated.status)
@@ -211,7 +212,7 @@ namespace
             DofVector             last(u);
             MultigridProblem<dim> stopped(*body.problem,
                                           adhesion,
-                                          multigrid,
+                                          cycle,
                                           u,
                                           [&]() { return ++asked <= allowed; });
             const auto            result = MajoriseMinimise({}).minimize(

@@ -121,7 +121,8 @@ namespace
           {
             const RestrictedFunction phi(adhesion,
                                          levels.trace_prolongation(l));
-            LevelProblem<dim>        problem(levels, l, phi, u);
+            LevelCorrection<dim>     cycle(levels, l);
+            LevelProblem<dim>        problem(cycle, phi, u);
             result = MajoriseMinimise({}).minimize(
               problem, [](const MajoriseMinimiseIteration &) { return true; });
           }
