@@ -22,33 +22,14 @@ namespace Debond
         cell.dofs.resize(dof_cell->get_fe().dofs_per_cell);
         dof_cell->get_dof_indices(cell.dofs);
 
-        // Row v of edges is the edge to vertex v + 1, and the columns of its
-        // inverse are the gradients.
-        std::array<std::array<long double, dim>, dim> edges;
+        // Row v of edges is the edge to vertex v + 1.
+        dealii::Tensor<2, dim, long double> edges;
         for (unsigned int v = 0; v < dim; ++v)
           for (unsigned int d = 0; d < dim; ++d)
             edges[v][d] = static_cast<long double>(dof_cell->vertex(v + 1)[d]) -
                           dof_cell->vertex(0)[d];
-        long double determinant = 0.;
-        for (unsigned int v = 0; v < dim; ++v)
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              long double cofactor;
-              if constexpr (dim == 2)
-                cofactor = (v == d ? 1 : -1) * edges[1 - v][1 - d];
-              else
-                cofactor = edges[(v + 1) % 3][(d + 1) % 3] *
-                             edges[(v + 2) % 3][(d + 2) % 3] -
-                           edges[(v + 1) % 3][(d + 2) % 3] *
-                             edges[(v + 2) % 3][(d + 1) % 3];
-              cell.gradients[v][d] = cofactor;
-              if (v == 0)
-                determinant += edges[0][d] * cofactor;
-            }
-        for (auto &gradient : cell.gradients)
-          for (long double &component : gradient)
-            component /= determinant;
-        cell.volume              = determinant / (dim == 2 ? 2 : 6);
+        cell.gradients = dealii::invert(edges);
+        cell.volume    = dealii::determinant(edges) / (dim == 2 ? 2 : 6);
         const Material &material = problem.fields().material(dof_cell);
         cell.lambda              = material.lame_lambda<dim>();
         cell.mu                  = material.shear_modulus();
@@ -64,9 +45,10 @@ namespace Debond
   {
     if (problem.unknowns().degree() == 1)
       {
-        reference_gradients.emplace_back(dim, Gradient{});
+        reference_gradients.emplace_back();
         for (unsigned int d = 0; d < dim; ++d)
-          reference_gradients[0][d][d] = 1.L;
+          reference_gradients[0].push_back(
+            dealii::unit_symmetric_tensor<dim, long double>()[d]);
         return;
       }
     // The points and gradients of strain_rule() and FE_SimplexP, which have the
@@ -79,26 +61,21 @@ namespace Debond
         const auto coordinate = [&](const unsigned int v) {
           return v == q ? 1.L - dim * small : small;
         };
-        // Of a barycentric coordinate by another one, or by the first one's.
-        const auto derivative = [](const unsigned int v, const unsigned int d) {
-          return v == 0 ? -1.L : v == d + 1 ? 1.L : 0.L;
+        // Of a barycentric coordinate by the others than the first.
+        const auto derivative = [](const unsigned int v) {
+          Gradient result;
+          for (unsigned int d = 0; d < dim; ++d)
+            result[d] = v == 0 ? -1.L : v == d + 1 ? 1.L : 0.L;
+          return result;
         };
-        reference_gradients.emplace_back();
+        auto &gradients = reference_gradients.emplace_back();
         for (unsigned int v = 1; v <= dim; ++v)
-          {
-            reference_gradients[q].emplace_back();
-            for (unsigned int d = 0; d < dim; ++d)
-              reference_gradients[q].back()[d] =
-                (4.L * coordinate(v) - 1.L) * derivative(v, d);
-          }
+          gradients.push_back((4.L * coordinate(v) - 1.L) * derivative(v));
         for (unsigned int l = 0; l < n_simplex_edges(dim + 1); ++l)
           {
             const auto &[a, b] = simplex_edges[l];
-            reference_gradients[q].emplace_back();
-            for (unsigned int d = 0; d < dim; ++d)
-              reference_gradients[q].back()[d] =
-                4.L * (coordinate(a) * derivative(b, d) +
-                       coordinate(b) * derivative(a, d));
+            gradients.push_back(4.L * (coordinate(a) * derivative(b) +
+                                       coordinate(b) * derivative(a)));
           }
       }
   }
@@ -109,24 +86,23 @@ namespace Debond
   ExtendedVector
   ExtendedOperator<dim>::operator*(const ExtendedVector &u) const
   {
-    const ExtendedVector  displacement = cartesian(u);
-    ExtendedVector        forces       = ExtendedVector::Zero(u.size());
-    std::vector<Gradient> gradients;
+    const ExtendedVector displacement = cartesian(u);
+    ExtendedVector       forces       = ExtendedVector::Zero(u.size());
     for (const Cell &cell : cells)
       for (unsigned int q = 0; q < reference_gradients.size(); ++q)
         {
-          make_gradients(cell, q, gradients);
-          const Stress sigma = stress(cell, gradients, displacement);
-          for (unsigned int d = 0; d < dim; ++d)
-            for (unsigned int n = 0; n < gradients.size(); ++n)
-              {
-                long double force = 0.;
-                for (unsigned int e = 0; e < dim; ++e)
-                  force += sigma[d][e] * gradients[n][e];
-                force *= cell.volume / reference_gradients.size();
-                forces(cell.dofs[(n + 1) * dim + d]) += force;
-                forces(cell.dofs[d]) -= force;
-              }
+          const std::vector<Gradient> gradients = gradients_at(cell, q);
+          const Stress weighted = cell.volume / reference_gradients.size() *
+                                  stress(cell, gradients, displacement);
+          for (unsigned int n = 0; n < gradients.size(); ++n)
+            {
+              const Gradient force = weighted * gradients[n];
+              for (unsigned int d = 0; d < dim; ++d)
+                {
+                  forces(cell.dofs[(n + 1) * dim + d]) += force[d];
+                  forces(cell.dofs[d]) -= force[d];
+                }
+            }
         }
 
     problem.unknowns().edges().forces_to_conjugates(forces);
@@ -152,14 +128,13 @@ namespace Debond
   ExtendedOperator<dim>::stress_rounding(const ExtendedVector &u,
                                          const ExtendedVector &rounded_u) const
   {
-    const ExtendedVector  displacement = cartesian(u);
-    const ExtendedVector  rounded      = cartesian(rounded_u);
-    long double           largest = 0., largest_change = 0.;
-    std::vector<Gradient> gradients;
+    const ExtendedVector displacement = cartesian(u);
+    const ExtendedVector rounded      = cartesian(rounded_u);
+    long double          largest = 0., largest_change = 0.;
     for (const Cell &cell : cells)
       for (unsigned int q = 0; q < reference_gradients.size(); ++q)
         {
-          make_gradients(cell, q, gradients);
+          const std::vector<Gradient> gradients = gradients_at(cell, q);
           const Stress exact = stress(cell, gradients, displacement);
           const Stress other = stress(cell, gradients, rounded);
           for (unsigned int d = 0; d < dim; ++d)
@@ -195,46 +170,33 @@ namespace Debond
 
 
   template <int dim>
-  void
-  ExtendedOperator<dim>::make_gradients(const Cell            &cell,
-                                        const unsigned int     point,
-                                        std::vector<Gradient> &gradients) const
+  std::vector<dealii::Tensor<1, dim, long double>>
+  ExtendedOperator<dim>::gradients_at(const Cell        &cell,
+                                      const unsigned int point) const
   {
-    gradients.assign(reference_gradients[point].size(), Gradient{});
-    for (unsigned int n = 0; n < gradients.size(); ++n)
-      for (unsigned int v = 0; v < dim; ++v)
-        for (unsigned int d = 0; d < dim; ++d)
-          gradients[n][d] +=
-            reference_gradients[point][n][v] * cell.gradients[v][d];
+    std::vector<Gradient> result;
+    for (const Gradient &gradient : reference_gradients[point])
+      result.push_back(cell.gradients * gradient);
+    return result;
   }
 
 
 
   template <int dim>
-  typename ExtendedOperator<dim>::Stress
+  dealii::Tensor<2, dim, long double>
   ExtendedOperator<dim>::stress(const Cell                  &cell,
                                 const std::vector<Gradient> &gradients,
                                 const ExtendedVector        &cartesian_u) const
   {
-    Stress gradient = {};
+    dealii::Tensor<2, dim, long double> gradient;
     for (unsigned int n = 0; n < gradients.size(); ++n)
       for (unsigned int d = 0; d < dim; ++d)
-        {
-          const long double difference =
-            cartesian_u(cell.dofs[(n + 1) * dim + d]) -
-            cartesian_u(cell.dofs[d]);
-          for (unsigned int e = 0; e < dim; ++e)
-            gradient[d][e] += difference * gradients[n][e];
-        }
-
-    long double trace = 0.;
+        gradient[d] += (cartesian_u(cell.dofs[(n + 1) * dim + d]) -
+                        cartesian_u(cell.dofs[d])) *
+                       gradients[n];
+    Stress sigma = cell.mu * (gradient + dealii::transpose(gradient));
     for (unsigned int d = 0; d < dim; ++d)
-      trace += gradient[d][d];
-    Stress sigma;
-    for (unsigned int d = 0; d < dim; ++d)
-      for (unsigned int e = 0; e < dim; ++e)
-        sigma[d][e] = cell.mu * (gradient[d][e] + gradient[e][d]) +
-                      (d == e ? cell.lambda * trace : 0.L);
+      sigma[d][d] += cell.lambda * dealii::trace(gradient);
     return sigma;
   }
 

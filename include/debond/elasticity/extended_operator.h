@@ -2,11 +2,12 @@
 #ifndef debond_elasticity_extended_operator_h
 #define debond_elasticity_extended_operator_h
 
+#include <deal.II/base/tensor.h>
+
 #include <debond/elasticity/elastic_problem.h>
 
 #include <Eigen/Core>
 
-#include <array>
 #include <vector>
 
 namespace Debond
@@ -40,18 +41,17 @@ namespace Debond
                     const ExtendedVector &rounded_u) const;
 
   private:
-    /// sigma[d][e].
-    using Stress = std::array<std::array<long double, dim>, dim>;
-
-    using Gradient = std::array<long double, dim>;
+    using Gradient = dealii::Tensor<1, dim, long double>;
+    using Stress   = dealii::Tensor<2, dim, long double>;
 
     struct Cell
     {
       /// By node, those of one after the other.
       std::vector<dealii::types::global_dof_index> dofs;
 
-      /// Rows are the gradients of all barycentric coordinates but the first.
-      std::array<Gradient, dim> gradients;
+      /// Columns are the gradients of all barycentric coordinates but the
+      /// first.
+      dealii::Tensor<2, dim, long double> gradients;
 
       long double volume;
       long double lambda; ///< Lame's
@@ -66,10 +66,8 @@ namespace Debond
 
     /// The gradients at a point of the rule of all basis functions but the
     /// first.
-    void
-    make_gradients(const Cell            &cell,
-                   const unsigned int     point,
-                   std::vector<Gradient> &gradients) const;
+    std::vector<Gradient>
+    gradients_at(const Cell &cell, const unsigned int point) const;
 
     Stress
     stress(const Cell                  &cell,
