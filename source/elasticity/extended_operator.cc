@@ -43,12 +43,18 @@ namespace Debond
   void
   ExtendedOperator<dim>::make_reference_gradients()
   {
+    // Of a barycentric coordinate by the others than the first.
+    const auto derivative = [](const unsigned int v) {
+      Gradient result;
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = v == 0 ? -1.L : v == d + 1 ? 1.L : 0.L;
+      return result;
+    };
     if (problem.unknowns().degree() == 1)
       {
         reference_gradients.emplace_back();
-        for (unsigned int d = 0; d < dim; ++d)
-          reference_gradients[0].push_back(
-            dealii::unit_symmetric_tensor<dim, long double>()[d]);
+        for (unsigned int v = 1; v <= dim; ++v)
+          reference_gradients[0].push_back(derivative(v));
         return;
       }
     // The points and gradients of strain_rule() and FE_SimplexP, which have the
@@ -60,13 +66,6 @@ namespace Debond
       {
         const auto coordinate = [&](const unsigned int v) {
           return v == q ? 1.L - dim * small : small;
-        };
-        // Of a barycentric coordinate by the others than the first.
-        const auto derivative = [](const unsigned int v) {
-          Gradient result;
-          for (unsigned int d = 0; d < dim; ++d)
-            result[d] = v == 0 ? -1.L : v == d + 1 ? 1.L : 0.L;
-          return result;
         };
         auto &gradients = reference_gradients.emplace_back();
         for (unsigned int v = 1; v <= dim; ++v)

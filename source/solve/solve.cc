@@ -7,7 +7,6 @@
 #include <debond/elasticity/refinement.h>
 #include <debond/input/bad_input.h>
 #include <debond/solve/condensed_methods.h>
-#include <debond/solve/levels_method.h>
 #include <debond/solve/multigrid_method.h>
 #include <debond/solve/solve.h>
 #include <debond/solve/watch.h>
@@ -120,10 +119,8 @@ namespace Debond
                     std::make_unique<Watch>(guard, ranks);
       if (choice.method == SolverMethod::euclidean_bundle)
         solve_by_euclidean_bundle(parameters.bundle, scene, *watch, result);
-      else if (choice.has_levels)
-        solve_by_levels(choice, parameters, scene, guard, *watch, result);
       else if (choice.linear_solver == LinearSolver::multigrid)
-        solve_by_multigrid(parameters, scene, guard, *watch, result);
+        solve_by_multigrid(choice, parameters, scene, guard, *watch, result);
       else
         solve_condensed(
           choice.method, parameters, scene, start, *watch, result);
