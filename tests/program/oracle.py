@@ -67,17 +67,16 @@ def minimise_convex(Q, g, held=None):
     raise ArithmeticError("the active set method does not end")
 
 
-def replaced(rows, k, row):
-    """Rows with another one in the place k."""
-    return rows[:k] + [row] + rows[k + 1:]
+def unit(n):
+    """Rows of the unit matrix."""
+    return [[ONE if i == j else ZERO for j in range(n)] for i in range(n)]
 
 
 def inverse(rows):
     """Of a small matrix, by Cramer's rule."""
     n, whole = len(rows), determinant(rows)
-    unit = [[ONE if i == j else ZERO for j in range(n)] for i in range(n)]
-    return [[determinant(replaced(rows, j, unit[i])) / whole for j in range(n)]
-            for i in range(n)]
+    return [[determinant(rows[:j] + [e] + rows[j + 1:]) / whole for j in range(n)]
+            for e in unit(n)]
 
 
 def normalised(vector):
@@ -107,7 +106,6 @@ def symmetric_rule(*orbits):
 
 def rules(dim):
     """Of the quadratures of a face: weights and barycentric coordinates."""
-    unit = [[ONE if i == j else ZERO for j in range(dim)] for i in range(dim)]
     middle = [(ONE, [ONE / dim] * dim)]
     two, three = ONE / EXACT(3).sqrt(), EXACT("0.6").sqrt()
     if dim == 2:
@@ -123,7 +121,7 @@ def rules(dim):
                                    for k in (1, -1)))
         gauss_3 = [(EXACT(9) / 40, middle[0][1])] + symmetric_rule(
             *(((155 + k * fifteen) / 1200, (6 + k * fifteen) / 21) for k in (1, -1)))
-    return {"nodal": [(ONE / dim, phi) for phi in unit], "midpoint": middle,
+    return {"nodal": [(ONE / dim, phi) for phi in unit(dim)], "midpoint": middle,
             "gauss 1": middle, "gauss 2": gauss_2, "gauss 3": gauss_3}
 
 
@@ -188,20 +186,22 @@ class Body:
 
     def __init__(self, scene):
         self.scene, self.dim = scene, scene.dim
+        self.is_usable = True
         self.points = [tuple(map(EXACT, p)) for p in scene.mesh.points]
         self.n = self.dim * len(self.points)
         self.faces = {side: [Face(self.points, *face) for face in faces]
                       for side, faces in scene.mesh.sides.items()}
         self.contact_faces = [(name, Face(self.points, *face))
-                              for name in scene.bonds for face in scene.faces_of(name)]
+                              for name, *face in scene.contact_faces]
         E, nu = EXACT(scene.E), EXACT(scene.nu)
         self.mu = E / (2 * (1 + nu))
         self.lame = (E * nu / (1 - nu * nu) if scene.is_plane_stress
                      else E * nu / ((1 + nu) * (1 - 2 * nu)))
-        self.is_usable = True
         self.make_normals()
         self.make_frames()
-        self.is_usable &= bool(self.contact_dofs)
+        # The program refuses a part without faces.
+        self.is_usable &= bool(self.contact_dofs) and (
+            {name for name, _ in self.contact_faces} >= set(scene.bonds))
         if not self.is_usable:
             return
         self.assemble_stiffness()
@@ -248,16 +248,16 @@ class Body:
                     self.group_of[f, v] = number
 
     def prescribed_rows(self, v):
-        """Orthonormal directions at a vertex in which supports hold it, with the side
+        """Orthonormal directions at a vertex in which supports hold it, with the load
         and the component that are prescribed if they need not be zero."""
-        scene, unit = self.scene, [[ONE if i == j else ZERO for j in range(self.dim)]
-                                   for i in range(self.dim)]
+        scene, axes, rows = self.scene, unit(self.dim), []
         if v in self.clamped:
-            return [(e, None) for e in unit]
-        rows = []
-        for side, components in scene.moved.items():
+            return [(e, None) for e in axes]
+        for side in scene.moved:
+            path = "Boundary conditions/Displacement " + side
             if v in self.vertices[side]:
-                rows += [(unit[k], (side, k)) for k, c in enumerate(components) if c]
+                rows += [(axes[k], (path, k))
+                         for k, c in enumerate(scene.loads[path]) if c]
         for side in scene.rollers:
             if v in self.vertices[side]:
                 rest = without(self.faces[side][0].normal, [row for row, _ in rows])
@@ -310,9 +310,7 @@ class Body:
                 break
             orthonormal.append(normalised(left))
         while len(rows) < self.dim:
-            row = normalised(max((without([ONE if i == j else ZERO
-                                           for j in range(self.dim)], orthonormal)
-                                  for i in range(self.dim)),
+            row = normalised(max((without(e, orthonormal) for e in unit(self.dim)),
                                  key=lambda e: dot(e, e)))
             orthonormal.append(row)
             rows, kinds = rows + [row], kinds + [rest]
@@ -351,7 +349,7 @@ class Body:
                 M = scene.bonds[name].threshold(place)
                 at = tuple(sorted(((v, self.group_of[f, v]), phi)
                                   for v, phi in zip(face.vertices, phis) if phi))
-                sum_of = sums.setdefault((at, (a, M) if len(at) > 1 else ()), [ZERO] * 3)
+                sum_of = sums.setdefault((at, (a, M)[:2 * (len(at) > 1)]), [ZERO] * 3)
                 for k, value in enumerate((ONE, a, a * M * M)):
                     sum_of[k] += weight * face.measure * value
         steps = [tuple(map(EXACT, step)) for step in scene.steps]
@@ -437,9 +435,12 @@ class Body:
 
     def cartesian_loads(self):
         """Tractions, pressures and body forces: all are linear on their face or
-        simplex, and so integrated exactly; and what temperatures do."""
+        simplex, and so integrated exactly; and what temperatures do, whose sum is
+        zero."""
         scene, dim = self.scene, self.dim
         loads = [[ZERO] * dim for _ in self.points]
+        body_force = scene.loads.get("Loads/Body force")
+        temperature = scene.loads.get("Loads/Temperature change")
 
         def add(vertices, measure, values):
             n = len(vertices)
@@ -448,36 +449,35 @@ class Body:
                 for v, value in zip(vertices, values):
                     loads[v][k] += measure * (total + value[k]) / (n * (n + 1))
 
-        for side, density in scene.tractions.items():
-            for face in self.faces[side]:
-                at = [[c(self.points[v]) for c in density] for v in face.vertices]
-                if len(density) == 1:
-                    at = [[-p * x for x in face.normal] for p, in at]
-                add(face.vertices, face.measure, at)
-        # The forces add up to zero, and are none that are applied.
-        self.thermal = [[ZERO] * dim for _ in self.points]
+        for side, faces in self.faces.items():
+            traction = scene.loads.get("Loads/Traction " + side)
+            pressure = scene.loads.get("Loads/Pressure " + side)
+            for face in faces if traction or pressure else ():
+                at = [self.points[v] for v in face.vertices]
+                add(face.vertices, face.measure,
+                    [[c(p) for c in traction] for p in at] if traction else
+                    [[-pressure[0](p) * x for x in face.normal] for p in at])
         for simplex, size, gradients in self.cells:
             at = [self.points[v] for v in simplex]
-            if scene.body_force:
-                add(simplex, size, [[c(p) for c in scene.body_force] for p in at])
-            if scene.temperature:
-                mean = sum(scene.temperature[0](p) for p in at) / len(at)
+            if body_force:
+                add(simplex, size, [[c(p) for c in body_force] for p in at])
+            if temperature:
+                mean = sum(temperature[0](p) for p in at) / len(at)
                 stress = size * mean * EXACT(scene.expansion) * (
                     (2 if scene.is_plane_stress else 3) * self.lame + 2 * self.mu)
                 for v, gradient in zip(simplex, gradients):
-                    self.thermal[v] = [x + stress * b for x, b in
-                                       zip(self.thermal[v], gradient)]
+                    loads[v] = [x + stress * b for x, b in zip(loads[v], gradient)]
         return loads
 
     def set_loads(self):
         """f, G, and what is left of the problem when the free unknowns are
         eliminated: 1/2 s'S s - g's + c for s <= 0."""
         self.applied = self.cartesian_loads()
-        self.f = [dot(e, [x + y for x, y in zip(self.applied[v], self.thermal[v])])
-                  for v in range(len(self.points)) for e in self.columns[v]]
+        self.f = [dot(e, load) for columns, load in zip(self.columns, self.applied)
+                  for e in columns]
         self.G = [ZERO] * self.n
-        for d, (side, k) in self.prescribed.items():
-            self.G[d] = self.scene.moved[side][k](self.points[d // self.dim])
+        for d, (path, k) in self.prescribed.items():
+            self.G[d] = self.scene.loads[path][k](self.points[d // self.dim])
         for (v, number), i in self.node_of.items():
             self.G[self.contact_dofs[i]] = self.gaps[v][number]
         self.make_bonds()

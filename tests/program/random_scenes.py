@@ -5,7 +5,7 @@ that their scene files say of them."""
 import collections
 import itertools
 import math
-import random as python_random
+import random
 from types import SimpleNamespace
 
 SIDES = (("left", "right"), ("bottom", "top"), ("back", "front"))
@@ -13,23 +13,17 @@ GRID_KINDS = ("L", "step", "notch", "hole")
 LARGEST_DOFS = 240
 
 
-class Draw:
+class Draw(random.Random):
     """Random numbers that are the same with every version of Python."""
 
-    def __init__(self, number):
-        self.source = python_random.Random(number)
-
     def chance(self, probability):
-        return self.source.random() < probability
-
-    def uniform(self, low, high):
-        return low + (high - low) * self.source.random()
+        return self.random() < probability
 
     def magnitude(self, low, high):
         return 10. ** self.uniform(low, high)
 
     def below(self, n):
-        return min(int(self.source.random() * n), n - 1)
+        return min(int(self.random() * n), n - 1)
 
     def between(self, low, high):
         return low + self.below(high - low + 1)
@@ -64,15 +58,19 @@ class Field:
 # ------------------------------------------------------------------ the bodies
 
 
+def faces_of_box(low, high):
+    """Also the edges of a face of the grid, the ends of an edge."""
+    return [tuple(corner[:k] + (end,) + corner[k + 1:] for corner in (low, high))
+            for k in range(len(low)) if low[k] < high[k] for end in (low[k], high[k])]
+
+
 def crossed(low, high):
     """The parts of a box of the grid with its middle and those of its faces."""
-    axes = [k for k, (a, b) in enumerate(zip(low, high)) if a < b]
-    if len(axes) == 1:
+    if sum(a < b for a, b in zip(low, high)) == 1:
         return [[low, high]]
     middle = tuple((a + b) // 2 for a, b in zip(low, high))
-    return [[middle] + part for k in axes for end in (low[k], high[k])
-            for part in crossed(low[:k] + (end,) + low[k + 1:],
-                                high[:k] + (end,) + high[k + 1:])]
+    return [[middle] + part for face in faces_of_box(low, high)
+            for part in crossed(*face)]
 
 
 def cut_along_diagonals(first, last):
@@ -87,11 +85,12 @@ def cut_along_diagonals(first, last):
 
 
 def corners(low, high):
-    """Of a box in Gmsh's order."""
-    ring = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]),
-            (low[0], high[1])]
-    return [c + rest for rest in ([()] if len(low) == 2 else
-                                  [(low[2],), (high[2],)]) for c in ring]
+    """Of a box, a face or an edge of the grid in Gmsh's order."""
+    axes = [k for k, (a, b) in enumerate(zip(low, high)) if a < b]
+    ways = [[], axes[:1], axes[:2], axes[1:2]][:2 ** len(axes)]
+    ways += [way + axes[2:] for way in ways[:4 * (len(axes) == 3)]]
+    return [tuple(high[k] if k in way else x for k, x in enumerate(low))
+            for way in ways]
 
 
 def determinant(rows):
@@ -108,11 +107,10 @@ def volume(points):
 
 
 class Mesh:
-    """A grid of boxes, some of them left out, under a map, cut in simplices by the
-    script or by the program. Corners of the grid have even numbers, so that those
-    between are the middles of edges, faces and boxes. The sides are those of the
-    grid, and "cut" is what bounds the boxes left out: lists of faces with the vertex
-    that is opposite to them."""
+    """A grid of boxes, some left out, under a map, cut in simplices by the script or by
+    the program. Corners of the grid have even numbers; those between are middles. The
+    sides are those of the grid, and "cut" is what bounds the boxes left out: lists of
+    faces with the vertex that is opposite to them."""
 
     def __init__(self, draw, dim):
         self.dim = dim
@@ -152,8 +150,8 @@ class Mesh:
                 self.file_cells = [c[half:] + c[:half] if dim == 3 else c[::-1]
                                    for c in self.file_cells]
             self.file_sides = self.boundary(
-                number, [(self.face(low, high, k, end), None) for low, high in boxes
-                         for k in range(dim) for end in (low[k], high[k])])
+                number, [(corners(*face), None) for box in boxes
+                         for face in faces_of_box(*box)])
         else:
             self.file_cells = self.simplices
             self.file_sides = self.sides
@@ -195,13 +193,6 @@ class Mesh:
                 *(tuple(box[(end + t) % 2][k] for k, t in enumerate(is_turned))
                   for end in (0, 1)))
         return parts
-
-    def face(self, low, high, k, end):
-        """The corners of a side of a box, round it."""
-        axes = [j for j in range(self.dim) if j != k]
-        ways = [(), axes[:1], axes, axes[1:]][:2 ** len(axes)]
-        return [tuple(end if j == k else high[j] if j in way else low[j]
-                      for j in range(self.dim)) for way in ways]
 
     def boundary(self, number, faces):
         """Those faces that there are once, by the names of their sides."""
@@ -384,17 +375,15 @@ class Scene:
         n_clamped = 0 if draw.chance(0.25) else draw.between(1, 2) if (
             len(sides) > 2) else 1
         self.clamped, rest = sides[:n_clamped], sides[n_clamped:]
-        self.rollers, self.moved = [], {}
+        self.rollers, self.moved = [], []
         for side in rest:
-            held = self.clamped + list(self.moved)
             if draw.chance(0.2) and self.is_flat(side) and not (
                     vertices([side]) & vertices(self.moved)):
                 self.rollers.append(side)
             elif draw.chance(0.15) and not (
-                    vertices([side]) & vertices(held + self.rollers)):
-                self.moved[side] = [
-                    None if draw.chance(0.3) else Field(draw.uniform(-1., 1.))
-                    for _ in range(self.dim)]
+                    vertices([side])
+                    & vertices(self.clamped + self.moved + self.rollers)):
+                self.moved.append(side)
         for entry, names in (("Clamped boundaries", self.clamped),
                              ("Roller boundaries", self.rollers),
                              ("Contact boundary", self.contact)):
@@ -437,19 +426,23 @@ class Scene:
             for side in self.contact:
                 self.bonds[side] = SimpleNamespace(**vars(everywhere))
                 self.set_bonds(draw, self.bonds[side], " " + side, 0.5)
-        # Faces belong to a part if their centre does; the program cuts bricks.
-        self.part_of = {}
+        self.contact_faces = [(side, *face) for side in self.contact
+                              for face in self.mesh.sides[side]]
         if self.bonds[self.contact[0]] is everywhere and draw.chance(0.3) and (
-                self.mesh.style != "bricks"):
-            axis, side = draw.below(self.dim), self.contact[0]
-            place = draw.uniform(*self.mesh.extent(axis))
-            self.set("Parts/piece", f"{side}: {'xyz'[axis]} > {place!r}")
-            self.bonds["piece"] = SimpleNamespace(**vars(self.bonds[side]))
-            self.part_of[side] = "piece", axis, place
-            if self.faces_of("piece"):
-                self.set_bonds(draw, self.bonds["piece"], " piece", 0.7)
-            else:
-                del self.settings["Parts/piece"]
+                self.mesh.style != "bricks"):  # which the program cuts
+            self.add_part(draw, self.contact[0])
+
+    def add_part(self, draw, side):
+        """Bonds of a part of a side: of faces with their centre in it."""
+        axis = draw.below(self.dim)
+        place = draw.uniform(*self.mesh.extent(axis))
+        self.set("Parts/piece", f"{side}: {'xyz'[axis]} > {place!r}")
+        self.bonds["piece"] = SimpleNamespace(**vars(self.bonds[side]))
+        self.set_bonds(draw, self.bonds["piece"], " piece", 0.7)
+        for f, (name, face, opposite) in enumerate(self.contact_faces):
+            centre = sum(self.mesh.points[v][axis] for v in face) / len(face)
+            if name == side and centre > place:
+                self.contact_faces[f] = "piece", face, opposite
 
     def set_bonds(self, draw, bonds, name, probability):
         """Gives some of what they have another value, and its entries."""
@@ -479,17 +472,6 @@ class Scene:
         self.set(f"{law}Tangential displacement{name}",
                  "fixed" if bonds.is_tangential_fixed else "free")
 
-    def faces_of(self, name):
-        """The faces of a contact side without its part, or of the part."""
-        result = []
-        for side in self.contact:
-            for face, opposite in self.mesh.sides[side]:
-                part, axis, place = self.part_of.get(side, (side, 0, -math.inf))
-                centre = sum(self.mesh.points[v][axis] for v in face) / len(face)
-                if (part if centre > place else side) == name:
-                    result.append((face, opposite))
-        return result
-
     def add_method(self, draw):
         """How it is solved."""
         method = draw.choice(["automatic"] * 5 + ["majorise minimise"] * 3 + (
@@ -516,39 +498,34 @@ class Scene:
         self.set("Output/Directory", "output")
 
     def add_loads(self, draw):
-        """Of size 1; scale_loads() sets them. One component is a pressure."""
+        """By their entries, of size 1; scale_loads() sets them. None is a component of
+        a displacement that is free."""
         def density(n, by=1.):
             return [self.field(draw, draw.uniform(-1., 1.), draw.uniform(-1., 1.))
                     .times(by) for _ in range(n)]
 
+        self.loads = {"Boundary conditions/Displacement " + side: [
+            None if draw.chance(0.3) else Field(draw.uniform(-1., 1.))
+            for _ in range(self.dim)] for side in self.moved}
         loaded = [side for side in sorted(self.mesh.sides)
-                  if side not in self.clamped and side not in self.moved]
-        self.tractions = {}
+                  if side not in self.clamped + self.moved]
         for side in draw.shuffled(loaded)[:draw.between(1, 2)]:
-            self.tractions[side] = density(1 if draw.chance(0.2) else self.dim)
-        self.body_force = (density(self.dim, 1. / self.mesh.length)
-                           if draw.chance(0.25) else None)
+            if draw.chance(0.2):
+                self.loads["Loads/Pressure " + side] = density(1)
+            else:
+                self.loads["Loads/Traction " + side] = density(self.dim)
+        if draw.chance(0.25):
+            self.loads["Loads/Body force"] = density(self.dim, 1. / self.mesh.length)
         self.expansion = 1e-5
-        self.temperature = density(1, 1. / (self.expansion * self.E)) if (
-            draw.chance(0.15)) else None
+        if draw.chance(0.15):
+            self.set("Material/Thermal expansion", self.expansion)
+            self.loads["Loads/Temperature change"] = density(
+                1, 1. / (self.expansion * self.E))
 
     def scale_loads(self, factor, movement):
         """Multiplies loads and prescribed displacements."""
-        def scaled(path, components, by):
-            components = [c and c.times(by) for c in components]
+        for path, components in self.loads.items():
+            by = factor if path.startswith("Loads") else movement
+            self.loads[path] = [c and c.times(by) for c in components]
             self.set(path, "; ".join("free" if c is None else str(c)
-                                     for c in components))
-            return components
-
-        for side, load in self.tractions.items():
-            kind = "Pressure" if len(load) == 1 else "Traction"
-            self.tractions[side] = scaled(f"Loads/{kind} {side}", load, factor)
-        if self.body_force:
-            self.body_force = scaled("Loads/Body force", self.body_force, factor)
-        if self.temperature:
-            self.set("Material/Thermal expansion", self.expansion)
-            self.temperature = scaled("Loads/Temperature change", self.temperature,
-                                      factor)
-        for side, components in self.moved.items():
-            self.moved[side] = scaled(f"Boundary conditions/Displacement {side}",
-                                      components, movement)
+                                     for c in self.loads[path]))
