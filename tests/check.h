@@ -10,6 +10,7 @@
 #include <iostream>
 #include <sstream>
 #include <string>
+#include <type_traits>
 
 /// Whether to print the figures behind the verdicts; the tests set it if they
 /// get any argument.
@@ -21,6 +22,17 @@ inline const char *
 verdict(const bool good)
 {
   return good ? "yes" : "NO";
+}
+
+
+
+/// The larger of the two; what is not a number stays.
+template <typename Number>
+void
+raise(Number &largest, const std::common_type_t<Number> value)
+{
+  if (!(value <= largest) && largest == largest)
+    largest = value;
 }
 
 
@@ -55,6 +67,32 @@ struct NumberOfChecks
 
 inline NumberOfChecks number_of_checks;
 
+inline std::string section_name;
+
+
+
+/// What the checks that follow are about: printed above the first one that
+/// fails.
+template <typename... Parts>
+void
+section(const Parts &...parts)
+{
+  std::ostringstream name;
+  (name << ... << parts);
+  section_name = name.str();
+}
+
+
+
+/// The name of a check, below that of its section.
+inline std::string
+in_section(const std::string &name)
+{
+  const std::string above = section_name.empty() ? "" : section_name + '\n';
+  section_name.clear();
+  return above + name;
+}
+
 
 
 /// Prints a line with the name if it does not hold.
@@ -63,7 +101,7 @@ check(const std::string &name, const bool holds)
 {
   ++number_of_checks.n;
   if (!holds || print_figures)
-    std::cout << name << ": " << verdict(holds) << std::endl;
+    std::cout << in_section(name) << ": " << verdict(holds) << std::endl;
 }
 
 
@@ -74,8 +112,8 @@ check(const std::string &name, const double value, const double bound)
 {
   ++number_of_checks.n;
   if (!(value <= bound) || print_figures)
-    std::cout << name << ", at most " << bound << ": " << verdict(value, bound)
-              << std::endl;
+    std::cout << in_section(name) << ", at most " << bound << ": "
+              << verdict(value, bound) << std::endl;
 }
 
 

@@ -51,28 +51,6 @@ namespace
             std::abs(law.value(-3. * M) / energy - 1.) < 1e-14 &&
             law.value(0.) == 0. && law.value(M) == 0.);
 
-    bool derivative_is_right = true;
-    bool curvature_is_right  = true;
-    for (const double s : {-5., -1.5, -0.9, -0.5, -0.1, 0.3, 2.})
-      {
-        const double h          = 1e-3 * M;
-        const double left       = law.value(s * M - h);
-        const double right      = law.value(s * M + h);
-        const double derivative = (right - left) / (2. * h);
-        const double curvature =
-          (right - 2. * law.value(s * M) + left) / (h * h);
-        derivative_is_right &= equal(law.clarke_interval(s * M),
-                                     derivative,
-                                     derivative,
-                                     1e3 * strength);
-        curvature_is_right &=
-          std::abs(law.curvature(s * M) - curvature) < 1e-8 * a;
-      }
-    check("derivative agrees with differences on each branch",
-          derivative_is_right);
-    check("curvature agrees with differences on each branch",
-          curvature_is_right);
-
     check("kinks at -M and 0", law.kinks() == std::vector<double>({-M, 0.}));
     check("Clarke interval at -M is [-aM, 0]",
           equal(law.clarke_interval(-M), -strength, 0., strength));
@@ -182,13 +160,11 @@ namespace
               std::max({slope_error,
                         std::abs(interval.lower - slope) / strength,
                         std::abs(interval.upper - slope) / strength});
-            curvature_error =
-              std::max(curvature_error,
-                       std::abs(law.curvature(s) - difference / (h * h)) / a);
-            outside =
-              std::max(outside, std::abs(branch(s) - law.value(s)) / energy);
-            negative      = std::max(negative, -law.value(s) / energy);
-            largest_force = std::max(largest_force, std::abs(interval.lower));
+            raise(curvature_error,
+                  std::abs(law.curvature(s) - difference / (h * h)) / a);
+            raise(outside, std::abs(branch(s) - law.value(s)) / energy);
+            raise(negative, -law.value(s) / energy);
+            raise(largest_force, std::abs(interval.lower));
           }
       }
 
@@ -207,12 +183,11 @@ namespace
           {at_kinks,
                         std::abs(interval.lower - std::min(left, right)) / strength,
                         std::abs(interval.upper - std::max(left, right)) / strength});
-        largest_force = std::max(largest_force, -interval.lower);
+        raise(largest_force, -interval.lower);
         for (const double side : {-1e-9, 1e-9})
-          jump =
-            std::max(jump,
-                     std::abs(law.value(kink + side * M) - law.value(kink)) /
-                       energy);
+          raise(jump,
+                std::abs(law.value(kink + side * M) - law.value(kink)) /
+                  energy);
       }
 
     // The hull of the slopes nearby, of which differences have no more and, on
@@ -229,7 +204,7 @@ namespace
             const double slope =
               (law.value(t + 1e-3 * h) - law.value(t - 1e-3 * h)) / (2e-3 * h);
             slopes.lower = std::min(slopes.lower, slope);
-            slopes.upper = std::max(slopes.upper, slope);
+            raise(slopes.upper, slope);
           }
         goldstein = std::max({goldstein,
                               std::abs(slopes.lower - found.lower) / strength,
@@ -243,11 +218,10 @@ namespace
         double       least = std::numeric_limits<double>::infinity();
         for (const Branch &branch : branches)
           least = std::min(least, branch(s));
-        above_least =
-          std::max(above_least, std::abs(least - law.value(s)) / energy);
+        raise(above_least, std::abs(least - law.value(s)) / energy);
       }
 
-    std::cout << "== Every law: " << name << std::endl;
+    section("Every law: ", name);
     check("kinks in ascending order, the first one at the threshold",
           std::is_sorted(kinks.begin(), kinks.end()) &&
             (kinks.empty() || law.bond_threshold() == -kinks.front()));
@@ -273,7 +247,7 @@ namespace
   void
   test_stepped()
   {
-    std::cout << "== Stepped law" << std::endl;
+    section("Stepped law");
     const AdhesiveLaw law(
       stepped_law({30., 20., 4.}, {0.1, 0.2, 0.5}).branches);
     // Areas below the sawteeth.
@@ -328,9 +302,9 @@ namespace
   void
   test_laws()
   {
-    std::cout << "== Winkler's law, GPa and m" << std::endl;
+    section("Winkler's law, GPa and m");
     test_winkler(69., 0.002);
-    std::cout << "== Winkler's law, Pa and m" << std::endl;
+    section("Winkler's law, Pa and m");
     test_winkler(6.9e10, 0.002);
 
     for (const std::string &name : law_names())
@@ -338,7 +312,7 @@ namespace
         test_conformance(name, factor);
 
     test_stepped();
-    std::cout << "== Other laws" << std::endl;
+    section("Other laws");
     const AdhesiveLaw none(no_adhesion().branches);
     check("without adhesion there is no force",
           none.value(-1.) == 0. && none.value(1.) == 0. &&
@@ -374,7 +348,7 @@ namespace
   void
   test_parse()
   {
-    std::cout << "== Names of rules" << std::endl;
+    section("Names of rules");
     using Parameters = ContactQuadratureParameters;
     check("nodal", Parameters::parse("nodal").rule == Parameters::Rule::nodal);
     check("midpoint",
@@ -493,7 +467,7 @@ namespace
   void
   test_quadrature()
   {
-    std::cout << "== Quadrature in " << dim << "D" << std::endl;
+    section("Quadrature in ", dim, "D");
     const auto degree_is = [&](const std::string &name, const unsigned int p) {
       const ContactQuadrature<dim> quadrature(
         ContactQuadratureParameters::parse(name));
@@ -550,87 +524,11 @@ namespace
 
   template <int dim>
   void
-  test_integral(const std::string &rule, const double a, const double M)
-  {
-    const ContactBoundary<dim>   boundary = make_boundary<dim>();
-    const AdhesiveLaw            law(winkler_law(a, M).branches);
-    const ContactQuadrature<dim> quadrature(
-      ContactQuadratureParameters::parse(rule));
-    const AdhesionIntegral<dim> integral(boundary, law, quadrature);
-    const unsigned int          n     = boundary.nodes.size();
-    const double                scale = a * M * boundary.faces[0].measure;
-
-    bool gradient_is_right     = true;
-    bool intervals_hold        = true;
-    bool goldstein_holds       = true;
-    bool radii_act_on_own_node = true;
-    for (const double stretch : {0.3, 1., 1.7, -0.4})
-      {
-        Eigen::VectorXd s(n);
-        for (unsigned int i = 0; i < n; ++i)
-          s(i) = -stretch * M * (0.37 + 0.9 * std::fmod(0.618 * i, 1.));
-
-        Eigen::VectorXd             xi     = integral.subgradient(s);
-        const std::vector<Interval> clarke = integral.force_intervals(s, 0.);
-
-        const double                radius = 0.2 * M;
-        const std::vector<Interval> goldstein =
-          integral.force_intervals(s, radius);
-        std::vector<double> radii(n, 0.);
-        radii[1]                          = radius;
-        const std::vector<Interval> mixed = integral.force_intervals(s, radii);
-
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            const double    h     = 1e-5 * M;
-            Eigen::VectorXd right = s;
-            Eigen::VectorXd left  = s;
-            right(i) += h;
-            left(i) -= h;
-            const double difference =
-              (integral.value(right) - integral.value(left)) / (2. * h);
-            gradient_is_right &= std::abs(difference - xi(i)) < 1e-7 * scale;
-
-            intervals_hold &= equal(clarke[i], xi(i), xi(i), scale);
-            radii_act_on_own_node &=
-              equal(mixed[i],
-                    (i == 1 ? goldstein : clarke)[i].lower,
-                    (i == 1 ? goldstein : clarke)[i].upper,
-                    scale);
-          }
-
-        for (unsigned int sample = 0; sample < 20; ++sample)
-          {
-            Eigen::VectorXd near = s;
-            for (unsigned int i = 0; i < n; ++i)
-              near(i) +=
-                radius * (2. * std::fmod(0.618 * (i + 7 * sample), 1.) - 1.);
-            xi = integral.subgradient(near);
-            for (unsigned int i = 0; i < n; ++i)
-              goldstein_holds &= goldstein[i].lower <= xi(i) + 1e-14 * scale &&
-                                 xi(i) <= goldstein[i].upper + 1e-14 * scale;
-          }
-      }
-    check(rule + ": subgradient agrees with differences", gradient_is_right);
-    check(rule + ": away from kinks the interval is the gradient",
-          intervals_hold);
-    check(rule + ": intervals with a radius hold the gradients nearby",
-          goldstein_holds);
-    check(rule + ": radii act on their own node", radii_act_on_own_node);
-  }
-
-
-
-  template <int dim>
-  void
   test_integrals()
   {
-    std::cout << "== Integral in " << dim << "D" << std::endl;
+    section("Integral in ", dim, "D");
     const double a = 6.9e10;
     const double M = 0.002;
-    for (const std::string rule : {"nodal", "midpoint", "gauss 2", "gauss 4"})
-      test_integral<dim>(rule, a, M);
-
     // The nodal rule in closed form, with a node on the kink.
     const ContactBoundary<dim>   boundary = make_boundary<dim>();
     const AdhesiveLaw            law(winkler_law(a, M).branches);
@@ -661,6 +559,14 @@ namespace
     forces = integral.force_intervals(s, 0.25 * M);
     check("nodal: Goldstein interval of a bonded node",
           equal(forces[0], -0.75 * force, -0.25 * force, force));
+    std::vector<double> radii(n, 0.);
+    radii[0]                          = 0.25 * M;
+    const std::vector<Interval> mixed = integral.force_intervals(s, radii),
+                                exact = integral.force_intervals(s, 0.);
+    bool own = equal(mixed[0], -0.75 * force, -0.25 * force, force);
+    for (unsigned int i = 1; i < n; ++i)
+      own = own && equal(mixed[i], exact[i].lower, exact[i].upper, force);
+    check("nodal: radii act on their own node", own);
 
     // The exact integral on all faces against the closed formula.
     if constexpr (dim == 3)

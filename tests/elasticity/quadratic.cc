@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// Quadratic displacements: those of bodies under loads that have one in closed
-// form, heated ones, loads against what they do on quadratic functions, the
-// operator against energies and against extended precision, frames at edges.
+// Patch tests of linear and quadratic displacements, quadratic ones of bodies
+// under loads that have one in closed form, heated ones, loads against what
+// they do on quadratic functions, the operator against energies and against
+// extended precision, frames at edges.
 
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
@@ -59,10 +60,12 @@ material()
 
 
 
-/// (x.Q_d.x)_d with numbers of no symmetry.
+/// (x.Q_d.x)_d with numbers of no symmetry, or linear.
 template <int dim>
 struct Quadratic
 {
+  const bool is_quadratic;
+
   Tensor<1, dim>
   operator()(const Point<dim> &x) const
   {
@@ -77,10 +80,13 @@ struct Quadratic
     return value;
   }
 
-  static double
-  coefficient(const unsigned int d, const unsigned int i, const unsigned int j)
+  double
+  coefficient(const unsigned int d,
+              const unsigned int i,
+              const unsigned int j) const
   {
-    return 0.1 + 0.07 * d - 0.05 * i + 0.03 * j + 0.11 * i * j;
+    return !is_quadratic ? 0. :
+                           0.1 + 0.07 * d - 0.05 * i + 0.03 * j + 0.11 * i * j;
   }
 
   /// - div sigma.
@@ -100,15 +106,14 @@ struct Quadratic
 
 
 
-/// The quadratic displacement prescribed on the whole boundary, with its body
-/// force.
+/// The displacement prescribed on the whole boundary, with its body force.
 template <int dim>
 void
-test_patch()
+test_patch(const unsigned int degree, const Material &material)
 {
   Triangulation<dim> mesh;
   make_mesh(mesh);
-  const Quadratic<dim> u;
+  const Quadratic<dim> u     = {degree == 2};
   const auto           exact = field<dim>(u);
 
   Supports<dim>               supports;
@@ -119,17 +124,18 @@ test_patch()
   all.components.fill(true);
   all.values             = exact;
   supports.displacements = {all};
-  ElasticProblem<dim>  problem(mesh, {}, supports, 2);
+  ElasticProblem<dim>  problem(mesh, {}, supports, degree);
   Loads<dim>           loads;
   const Tensor<1, dim> force =
-    u.force(material<dim>().template elasticity_tensor<dim>());
+    u.force(material.template elasticity_tensor<dim>());
   loads.body_force = field<dim>([force](const Point<dim> &) { return force; });
-  problem.assemble(material<dim>(), loads);
+  problem.assemble(material, loads);
 
   const Vector<double>    w     = solve(problem);
   const DisplacementError error = displacement_error(problem, w, *exact);
-  const std::string       name  = std::to_string(dim) + "D: ";
-  check(name + "quadratic displacement, energy norm", error.energy_norm, 1e-9);
+  const std::string       name =
+    std::to_string(dim) + "D, degree " + std::to_string(degree) + ": ";
+  check(name + "displacement, energy norm", error.energy_norm, 1e-9);
 
   // The energies, and forces where nothing is prescribed, come from the same A.
   const auto &fields = problem.fields();
@@ -155,12 +161,12 @@ test_patch()
   const ExtendedVector product = ExtendedOperator<dim>(problem) * extended;
   double               largest = 0.;
   for (unsigned int i = 0; i < v.size(); ++i)
-    largest =
-      std::max(largest, static_cast<double>(std::abs(product(i) - Av(i))));
+    raise(largest, static_cast<double>(std::abs(product(i) - Av(i))));
   check(name + "A in extended precision", largest / Av.linfty_norm(), 1e-14);
   check(name + "number of unknowns",
         problem.unknowns().n_dofs() ==
-          dim * (mesh.n_vertices() + mesh.n_active_lines()));
+          dim *
+            (mesh.n_vertices() + (degree == 2 ? mesh.n_active_lines() : 0)));
 }
 
 
@@ -217,7 +223,7 @@ test_heat()
     {
       stresses.reinit(cell);
       for (unsigned int v = 0; v <= dim; ++v)
-        largest = std::max(largest, stresses.stress(v).norm());
+        raise(largest, stresses.stress(v).norm());
     }
   check(name + "stress at vertices", largest, 1e-12);
 }
@@ -296,10 +302,9 @@ test_frames()
     double       normal  = 0.;
     unsigned int n_edges = 0;
     for (const auto &node : contact.boundary().nodes)
-      normal = std::max(normal,
-                        (node.normal -
-                         Tensor<1, 2>({std::sin(angle), -std::cos(angle)}))
-                          .norm());
+      raise(normal,
+            (node.normal - Tensor<1, 2>({std::sin(angle), -std::cos(angle)}))
+              .norm());
     for (const auto &face : contact.boundary().faces)
       n_edges += face.edge_nodes[0] != numbers::invalid_unsigned_int;
     double measure = 0.;
@@ -324,8 +329,14 @@ int
 main(int argc, char **)
 {
   print_figures = argc > 1;
-  test_patch<2>();
-  test_patch<3>();
+  for (const unsigned int degree : {1, 2})
+    {
+      Material strain   = material<2>();
+      strain.hypothesis = Material::Hypothesis::plane_strain;
+      test_patch<2>(degree, material<2>());
+      test_patch<2>(degree, strain);
+      test_patch<3>(degree, material<3>());
+    }
   test_heat<2>();
   test_heat<3>();
   test_loads<2>();

@@ -72,7 +72,8 @@ def difference(row, code):
     if old_J and J is not None:
         old_J = float(old_J)
         if abs(J - old_J) > 1e-9 * abs(old_J) + 1e-18:
-            return ("better" if J < old_J else "worse",
+            # No minimum of the same problem is below the global one.
+            return ("better" if J < old_J and old_word != "global" else "worse",
                     "J %.12e, was %.12e" % (J, old_J))
     word = (summary.get("minimum") or {}).get("state") or ""
     if word != old_word:

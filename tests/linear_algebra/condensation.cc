@@ -94,12 +94,11 @@ namespace
           S_error =
             std::hypot(S_error, condensed.schur_complement()(i, j) - S(i, j));
       }
-    std::cout << "  Schur complement to 1e-12: "
-              << verdict(S_error / S.frobenius_norm(), 1e-12)
-              << ", load to 1e-12: " << verdict(g_error / g.l2_norm(), 1e-12)
-              << ", energy at zero to 1e-11: "
-              << verdict(std::abs(condensed.energy_at_zero() / c_0 - 1.), 1e-11)
-              << '\n';
+    check("Schur complement to 1e-12", S_error / S.frobenius_norm(), 1e-12);
+    check("load to 1e-12", g_error / g.l2_norm(), 1e-12);
+    check("energy at zero to 1e-11",
+          std::abs(condensed.energy_at_zero() / c_0 - 1.),
+          1e-11);
 
     // For any s: equilibrium inside, S s - g on the contact nodes, the same
     // energy.
@@ -118,15 +117,13 @@ namespace
     A_u -= problem.load();
     double inside = 0., contact = 0.;
     for (const unsigned int i : others)
-      inside = std::max(inside, std::abs(A_u(i)));
+      raise(inside, std::abs(A_u(i)));
     for (unsigned int i = 0; i < kept.size(); ++i)
-      contact = std::max(contact, std::abs(A_u(kept[i]) - force(i)));
+      raise(contact, std::abs(A_u(kept[i]) - force(i)));
     const double largest = force.lpNorm<Eigen::Infinity>();
-    std::cout << "  equilibrium inside to 1e-11: "
-              << verdict(inside / largest, 1e-11)
-              << ", contact forces to 1e-12: "
-              << verdict(contact / largest, 1e-12) << ", energy to 1e-11: "
-              << verdict(std::abs(energy_of_u / energy - 1.), 1e-11) << '\n';
+    check("equilibrium inside to 1e-11", inside / largest, 1e-11);
+    check("contact forces to 1e-12", contact / largest, 1e-12);
+    check("energy to 1e-11", std::abs(energy_of_u / energy - 1.), 1e-11);
 
     // The same under a multiple of the load.
     const double factor = -0.3;
@@ -141,12 +138,12 @@ namespace
     A_u.add(-factor, problem.load());
     inside = 0.;
     for (const unsigned int i : others)
-      inside = std::max(inside, std::abs(A_u(i)));
-    std::cout
-      << "  scaled load: equilibrium inside to 1e-11: "
-      << verdict(inside / largest, 1e-11) << ", energy to 1e-11: "
-      << verdict(std::abs((scaled_energy - energy_of_scaled_u) / energy), 1e-11)
-      << '\n';
+      raise(inside, std::abs(A_u(i)));
+    section("scaled load");
+    check("equilibrium inside to 1e-11", inside / largest, 1e-11);
+    check("energy to 1e-11",
+          std::abs((scaled_energy - energy_of_scaled_u) / energy),
+          1e-11);
     condensed.scale_load(1.);
 
     // Without contact: A u = f.
@@ -159,12 +156,9 @@ namespace
       (problem.load() *
        condensed.expand(
          Eigen::Map<const Eigen::VectorXd>(s_free.begin(), s_free.size())));
-    std::cout << "  energy without contact to 1e-8: "
-              << verdict(std::abs(condensed.energy_without_contact() /
-                                    energy_free -
-                                  1.),
-                         1e-8)
-              << '\n';
+    check("energy without contact to 1e-8",
+          std::abs(condensed.energy_without_contact() / energy_free - 1.),
+          1e-8);
   }
 
 
@@ -200,14 +194,12 @@ namespace
     double             error = 0.;
     for (unsigned int i = 0; i < n; ++i)
       {
-        error = std::max(error, std::abs(condensed.load()(i) - f(i)));
+        raise(error, std::abs(condensed.load()(i) - f(i)));
         for (unsigned int j = 0; j < n; ++j)
-          error =
-            std::max(error,
-                     std::abs(condensed.schur_complement()(i, j) - A.el(i, j)));
+          raise(error,
+                std::abs(condensed.schur_complement()(i, j) - A.el(i, j)));
       }
-    std::cout << "  S is A, g is f, to 1e-14: " << verdict(error, 1e-14)
-              << '\n';
+    check("S is A, g is f, to 1e-14", error, 1e-14);
   }
 } // namespace
 
@@ -218,27 +210,27 @@ main()
 {
   BoxParameters box;
   box.cells = {{12, 3, 2}};
-  std::cout << "2D\n";
+  section("2D");
   test<2>(box, 69.);
-  std::cout << "2D in other units\n";
+  section("2D in other units");
   test<2>(box, 69e9);
-  std::cout << "2D turned\n";
+  section("2D turned");
   box.rotation = 40.;
   test<2>(box, 69.);
   box.rotation = 0.;
   box.cells    = {{4, 2, 1}};
-  std::cout << "3D\n";
+  section("3D");
   test<3>(box, 69.);
   // The eliminated unknowns fall apart into a piece for each cell.
   box.cells = {{12, 1, 1}};
-  std::cout << "2D, one cell through the thickness, clamped opposite\n";
+  section("2D, one cell through the thickness, clamped opposite");
   test<2>(box, 69., "top");
-  std::cout << "3D, one cell through the thickness, clamped opposite\n";
+  section("3D, one cell through the thickness, clamped opposite");
   test<3>(box, 69., "top");
 
-  std::cout << "One contact normal and nothing else\n";
+  section("One contact normal and nothing else");
   test_without_others(1);
-  std::cout << "Three contact normals and nothing else\n";
+  section("Three contact normals and nothing else");
   test_without_others(3);
 
   // A matrix that is not positive definite is refused.
@@ -251,15 +243,9 @@ main()
     indefinite.set(i, i, 1.);
   indefinite.set(0, 1, 2.);
   indefinite.set(1, 0, 2.);
-  try
-    {
-      Condensation(indefinite, DofVector(3), {2}, [](const unsigned int) {
-        return false;
-      });
-      std::cout << "accepted an indefinite matrix\n";
-    }
-  catch (const std::runtime_error &error)
-    {
-      std::cout << error.what() << '\n';
-    }
+  print_error([&] {
+    Condensation(indefinite, DofVector(3), {2}, [](const unsigned int) {
+      return false;
+    });
+  });
 }

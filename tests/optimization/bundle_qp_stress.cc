@@ -150,24 +150,20 @@ namespace
     ++record.problems;
     record.not_optimal += !good;
     record.silent += good && !(r < residual_tolerance && e < record.tolerance);
-    record.residual = std::max(record.residual, r);
-    record.error    = std::max(record.error, e);
-    record.steps =
-      std::max(record.steps, double(cold.steps) / (p.beta.size() + p.b.size()));
+    raise(record.residual, r);
+    raise(record.error, e);
+    raise(record.steps, double(cold.steps) / (p.beta.size() + p.b.size()));
     // Multipliers as small as rounding have no sign, and come and go.
     const BundleQP::Solution warm = qp.solve(p.beta, p.b, p.u);
     record.moved += warm.steps > 0;
-    record.residual = std::max(record.residual, residual(p, warm));
-    record.error =
-      std::max(record.error, distance(p, direction(p, warm), warm.v));
+    raise(record.residual, residual(p, warm));
+    raise(record.error, distance(p, direction(p, warm), warm.v));
     record.moved_again += qp.solve(p.beta, p.b, p.u).steps > 0;
 
     // The factor of one u must not serve another.
     Problem heavier = p;
     heavier.u *= 3.;
-    record.residual =
-      std::max(record.residual,
-               residual(heavier, qp.solve(p.beta, p.b, heavier.u)));
+    raise(record.residual, residual(heavier, qp.solve(p.beta, p.b, heavier.u)));
 
 
     const auto    bound_order = generator.permutation(p.b.size());
@@ -177,7 +173,7 @@ namespace
     VectorXd   d     = direction(q, other);
     for (unsigned int i = 0; i < bound_order.size(); ++i)
       d(bound_order[i]) = other.d(i);
-    record.permutation = std::max(record.permutation, distance(p, d, other.v));
+    raise(record.permutation, distance(p, d, other.v));
   }
 
 
@@ -372,17 +368,14 @@ main(int argc, char *argv[])
       for (unsigned int k = 0; k < n_problems * c.share / 1000; ++k)
         check(c.make(generator), generator, record);
 
-      std::cout << record.name
-                << "\n  all optimal: " << verdict(record.not_optimal == 0)
-                << "\n  residuals below " << residual_tolerance << ": "
-                << verdict(record.residual, residual_tolerance)
-                << "\n  known solution to " << record.tolerance << ": "
-                << verdict(record.error, record.tolerance)
-                << "\n  warm start takes no step in 99 of 100: "
-                << verdict(100 * record.moved <= record.problems)
-                << "\n  the next takes none: "
-                << verdict(record.moved_again == 0) << "\n  the same permuted: "
-                << verdict(record.permutation, record.tolerance) << '\n';
+      section(record.name);
+      ::check("all optimal", record.not_optimal == 0);
+      ::check("residuals", record.residual, residual_tolerance);
+      ::check("known solution", record.error, record.tolerance);
+      ::check("warm start takes no step in 99 of 100",
+              100 * record.moved <= record.problems);
+      ::check("the next takes none", record.moved_again == 0);
+      ::check("the same permuted", record.permutation, record.tolerance);
       if (argc > 1)
         std::cout << std::setprecision(2) << "  " << record.problems
                   << " problems, " << record.not_optimal << " not optimal, "
@@ -396,13 +389,10 @@ main(int argc, char *argv[])
   check("weights beside a long cut", error_beside_long_cut(), 1e-12);
 
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  std::cout << "finite data are optimal: "
-            << verdict(!is_told_from_optimal(2., 1., 0.1, 0.1))
-            << ", NaN in products, components, beta, b is not:";
-  for (const bool told : {is_told_from_optimal(nan, 1., 0.1, 0.1),
-                          is_told_from_optimal(2., nan, 0.1, 0.1),
-                          is_told_from_optimal(2., 1., nan, 0.1),
-                          is_told_from_optimal(2., 1., 0.1, nan)})
-    std::cout << ' ' << verdict(told);
-  std::cout << '\n';
+  ::check("finite data are optimal", !is_told_from_optimal(2., 1., 0.1, 0.1));
+  ::check("NaN in products, components, beta, b is not",
+          is_told_from_optimal(nan, 1., 0.1, 0.1) &&
+            is_told_from_optimal(2., nan, 0.1, 0.1) &&
+            is_told_from_optimal(2., 1., nan, 0.1) &&
+            is_told_from_optimal(2., 1., 0.1, nan));
 }

@@ -245,17 +245,14 @@ namespace
         ActiveSet  active(n, 0);
         const auto result = solve_bound_qp(M, r, b, active);
         converged         = converged && result.status == SolverStatus::success;
-        most_steps        = std::max(most_steps, result.steps);
-        worst =
-          std::max(worst,
-                   std::abs(result.x.dot(0.5 * (M * result.x) - r) - best) /
-                     (1. + std::abs(best)));
+        raise(most_steps, result.steps);
+        raise(worst,
+              std::abs(result.x.dot(0.5 * (M * result.x) - r) - best) /
+                (1. + std::abs(best)));
       }
-    std::cout << "bound QP on 500 problems: converged: " << verdict(converged)
-              << ", enumerated minimum to 1e-10: " << verdict(worst, 1e-10)
-              << '\n';
-    if (print_figures)
-      std::cout << "  worst " << worst << ", most steps " << most_steps << '\n';
+    section("bound QP on 500 problems");
+    check("converged", converged);
+    check("enumerated minimum to 1e-10", worst, 1e-10);
   }
 
 
@@ -294,24 +291,22 @@ namespace
                 active[i] = alternating ? i % 2 : i < 0.4 * n;
               const BoundQPResult result =
                 solve_bound_qp(M, r, Eigen::VectorXd::Zero(n), active);
-              converged  = converged && result.status == SolverStatus::success;
-              most_steps = std::max(most_steps, result.steps);
+              converged = converged && result.status == SolverStatus::success;
+              raise(most_steps, result.steps);
               const LongVector force =
                 r.cast<long double>() -
                 M.cast<long double>() * result.x.cast<long double>();
               for (unsigned int i = 0; i < n; ++i)
-                worst = std::max(worst,
-                                 static_cast<double>(
-                                   result.x(i) > 0. ? 1.L :
-                                   result.x(i) < 0. ? std::abs(force(i)) :
-                                                      -force(i)) /
-                                   std::abs(load));
+                raise(worst,
+                      static_cast<double>(
+                        result.x(i) > 0. ? 1.L :
+                        result.x(i) < 0. ? std::abs(force(i)) :
+                                           -force(i)) /
+                        std::abs(load));
             }
-    std::cout << "bound QP on 36 beams: converged: " << verdict(converged)
-              << ", optimality conditions to 1e-7 of the load: "
-              << verdict(worst, 1e-7) << '\n';
-    if (print_figures)
-      std::cout << "  worst " << worst << ", most steps " << most_steps << '\n';
+    section("bound QP on 36 beams");
+    check("converged", converged);
+    check("optimality conditions to 1e-7 of the load", worst, 1e-7);
   }
 
 
@@ -350,7 +345,7 @@ namespace
         CondensedProblem condensed(p.S, p.g, p.bonds, s);
         const auto       mm = MajoriseMinimise({}).minimize(condensed);
         mm_failures += mm.status != SolverStatus::success;
-        worst_mm = std::max(worst_mm, distance(mm.functional));
+        raise(worst_mm, distance(mm.functional));
         mm_global += std::abs(mm.functional - values[0]) < 1e-9;
         most_mm = std::max<unsigned int>(most_mm, mm.history.size());
         for (unsigned int i = 1; i < mm.history.size(); ++i)
@@ -377,31 +372,21 @@ namespace
           ProximalBundle<dealii::Vector<double>>(parameters)
             .minimize(Energy(p.S, p.g, p.bonds), direction, x);
         bundle_failures += bundle.status != SolverStatus::success;
-        worst_bundle = std::max(worst_bundle, distance(bundle.functional));
+        raise(worst_bundle, distance(bundle.functional));
         bundle_global += std::abs(bundle.functional - values[0]) < 1e-9;
-        most_bundle = std::max(most_bundle, bundle.iterations());
+        raise(most_bundle, bundle.iterations());
       }
-    std::cout
-      << "majorise-minimise on " << n_problems
-      << " problems: converged: " << verdict(mm_failures == 0)
-      << ", an enumerated stationary value to 1e-12: "
-      << verdict(worst_mm, 1e-12) << ", never rising: " << verdict(rises == 0)
-      << ", converged ones are no interrupted ones: "
-      << verdict(misnamed == 0 && converged_at_once > 0)
-      << "\nenergy bundle on the same: converged: "
-      << verdict(bundle_failures == 0)
-      << ", an enumerated stationary value to 1e-10: "
-      << verdict(worst_bundle, 1e-10)
-      << "\nmore than a quarter of these problems have several stationary values: "
-      << verdict(several > n_problems / 4) << '\n';
-    if (print_figures)
-      std::cout << "  majorise-minimise: worst " << worst_mm << ", global in "
-                << mm_global << ", at most " << most_mm
-                << " iterations, failed " << mm_failures
-                << "\n  energy bundle: worst " << worst_bundle << ", global in "
-                << bundle_global << ", at most " << most_bundle
-                << " iterations, failed " << bundle_failures
-                << "\n  several stationary values in " << several << '\n';
+    section("majorise-minimise on ", n_problems, " problems");
+    check("converged", mm_failures == 0);
+    check("an enumerated stationary value to 1e-12", worst_mm, 1e-12);
+    check("never rising", rises == 0);
+    check("converged ones are no interrupted ones",
+          misnamed == 0 && converged_at_once > 0);
+    check("energy bundle on the same: converged", bundle_failures == 0);
+    check("an enumerated stationary value to 1e-10", worst_bundle, 1e-10);
+    check(
+      "more than a quarter of these problems have several stationary values",
+      several > n_problems / 4);
   }
 
 
@@ -449,12 +434,11 @@ namespace
         converged =
           converged && method.minimize(problem).status == SolverStatus::success;
       }
-    std::cout << "start from coarser spaces on " << n_problems
-              << " problems: feasible: " << verdict(feasible)
-              << ", not above rest: " << verdict(below_rest)
-              << ", converged from there: " << verdict(converged)
-              << ", failures of levels are told: "
-              << verdict(all_named && n_failed > 0) << '\n';
+    section("start from coarser spaces on ", n_problems, " problems");
+    check("feasible", feasible);
+    check("not above rest", below_rest);
+    check("converged from there", converged);
+    check("failures of levels are told", all_named && n_failed > 0);
   }
 
 
@@ -511,17 +495,13 @@ namespace
           const BoundQPResult   with    = solve_bound_qp(M, r, zero, guessed);
           same = same && with.status == SolverStatus::success &&
                  (with.x - without.x).norm() <= 1e-12 * without.x.norm();
-          most           = std::max(most, with.steps);
+          raise(most, with.steps);
           fewest_without = std::min(fewest_without, without.steps);
         }
-    std::cout << "active sets guessed by coarser spaces: the same minima: "
-              << verdict(same)
-              << ", in at most two systems: " << verdict(most <= 2)
-              << ", in place of at least three: "
-              << verdict(fewest_without >= 3) << '\n';
-    if (print_figures)
-      std::cout << "  at most " << most << ", without a guess at least "
-                << fewest_without << '\n';
+    section("active sets guessed by coarser spaces");
+    check("the same minima", same);
+    check("in at most two systems", most <= 2);
+    check("in place of at least three", fewest_without >= 3);
   }
 } // namespace
 

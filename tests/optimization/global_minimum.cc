@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The search over bond states and the proof by branch and bound, against
-// enumeration of all bond states of small problems: for each, the minimum of
-// the convex problem with these states is above J's, and one of them is it.
+// Parts of the proof by branch and bound beside closed forms, and proofs with
+// 11 to 14 bonds, brittle ones, limits and threads, against enumeration of all
+// bond states: for each, the minimum of the convex problem with these states is
+// above J's, and one of them is it. Many small problems, with any number of
+// branches, are in branches.cc.
 
 #include <deal.II/lac/full_matrix.h>
 
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/branch_search.h>
-#include <debond/optimization/global/convex_envelope.h>
 #include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/global/node_bound.h>
 #include <debond/optimization/majorise/bound_qp.h>
@@ -217,10 +218,9 @@ namespace
         too_large += !growth.where_at_most(level, far).is_empty() ||
                      growth.least(far) <= level;
       }
-    std::cout << "where a parabola is below a level: no point left out: "
-              << verdict(too_small == 0)
-              << ", and no more than these: " << verdict(too_large == 0)
-              << '\n';
+    section("where a parabola is below a level");
+    check("no point left out", too_small == 0);
+    check("and no more than these", too_large == 0);
   }
 
 
@@ -268,10 +268,10 @@ namespace
                                                  1e-5 * (1. + std::abs(s(i)));
           }
       }
-    std::cout << "distances without bonds: growth holds: "
-              << verdict(growth_holds)
-              << ", the first box holds: " << verdict(box_holds)
-              << ", both to 1e-5: " << verdict(close) << '\n';
+    section("distances without bonds");
+    check("growth holds", growth_holds);
+    check("the first box holds", box_holds);
+    check("both to 1e-5", close);
   }
 
 
@@ -325,158 +325,11 @@ namespace
                      v(i) < 1.01 * mu * P(i, i) :
                      std::abs(v(i) - mu * P(i, i)) < 0.01 * v(i));
       }
-    std::cout << "shift of convexity: inverse: " << verdict(inverses)
-              << ", largest multiple: " << verdict(multiples)
-              << ", sweeps rise: " << verdict(rises)
-              << ", to where the derivative is zero: " << verdict(stays)
-              << '\n';
-  }
-
-
-
-  /// On a fine grid: below f, equal at the ends, convex, and on each chord
-  /// that is possible not below it (the least chord value is the envelope).
-  void
-  test_envelope(std::mt19937_64 &engine)
-  {
-    std::uniform_real_distribution<double> uniform(0., 1.);
-    double                                 worst = 0., worst_least = 0.;
-    for (unsigned int k = 0; k < 300; ++k)
-      {
-        const double        convexity = k % 3 == 0 ? 0. : uniform(engine);
-        const double        stiffness = 10. * uniform(engine);
-        const BranchMinimum branches  = bond(stiffness, 0.3 + uniform(engine));
-        const BranchEnergy  f         = {convexity, {branches[0], branches[1]}};
-        const double        lower     = -4. * uniform(engine);
-        const double        upper =
-          k % 2 == 0 ? 0. : lower + uniform(engine) * (0. - lower);
-        const ConvexEnvelope   envelope(f, lower, upper);
-        constexpr unsigned int n_points = 60;
-        const auto             point    = [&](const unsigned int i) {
-          return lower + (upper - lower) * i / n_points;
-        };
-        // Only the chords between grid points: the envelope is below them by
-        // at most the square of the distance.
-        const double h = (upper - lower) / n_points;
-        for (unsigned int i = 0; i <= n_points; ++i)
-          {
-            double chord = f.value(point(i));
-            for (unsigned int a = 0; a < i; ++a)
-              for (unsigned int b = i + 1; b <= n_points; ++b)
-                chord = std::min(chord,
-                                 (f.value(point(a)) * (b - i) +
-                                  f.value(point(b)) * (i - a)) /
-                                   (b - a));
-            const double below = chord - envelope.value(point(i));
-            worst = std::max(worst, std::max(-below, below - 20. * h * h));
-          }
-        const double r     = 8. * (uniform(engine) - 0.5);
-        double       least = std::numeric_limits<double>::infinity();
-        for (unsigned int i = 0; i <= n_points; ++i)
-          least = std::min(least, r * point(i) + f.value(point(i)));
-        const double found = f.least(r, lower, upper);
-        worst_least =
-          std::max(worst_least,
-                   std::max(found - least, least - found - 20. * h * h));
-      }
-    std::cout << "envelope: the least of all chords: " << verdict(worst, 1e-13)
-              << ", least values of r s + f(s): " << verdict(worst_least, 1e-13)
-              << '\n';
-    if (print_figures)
-      std::cout << "  " << worst << ' ' << worst_least << '\n';
-  }
-
-
-
-  void
-  test_bounds(std::mt19937_64 &engine, const unsigned int n_problems)
-  {
-    unsigned int invalid = 0, not_proved = 0, wrong = 0, most_nodes = 0;
-    unsigned int lost        = 0;
-    unsigned int interrupted = 0, found = 0, n_chains = 0, incomplete = 0;
-    unsigned int left_early = 0, not_left = 0;
-    double       closest = std::numeric_limits<double>::infinity();
-    for (unsigned int k = 0; k < n_problems; ++k)
-      {
-        const unsigned int n = 2 + k % 6;
-        const Problem      p = random_problem(engine, n, k % 2 == 0);
-        Vector             minimiser;
-        const double       minimum   = enumerated_minimum(p, minimiser);
-        const double       tolerance = 1e-10 * std::max(1., std::abs(minimum));
-
-        // From rest, of which nothing is known.
-        BranchAndBoundParameters parameters;
-        parameters.tolerance = tolerance;
-        const auto proof     = BranchAndBound(parameters)
-                             .minimize(p.S, p.g, p.bonds, Vector::Zero(n));
-        not_proved += proof.status != ProofStatus::proved;
-        wrong += std::abs(proof.upper - minimum) > tolerance ||
-                 std::abs(p.value(proof.s) - minimum) > tolerance;
-        invalid += proof.lower > minimum;
-        closest    = std::min(closest, minimum - proof.lower);
-        most_nodes = std::max(most_nodes, proof.nodes);
-
-        // The box must not lose the minimum, also if all but it is known to be
-        // worse.
-        const NodeBound node_bound(p.S, p.g, p.bonds);
-        ProofNode       node = *node_bound.root(minimum + tolerance);
-        const auto result    = node_bound.bound(node, minimum + tolerance, 0.);
-        for (unsigned int i = 0; i < n; ++i)
-          lost += result.unknown && (minimiser(i) < node.lower(i) - 1e-9 ||
-                                     minimiser(i) > node.upper(i) + 1e-9);
-        lost += node.bound > minimum ||
-                (!result.unknown && result.least < node.bound);
-
-        parameters.maximum_nodes = 1;
-        const auto stopped       = BranchAndBound(parameters)
-                               .minimize(p.S, p.g, p.bonds, Vector::Zero(n));
-        interrupted += stopped.status == ProofStatus::node_limit;
-        invalid += stopped.lower > minimum;
-
-        // Half of the unknowns at least, with each relaxation.
-        parameters.only_while_halving = true;
-        const auto left               = BranchAndBound(parameters)
-                            .minimize(p.S, p.g, p.bonds, Vector::Zero(n));
-        const bool is_proved = left.status == ProofStatus::proved;
-        invalid += left.lower > minimum;
-        wrong += is_proved && std::abs(left.upper - minimum) > tolerance;
-        not_left += is_proved;
-        left_early += !is_proved && stopped.status == ProofStatus::proved;
-
-        Vector           s = Vector::Zero(n);
-        MajoriseMinimise method({});
-        CondensedProblem problem(p.S, p.g, p.bonds, s);
-        method.minimize(problem);
-        const auto search =
-          search_branches(p.S, p.g, p.bonds, p.bonds, chain(n), method, {}, s);
-        incomplete += !search.complete ||
-                      std::abs(search.functional - p.value(s)) > tolerance;
-        n_chains += k % 2;
-        found += k % 2 == 1 && search.functional < minimum + tolerance;
-        invalid += search.functional < minimum - tolerance;
-      }
-    std::cout << "bounds on " << n_problems
-              << " problems: never above the enumerated minimum: "
-              << verdict(invalid == 0)
-              << ", the minimum proved: " << verdict(not_proved == 0)
-              << ", and found: " << verdict(wrong == 0)
-              << ", never outside the shrunk box: " << verdict(lost == 0)
-              << "\n  some proofs stopped after one node: "
-              << verdict(interrupted > n_problems / 100)
-              << ", some left before they were proved: "
-              << verdict(left_early > n_problems / 1000)
-              << ", most proved before they were left: "
-              << verdict(not_left > n_problems / 2)
-              << "\nsearch: values as points say: " << verdict(incomplete == 0)
-              << ", the minimum in seven of ten with coupled neighbours: "
-              << verdict(found > 0.7 * n_chains) << '\n';
-    if (print_figures)
-      std::cout << "  invalid " << invalid << ", not proved " << not_proved
-                << ", wrong " << wrong << ", closest " << closest
-                << ", most nodes " << most_nodes << ", interrupted "
-                << interrupted << ", found by search " << found
-                << ", left early " << left_early << ", not left " << not_left
-                << '\n';
+    section("shift of convexity");
+    check("inverse", inverses);
+    check("largest multiple", multiples);
+    check("sweeps rise", rises);
+    check("to where the derivative is zero", stays);
   }
 
 
@@ -498,11 +351,10 @@ namespace
         good  = good && proof.status == ProofStatus::proved;
         found = found && std::abs(proof.upper - minimum) < 1e-10 &&
                 proof.lower <= minimum;
-        if (print_figures)
-          std::cout << "  " << n << " bonds: " << proof.nodes << " nodes\n";
       }
-    std::cout << "11 to 14 bonds: proved: " << verdict(good)
-              << ", the enumerated minimum: " << verdict(found) << '\n';
+    section("11 to 14 bonds");
+    check("proved", good);
+    check("the enumerated minimum", found);
   }
 
 
@@ -530,13 +382,10 @@ namespace
                    more.upper == one.upper && more.s == one.s &&
                    more.status == one.status;
           }
-        most_nodes = std::max(most_nodes, one.nodes);
+        raise(most_nodes, one.nodes);
       }
-    std::cout << "threads change nothing: " << verdict(same)
-              << ", in proofs of several batches: " << verdict(most_nodes > 8)
-              << '\n';
-    if (print_figures)
-      std::cout << "  " << most_nodes << " nodes\n";
+    check("threads change nothing", same);
+    check("in proofs of several batches", most_nodes > 8);
   }
 
 
@@ -551,11 +400,11 @@ namespace
     little.maximum_bytes = 2 * 4 * 80 * sizeof(double);
     const auto full =
       BranchAndBound(little).minimize(q.S, q.g, q.bonds, Vector::Zero(80));
-    std::cout << "room for 2 nodes: " << to_string(full.status)
-              << ", valid gap: "
-              << verdict(std::isfinite(full.lower) && full.lower <= full.upper)
-              << ", at most a batch more: "
-              << verdict(full.history.back().open <= 2 + 8) << '\n';
+    section("limits");
+    check("room for 2 nodes", full.status == ProofStatus::memory_limit);
+    check("its gap is valid",
+          std::isfinite(full.lower) && full.lower <= full.upper);
+    check("at most a batch more", full.history.back().open <= 2 + 8);
     unsigned int rounds = 0;
     const auto   interrupted =
       BranchAndBound({}).minimize(q.S,
@@ -563,11 +412,11 @@ namespace
                                   q.bonds,
                                   Vector::Zero(80),
                                   [&](const auto &) { return ++rounds < 3; });
-    std::cout << "stopped by the monitor: " << to_string(interrupted.status)
-              << ", at once: " << verdict(rounds == 3) << ", valid gap: "
-              << verdict(std::isfinite(interrupted.lower) &&
-                         interrupted.lower <= full.upper)
-              << '\n';
+    check("stopped by the monitor",
+          interrupted.status == ProofStatus::interrupted);
+    check("at once", rounds == 3);
+    check("with a valid gap",
+          std::isfinite(interrupted.lower) && interrupted.lower <= full.upper);
     BranchAndBoundParameters parameters;
     parameters.maximum_seconds = 0.;
     const auto late =
@@ -576,10 +425,10 @@ namespace
     indefinite.S(3, 3) = -1.;
     const auto nothing =
       BranchAndBound({}).minimize(indefinite.S, p.g, p.bonds, Vector::Zero(8));
-    std::cout << "no time: " << to_string(late.status)
-              << ", indefinite matrix: " << to_string(nothing.status)
-              << ", no bound: " << verdict(!std::isfinite(nothing.lower))
-              << '\n';
+    check("no time", late.status == ProofStatus::time_limit);
+    check("an indefinite matrix has no bound",
+          nothing.status == ProofStatus::no_bound &&
+            !std::isfinite(nothing.lower));
   }
 
 
@@ -602,16 +451,14 @@ namespace
     };
     Vector     s     = Vector::Zero(1);
     const auto found = search(s);
-    std::cout << "a start that is its own minimum is taken: "
-              << verdict(std::abs(found.functional + 0.25) < 1e-14 &&
-                         std::abs(s(0) + 1.) < 1e-14 && found.failures == 0)
-              << '\n';
+    check("a start that is its own minimum is taken",
+          std::abs(found.functional + 0.25) < 1e-14 &&
+            std::abs(s(0) + 1.) < 1e-14 && found.failures == 0);
 
     p.S(0, 0)         = -1.;
     Vector     rest   = Vector::Zero(1);
     const auto failed = search(rest);
-    std::cout << "trials that fail are counted: "
-              << verdict(failed.failures > 0) << '\n';
+    check("trials that fail are counted", failed.failures > 0);
   }
 
 
@@ -648,15 +495,11 @@ namespace
         invalid += certificate.lower > minimum + 1e-15;
         certified += certificate.status == ProofStatus::proved;
       }
-    std::cout << "brittle bonds: bounds never above the enumerated minimum: "
-              << verdict(invalid == 0)
-              << ", the minimum found: " << verdict(wrong == 0)
-              << ", and proved: " << verdict(proved == 300)
-              << ", by a certificate in one of ten: " << verdict(certified > 30)
-              << '\n';
-    if (print_figures)
-      std::cout << "  invalid " << invalid << ", wrong " << wrong << ", proved "
-                << proved << ", certified " << certified << '\n';
+    section("brittle bonds");
+    check("bounds never above the enumerated minimum", invalid == 0);
+    check("the minimum found", wrong == 0);
+    check("and proved", proved == 300);
+    check("by a certificate in one of ten", certified > 30);
   }
 } // namespace
 
@@ -667,11 +510,9 @@ main(int argc, char *[])
 {
   print_figures = argc > 1;
   std::mt19937_64 engine(20261122);
-  test_envelope(engine);
   test_growth(engine);
   test_distances(engine);
   test_shift(engine);
-  test_bounds(engine, 10000);
   test_larger(engine);
   test_threads(engine);
   test_limits(engine);

@@ -120,32 +120,6 @@ namespace
 
 
   double
-  cb3(const Values &x, Values &g)
-  {
-    const double e = 2. * std::exp(x[1] - x[0]);
-    return largest({{std::pow(x[0], 4) + x[1] * x[1],
-                     {4. * std::pow(x[0], 3), 2. * x[1]}},
-                    {std::pow(2. - x[0], 2) + std::pow(2. - x[1], 2),
-                     {-2. * (2. - x[0]), -2. * (2. - x[1])}},
-                    {e, {-e, e}}},
-                   g);
-  }
-
-
-
-  double
-  dem(const Values &x, Values &g)
-  {
-    return largest({{5. * x[0] + x[1], {5., 1.}},
-                    {-5. * x[0] + x[1], {-5., 1.}},
-                    {x[0] * x[0] + x[1] * x[1] + 4. * x[1],
-                     {2. * x[0], 2. * x[1] + 4.}}},
-                   g);
-  }
-
-
-
-  double
   ql(const Values &x, Values &g)
   {
     const Piece f{x[0] * x[0] + x[1] * x[1], {2. * x[0], 2. * x[1]}};
@@ -314,20 +288,14 @@ namespace
                                result.history[k - 1].functional;
 
     const double error = result.functional - test.minimum;
-    std::cout << test.name << ": " << to_string(result.status)
-              << ", minimum to 1e-8: "
-              << verdict(std::abs(error) / std::max(1., std::abs(test.minimum)),
-                         1e-8)
-              << ", monotone: " << verdict(monotone)
-              << ", feasible: " << verdict(inside) << ", at most "
-              << test.most_iterations << " iterations: "
-              << verdict(result.iterations(), test.most_iterations) << '\n';
-    if (print_figures)
-      std::cout << test.name << ": " << result.iterations() << " iterations ("
-                << result.long_steps << " long, " << result.short_steps
-                << " short, " << result.null_steps << " null), error " << error
-                << ", QP residual " << result.largest_qp_residual << ' '
-                << result.message << '\n';
+    section(test.name);
+    check("success", result.status == SolverStatus::success);
+    check("minimum",
+          std::abs(error) / std::max(1., std::abs(test.minimum)),
+          1e-8);
+    check("monotone", monotone);
+    check("feasible", inside);
+    check("iterations", result.iterations(), test.most_iterations);
   }
 } // namespace
 
@@ -346,8 +314,6 @@ main(int argc, char *[])
 
   const std::vector<Case> cases{
     {"CB2", cb2, {1., -0.1}, 1.9522244936, 0., 60},
-    {"CB3", cb3, {2., 2.}, 2., 0., 60},
-    {"DEM", dem, {1., 1.}, -3., 0., 60},
     {"QL", ql, {-1., 5.}, 7.2, 0., 60},
     {"Mifflin 1", mifflin1, {0.8, 0.6}, -1., 0., 300},
     {"Rosen-Suzuki", rosen_suzuki, {0., 0., 0., 0.}, -44., 0., 150},
@@ -370,7 +336,6 @@ main(int argc, char *[])
 
   for (const Case &test : cases)
     run<dealii::Vector<double>>(test);
-  std::cout << "with distributed vectors\n";
   run<dealii::LinearAlgebra::distributed::Vector<double>>(cases.front());
 
   // Out of iterations is not success.
@@ -381,9 +346,9 @@ main(int argc, char *[])
   const auto short_run =
     ProximalBundle<dealii::Vector<double>>(parameters)
       .minimize(TestObjective<dealii::Vector<double>>(cb2), {}, x);
-  std::cout << "stopped early: " << to_string(short_run.status)
-            << ", with a message: " << verdict(!short_run.message.empty())
-            << '\n';
+  check("stopped early, with a message",
+        short_run.status == SolverStatus::iteration_limit &&
+          !short_run.message.empty());
 
   // A function that is not finite is named.
   const Function broken = [](const Values &v, Values &g) {
@@ -395,7 +360,7 @@ main(int argc, char *[])
   const auto not_finite =
     ProximalBundle<dealii::Vector<double>>(parameters)
       .minimize(TestObjective<dealii::Vector<double>>(broken), {}, y);
-  std::cout << "not a number: " << to_string(not_finite.status) << '\n';
+  check("not a number", not_finite.status == SolverStatus::not_finite);
 
   for (auto change :
        std::vector<std::function<void(ProximalBundleParameters &)>>{
@@ -409,14 +374,6 @@ main(int argc, char *[])
     {
       ProximalBundleParameters bad;
       change(bad);
-      try
-        {
-          bad.validate();
-          std::cout << "accepted\n";
-        }
-      catch (const std::invalid_argument &error)
-        {
-          std::cout << error.what() << '\n';
-        }
+      print_error([&] { bad.validate(); });
     }
 }

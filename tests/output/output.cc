@@ -13,7 +13,6 @@
 #include <debond/mesh/box.h>
 #include <debond/output/record.h>
 #include <debond/output/tables.h>
-#include <debond/output/vtu.h>
 #include <debond/solve/progress.h>
 
 #include <nlohmann/json.hpp>
@@ -68,7 +67,7 @@ namespace
   void
   test_atomic_file()
   {
-    std::cout << "== Files in one piece" << std::endl;
+    section("Files in one piece");
     const auto write_text = [](const std::string &text) {
       return [text](std::ostream &out) { out << text; };
     };
@@ -133,7 +132,7 @@ namespace
   void
   test_history()
   {
-    std::cout << "== Iteration history" << std::endl;
+    section("Iteration history");
     const std::vector<BundleIteration> history = {
       {1, -1. / 3e4, -0.1, 1., 1., 1, 4, StepKind::long_step},
       {2, -5.7774619650983e-4, -1e-300, 0., 0.25, 2, 0, StepKind::null_step}};
@@ -179,7 +178,7 @@ namespace
   void
   test_summary()
   {
-    std::cout << "== Summary" << std::endl;
+    section("Summary");
     Record record(true);
     record.add("/scene", "prm/\"odd\"\xff.prm");
     record.add("/functional", -5.7774619650983e-4);
@@ -226,7 +225,7 @@ namespace
     log.finish();
     log.finish();
 
-    std::cout << "== Progress on a terminal" << std::endl;
+    section("Progress on a terminal");
     std::ostringstream screen;
     Progress           terminal(screen, true);
     for (unsigned int k = 1; k <= 1000; ++k)
@@ -343,7 +342,7 @@ namespace
   void
   test_law_violation(const double young_modulus)
   {
-    std::cout << "== Distance to the law, E = " << young_modulus << std::endl;
+    section("Distance to the law, E = ", young_modulus);
     const Body<2> pulled(young_modulus, 1.);
     const auto   &node =
       pulled.problem->unknowns().contact().boundary().nodes.at(0);
@@ -509,8 +508,7 @@ namespace
   void
   test_forces_and_files(const double young_modulus)
   {
-    std::cout << "== Forces and files in " << dim << "D, E = " << young_modulus
-              << std::endl;
+    section("Forces and files in ", dim, "D, E = ", young_modulus);
     const Body<dim>             body(young_modulus, 1.);
     const ElasticProblem<dim>  &problem = *body.problem;
     const ContactBoundary<dim> &boundary =
@@ -586,9 +584,9 @@ namespace
     double          largest_reaction = 0.;
     for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
       if (supported[i])
-        largest_reaction = std::max(largest_reaction, std::abs(reactions(i)));
+        raise(largest_reaction, std::abs(reactions(i)));
       else
-        largest_free = std::max(largest_free, std::abs(forces(i)));
+        raise(largest_free, std::abs(forces(i)));
     check("a free node that is not shows in the residual",
           near(off.equilibrium_residual, largest_free / largest_reaction) &&
             off.equilibrium_residual > 1e-3);
@@ -596,14 +594,6 @@ namespace
 
     wrong(dof) = std::nan("");
     print_error([&] { body.check_law(wrong, "winkler", a, M); });
-
-    // Every rule of quadrature: the graph is left by the error of nothing but
-    // the rule's own force.
-    bool finite = true;
-    for (const std::string rule : {"nodal", "midpoint", "gauss 2"})
-      finite &= body.check_law(u, "winkler", a, M, rule).law_violation > 0. &&
-                body.check_law(u, "winkler", a, M, rule).law_violation < 10.;
-    check("each rule gives a distance", finite);
 
     const std::string suffix = std::to_string(dim) + "d";
     write_contact_profile(boundary, result, "profile-" + suffix + ".csv");
@@ -637,39 +627,6 @@ namespace
                 std::stod(row.at(2 * dim + values.size() + 3)) == 0.;
       }
     check("every number is read back to the last bit", same);
-
-    const auto has_fields = [](const std::string              &file_name,
-                               const std::vector<std::string> &fields) {
-      const std::string text     = contents(file_name);
-      bool              complete = text.find("</VTKFile>") != std::string::npos;
-      for (const std::string &field : fields)
-        complete &= text.find("Name=\"" + field + "\"") != std::string::npos;
-      return complete;
-    };
-    write_body_vtu(problem, u, "body-" + suffix + ".vtu");
-    write_contact_vtu(boundary, result, "contact-" + suffix + ".vtu");
-    check("body VTU has its fields",
-          has_fields("body-" + suffix + ".vtu",
-                     {"displacement",
-                      "stress_xx",
-                      "stress_yy",
-                      "stress_xy",
-                      "von_mises",
-                      "strain_energy_density"}));
-    check("contact VTU has its fields",
-          has_fields("contact-" + suffix + ".vtu",
-                     {"displacement",
-                      "tangential_force_density",
-                      "u_nu",
-                      "gap",
-                      "normal_force_density",
-                      "bond_state",
-                      "law_violation",
-                      "bond_stiffness",
-                      "bond_threshold",
-                      "initial_gap"}));
-    print_error(
-      [&] { write_body_vtu(problem, u, "no-such-directory/body.vtu"); });
   }
 
 
@@ -678,7 +635,7 @@ namespace
   void
   test_largest_values()
   {
-    std::cout << "== Largest values" << std::endl;
+    section("Largest values");
     dealii::Triangulation<2> mesh;
     make_box<2>({{{2., 1., 1.}}, {{2, 1, 1}}, 0.}, mesh);
     ElasticProblem<2> problem(
@@ -708,7 +665,7 @@ namespace
   void
   test_directory_lock()
   {
-    std::cout << "== Lock of a directory" << std::endl;
+    section("Lock of a directory");
     {
       const DirectoryLock lock("locked/inside");
       check("it says who holds it",

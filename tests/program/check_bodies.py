@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""check_bodies.py DEBOND SCENE: the benchmark's bar, 40x4, as a box, from a
-Gmsh file (quadrilaterals that are crossed, triangles that are used as they are,
-a coarser mesh that is refined, a mesh in mm), from a generator, and with parts
-and regions that make no difference: J is the same to 1e-12, and so are the
-contact nodes. What is wrong with a mesh or a part is told with its place.
+"""check_bodies.py DEBOND SCENE: the benchmark's bar, 40x4, as a box, from Gmsh
+files of two versions (quadrilaterals that are crossed, triangles that are used as
+they are, some turned inside out, a coarser mesh that is refined, a mesh in mm),
+from a generator, and with parts and regions that make no difference: J is the same
+to 1e-12, and so are the contact nodes; also of a bar in 3D. What is wrong with a
+mesh or a part is told with its place.
 """
 
 import json
@@ -15,47 +16,10 @@ import subprocess
 import sys
 import tempfile
 
-NAMES = {1: "left", 2: "right", 3: "bottom", 4: "top"}
+import msh
 
-
-def msh(nx, ny, scale=1., triangles=False):
-    """The bar as a file of version 2.2."""
-    points = {}
-
-    def node(i, j):
-        return points.setdefault((i, j), len(points) + 1)
-
-    cells = []
-    for j in range(0, 2 * ny, 2):
-        for i in range(0, 2 * nx, 2):
-            corners = [node(i, j), node(i + 2, j), node(i + 2, j + 2),
-                       node(i, j + 2)]
-            if triangles:
-                centre = node(i + 1, j + 1)
-                cells += [[corners[k], corners[(k + 1) % 4], centre]
-                          for k in range(4)]
-            else:
-                cells.append(corners)
-    lines = []
-    for i in range(0, 2 * nx, 2):
-        lines += [(3, node(i, 0), node(i + 2, 0)),
-                  (4, node(i, 2 * ny), node(i + 2, 2 * ny))]
-    for j in range(0, 2 * ny, 2):
-        lines += [(1, node(0, j), node(0, j + 2)),
-                  (2, node(2 * nx, j), node(2 * nx, j + 2))]
-
-    text = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "4"]
-    text += [f'1 {group} "{name}"' for group, name in NAMES.items()]
-    text += ["$EndPhysicalNames", "$Nodes", str(len(points))]
-    text += [f"{n} {scale * 0.2 * i / nx!r} {scale * 0.02 * j / ny!r} 0"
-             for (i, j), n in points.items()]
-    text += ["$EndNodes", "$Elements", str(len(lines) + len(cells))]
-    text += [f"{n} 1 2 {group} 1 {a} {b}"
-             for n, (group, a, b) in enumerate(lines, 1)]
-    kind = 2 if triangles else 3
-    text += [f"{n} {kind} 2 9 1 " + " ".join(map(str, cell))
-             for n, cell in enumerate(cells, len(lines) + 1)]
-    return "\n".join(text + ["$EndElements", ""])
+def bar(nx, ny, scale=1., crossed=False):
+    return msh.box((nx, ny), (0.4 * scale, 0.04 * scale), crossed)
 
 
 def run(debond, settings):
@@ -92,11 +56,11 @@ def main(debond, scene):
 
     pathlib.Path("scenes").mkdir()
     shutil.copy(scene, "scenes/bar.prm")
-    for name, text in {"quadrilaterals": msh(40, 4),
-                       "triangles": msh(40, 4, triangles=True),
-                       "coarse": msh(20, 2), "mm": msh(40, 4, 1000.),
-                       "cut": msh(40, 4)[:-500]}.items():
-        pathlib.Path(f"scenes/{name}.msh").write_text(text)
+    meshes = {"quadrilaterals": bar(40, 4), "triangles": bar(40, 4, crossed=True),
+              "coarse": bar(20, 2), "mm": bar(40, 4, 1000.)}
+    for name, mesh in meshes.items():
+        pathlib.Path(f"scenes/{name}.msh").write_text(msh.text(*mesh))
+    pathlib.Path("scenes/cut.msh").write_text(msh.text(*bar(40, 4))[:-500])
 
     def file(name):
         return ["Mesh/Source=file", f"Mesh/File={name}.msh"]
@@ -106,6 +70,15 @@ def main(debond, scene):
     same("triangles", file("triangles"))
     same("refined", file("coarse") + ["Mesh/Refinements=1"])
     same("scaled", file("mm") + ["Mesh/Scale=0.001"])
+    for version in ("2.2", "4.1"):
+        for name in ("quadrilaterals", "triangles"):
+            pathlib.Path("scenes/odd.msh").write_text(
+                msh.text(*meshes[name], version=version, is_odd=True))
+            same(f"odd {name}, version {version}",
+                 file("odd") + ["Material/Young modulus=1",
+                                "Material/Young modulus all=69"])
+            same(f"odd {name}, version {version}, a part of it",
+                 file("odd") + ["Material/Young modulus upper=69"])
     # What was written can be run again from another folder.
     shutil.copy("output/parameters.prm", "bar-again.prm")
     again = subprocess.run([debond, "bar-again.prm"], capture_output=True,
@@ -157,6 +130,15 @@ def main(debond, scene):
                                    .read_text())["largest_von_mises"])
     if not abs(stresses[1] / stresses[0] - 1.) < 1e-9:
         failures.append(f"stresses of half a change of temperature: {stresses}")
+
+    reference, solid = None, [
+        "Dimension=3", "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345); 0.1"]
+    same("solid", solid + ["Mesh/Lengths=0.4, 0.04, 0.05", "Mesh/Cells=6, 2, 1"])
+    for version in ("2.2", "4.1"):
+        pathlib.Path("scenes/odd.msh").write_text(msh.text(
+            *msh.box((6, 2, 1), (0.4, 0.04, 0.05)), version=version, is_odd=True))
+        same(f"solid, version {version}", solid + file("odd") + [
+            "Material/Young modulus upper=69"])
 
     refused("Parts/glued: no face has its centre in this part",
             ["Parts/glued=bottom: x > 1"])

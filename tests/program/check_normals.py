@@ -17,28 +17,17 @@ import subprocess
 import sys
 import tempfile
 
+import msh
+
 GROUPS = {1: "contact", 2: "base", 3: "cut"}
 
 
 def write_mesh(name, points, faces, cells, order=None):
     """Faces are (group, vertices). Elements in the given order."""
-    dim = len(cells[0]) - 1
-    elements = ([(dim - 1, group, face) for group, face in faces]
-                + [(dim, 9, cell) for cell in cells])
-    if order is not None:
-        order.shuffle(elements)
-    groups = sorted({group for group, _ in faces})
-    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames",
-             str(len(groups))]
-    lines += [f'{dim - 1} {group} "{GROUPS[group]}"' for group in groups]
-    lines += ["$EndPhysicalNames", "$Nodes", str(len(points))]
-    lines += [f"{n} " + " ".join(map(repr, (*p, 0.)[:3]))
-              for n, p in enumerate(points, 1)]
-    lines += ["$EndNodes", "$Elements", str(len(elements))]
-    lines += [f"{n} {[0, 1, 2, 4][d]} 2 {group} {group} "
-              + " ".join(str(v + 1) for v in vertices)
-              for n, (d, group, vertices) in enumerate(elements, 1)]
-    pathlib.Path(name).write_text("\n".join(lines + ["$EndElements", ""]))
+    names = {(len(points[0]) - 1, group): name for group, name in GROUPS.items()}
+    pathlib.Path(name).write_text(msh.text(
+        points, [((group,), face) for group, face in faces],
+        [((9,), cell) for cell in cells], names, order=order))
 
 
 def disc(sides, rings=1):

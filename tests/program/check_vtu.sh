@@ -63,6 +63,10 @@ contact = Piece(directory + "/contact.vtu")
 n, points = contact.n_cells, contact.points
 at_points, at_cells = contact.at_points, contact.in_cells
 assert n == dim * n_faces, n
+assert {"displacement", "tangential_force_density", "u_nu", "gap",
+        "normal_force_density"} <= set(at_points), set(at_points)
+assert {"bond_state", "law_violation", "bond_stiffness", "bond_threshold",
+        "initial_gap", "strain_energy_density"} <= {*at_points, *body.at_points}
 states = ["contact", "bonded", "kink", "broken", "free", "held"]
 state_at = {tuple(round(float(row[x]), 6) for x in "xyz"[:dim]):
             states.index(row["state"]) for row in profile}

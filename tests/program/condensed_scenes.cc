@@ -80,15 +80,10 @@ namespace
         double                    error  = 0.;
         for (unsigned int k = 0; k < std::min(values.size(), expected.size());
              ++k)
-          error =
-            std::max(error, std::abs(values[k] / (unit * expected[k]) - 1.));
-        std::cout << method << " in " << name << ": same number of steps: "
-                  << verdict(values.size() == expected.size())
-                  << ", same values to 1e-10: " << verdict(error, 1e-10)
-                  << '\n';
-        if (print_figures)
-          std::cout << "  " << values.size() << " and " << expected.size()
-                    << " steps, " << error << '\n';
+          raise(error, std::abs(values[k] / (unit * expected[k]) - 1.));
+        section(method, " in ", name);
+        check("same number of steps", values.size() == expected.size());
+        check("same values to 1e-10", error, 1e-10);
       }
   }
 
@@ -110,17 +105,10 @@ namespace
                              "Mesh/Cells=" + cells,
                              std::string("Contact law/Bond stiffness=") + a,
                              std::string("Contact law/Bond threshold=") + M});
-          std::cout << std::setw(8) << cells << ", a = " << std::setw(4) << a
-                    << ", M = " << std::setw(5) << M << ", " << std::setw(17)
-                    << method << ": " << to_string(r.result.status)
-                    << ", at most 40 iterations: "
-                    << verdict(r.result.iterations, 40) << ", law to 1e-9: "
-                    << verdict(r.verification.law_violation, 1e-9)
-                    << ", J = " << std::scientific << std::setprecision(10)
-                    << r.result.functional << std::defaultfloat << '\n';
-          if (print_figures)
-            std::cout << "  " << r.result.iterations << " iterations, "
-                      << r.verification.law_violation << '\n';
+          section(cells, ", a = ", a, ", M = ", M, ", ", method);
+          check("success", r.result.status == SolverStatus::success);
+          check("iterations", r.result.iterations, 40);
+          check("law", r.verification.law_violation, 1e-9);
         }
   }
 } // namespace

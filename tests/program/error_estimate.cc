@@ -315,7 +315,7 @@ namespace
         grows = grows && levels[k].unknowns > 1.2 * levels[k - 1].unknowns &&
                 levels[k].unknowns < 6. * levels[k - 1].unknowns;
       }
-    std::cout << name << std::endl;
+    section(name);
     check("  several meshes", levels.size() >= 3);
     check("  J falls on each", falls);
     check("  so does the estimate", is_estimated);
@@ -352,52 +352,6 @@ namespace
 
 
 
-  /// How many times the cells the next mesh has at most, which is measured in
-  /// doc/notes/speed.md, with what is cut for others (up to 10 %).
-  void
-  check_growth(const std::string &name,
-               const Values      &values,
-               const double       least,
-               const double       most)
-  {
-    double before = 0., largest = 0.;
-    for (const AdaptiveLevel &level : refined<2>(parameters_of(values)).levels)
-      {
-        if (before > 0.)
-          largest = std::max(largest, level.cells / before);
-        before = level.cells;
-      }
-    check(name + ", largest growth", largest, most);
-    check(name + ", as much as it may", largest > least);
-  }
-
-
-
-  void
-  check_growths()
-  {
-    const Values base = {"Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)",
-                         "Contact law/Quadrature=gauss 8"};
-    // Of 671 unknowns: 16 times as many in two steps, more in three.
-    check_growth("linear, two steps",
-                 with(base, {"Accuracy/Maximum unknowns=11000"}),
-                 3.5,
-                 4.4);
-    check_growth("linear, three steps",
-                 with(base, {"Accuracy/Maximum unknowns=15000"}),
-                 2.,
-                 4.4);
-    check_growth("quadratic",
-                 with(base,
-                      {"Mesh/Degree=2",
-                       "Mesh/Cells=20, 2",
-                       "Accuracy/Maximum unknowns=4000"}),
-                 1.25,
-                 1.54);
-  }
-
-
-
   /// Of a run of the whole program.
   void
   check_run(const Values      &values,
@@ -421,52 +375,6 @@ namespace
     const std::string message = summary["message"];
     std::cout << message << std::endl;
   }
-
-
-  /// Three tetrahedra around an edge.
-  void
-  check_tetrahedra()
-  {
-    std::ofstream("tetrahedra.msh") << R"($MeshFormat
-2.2 0 8
-$EndMeshFormat
-$PhysicalNames
-1
-2 1 "foot"
-$EndPhysicalNames
-$Nodes
-5
-1 0 0 0
-2 0 0 1
-3 1 0 0.5
-4 -0.5 0.9 0.5
-5 -0.5 -0.9 0.5
-$EndNodes
-$Elements
-5
-1 2 2 1 1 1 3 4
-2 2 2 1 1 1 4 5
-3 4 2 2 1 1 2 3 4
-4 4 2 2 1 1 2 4 5
-5 4 2 2 1 1 2 5 3
-$EndElements
-)";
-    const Values values = {"Dimension=3",
-                           "Mesh/Lengths=1, 1, 1",
-                           "Mesh/Cells=1, 1, 1",
-                           "Mesh/Source=file",
-                           "Mesh/File=tetrahedra.msh",
-                           "Boundary conditions/Clamped boundaries=foot",
-                           "Boundary conditions/Contact boundary=",
-                           "Contact law/Law=none",
-                           "Loads/Traction top=",
-                           "Loads/Body force=0; 0; 1",
-                           "Accuracy/Target=1e-2"};
-    print_error([&] {
-      const Parameters parameters = parameters_of(values);
-      make_first_scene<3>(parameters, parameters.accuracy);
-    });
-  }
 } // namespace
 
 
@@ -480,8 +388,6 @@ main(int argc, char **)
   check_layers();
   check_benchmark();
   check_loop();
-  check_growths();
-  check_tetrahedra();
 
   const Values small = {"Mesh/Cells=20, 2",
                         "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)",

@@ -142,15 +142,13 @@ namespace
     if (print_figures)
       std::cout << name << std::endl;
     const Outcome outcome = outcome_of("", assignments);
-    std::cout << name << ": " << to_string(outcome.result.status)
-              << ", cycles for A u = f at most " << linear_cycles << ": "
-              << verdict(outcome.linear_cycles, linear_cycles)
-              << ", for contact at most " << contact_cycles << ": "
-              << verdict(outcome.result.linear_iterations, contact_cycles)
-              << ", law: " << verdict(outcome.law_violation, 1e-6)
-              << ", J of the direct path: " << verdict(outcome.J_error, 1e-11)
-              << ", its contact and bonds: " << verdict(outcome.other_nodes, 0.)
-              << std::endl;
+    section(name);
+    check("success", outcome.result.status == SolverStatus::success);
+    check("cycles for A u = f", outcome.linear_cycles, linear_cycles);
+    check("for contact", outcome.result.linear_iterations, contact_cycles);
+    check("law", outcome.law_violation, 1e-6);
+    check("J of the direct path", outcome.J_error, 1e-11);
+    check("its contact and bonds", outcome.other_nodes == 0);
   }
 } // namespace
 

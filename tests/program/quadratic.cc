@@ -84,7 +84,7 @@ namespace
                   double u_nu = 0.;
                   for (unsigned int d = 0; d < dim; ++d)
                     u_nu += fe_values.normal_vector(q)[d] * values[q](d);
-                  largest = std::max(largest, u_nu);
+                  raise(largest, u_nu);
                 }
             }
       return largest / displacement.linfty_norm();
@@ -190,20 +190,17 @@ namespace
   /// not lower than the limit that both have.
   template <int dim>
   void
-  check_body(const std::string &name, const Values &values, const double most)
+  check_body(const std::string &name, const Values &values)
   {
     const Solved<dim> one(values);
     const Solved<dim> two(with(values, {"Mesh/Degree=2"}));
-    std::cout << name << std::endl;
+    section(name);
     check("  verification", two.error, 1e-6);
     check("  u_nu <= 0 at all points", two.penetration(), 1e-15);
     check("  J is lower than with linear displacements", two.J() < one.J());
     check("  estimated error beside linear displacements",
           two.estimate / one.estimate,
-          most);
-    if (print_figures)
-      std::cout << "  J " << one.J() << " (" << one.estimate << "), " << two.J()
-                << " (" << two.estimate << ')' << std::endl;
+          0.7);
   }
 
 
@@ -211,7 +208,6 @@ namespace
   void
   check_bodies()
   {
-    const Values free = {"Contact law/Tangential displacement=free"};
     check_body<2>("pad clamped on top",
                   with(benchmark,
                        {"Mesh/Lengths=0.1, 0.1",
@@ -219,8 +215,7 @@ namespace
                         "Boundary conditions/Clamped boundaries=top",
                         "Contact law/Tangential displacement=free",
                         "Loads/Traction top=",
-                        "Loads/Traction left=2; 0.5"}),
-                  0.7);
+                        "Loads/Traction left=2; 0.5"}));
     check_body<2>("L-shaped",
                   {"Mesh/Source=generator",
                    "Mesh/Generator=hyper_L",
@@ -231,42 +226,25 @@ namespace
                    "Contact law/Quadrature=gauss 8",
                    "Contact law/Tangential displacement=free",
                    "Loads/Traction top=",
-                   "Loads/Traction 1=1; 0.5"},
-                  0.7);
+                   "Loads/Traction 1=1; 0.5"});
     check_body<2>("plane strain, nu = 0.4999",
                   with(benchmark,
                        {"Mesh/Cells=20, 2",
                         "Material/Hypothesis=plane strain",
-                        "Material/Poisson ratio=0.4999"}),
-                  0.7);
-    check_body<2>("two materials",
-                  with(benchmark,
-                       {"Mesh/Cells=20, 2",
-                        "Parts/upper=y > 0.02",
-                        "Material/Young modulus upper=6.9"}),
-                  0.7);
+                        "Material/Poisson ratio=0.4999"}));
     check_body<2>("supports that move",
                   with(benchmark,
                        {"Mesh/Cells=20, 2",
                         "Contact law/Tangential displacement=free",
                         "Boundary conditions/Clamped boundaries=left",
                         "Boundary conditions/Displacement right="
-                        "free; 0.003 + 0.01*y*y"}),
-                  0.7);
-    check_body<2>("turned, gauss 5",
-                  with(benchmark,
-                       {"Mesh/Cells=20, 2",
-                        "Mesh/Rotation=30",
-                        "Loads/Traction top=-0.2; 0.3",
-                        "Contact law/Quadrature=gauss 5"}),
-                  0.7);
+                        "free; 0.003 + 0.01*y*y"}));
     check_body<3>("bar",
                   {"Dimension=3",
                    "Mesh/Lengths=0.4, 0.04, 0.04",
                    "Mesh/Cells=6, 1, 1",
                    "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345); 0",
-                   "Contact law/Quadrature=gauss 5"},
-                  0.7);
+                   "Contact law/Quadrature=gauss 5"});
   }
 
 
@@ -280,7 +258,7 @@ namespace
       falls = falls && levels[k].functional < levels[k - 1].functional;
     for (const AdaptiveLevel &level : levels)
       is_held = is_held && level.functional > limit * (1. + 2e-6);
-    std::cout << name << std::endl;
+    section(name);
     check("  several meshes", levels.size() >= 3);
     check("  J falls on each", falls);
     check("  and stays above its limit", is_held);
@@ -292,12 +270,6 @@ namespace
     // With the state of the mesh before; kinks of the trace move.
     check("  steps on the last mesh",
           levels.back().iterations < levels.front().iterations);
-    if (print_figures)
-      for (const AdaptiveLevel &level : levels)
-        std::cout << "  " << level.unknowns << ' '
-                  << level.functional / limit - 1. << ' '
-                  << level.estimated_error << ' ' << level.iterations
-                  << std::endl;
   }
 
 
@@ -323,8 +295,8 @@ namespace
         const auto [scene, levels, result] = refined<2>(parameters);
         unsigned int most_steps            = 0;
         for (const AdaptiveLevel &level : levels)
-          most_steps = std::max(most_steps, level.iterations);
-        std::cout << "stiff bonds, " << traction << std::endl;
+          raise(most_steps, level.iterations);
+        section("stiff bonds, ", traction);
         check("  success", result.solve.status == SolverStatus::success);
         check("  nothing is short", result.shortfall.empty());
         check("  steps", most_steps, 60.);
