@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/sparse_matrix.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
-#include <deal.II/lac/vector.h>
 #include <deal.II/lac/vector_memory.h>
 
 #include <debond/contact/functional.h>
@@ -11,12 +9,11 @@ namespace Debond
 {
   /// J along x + t d: a parabola with precomputed coefficients plus the
   /// adhesion of the contact trace.
-  template <int dim, typename MatrixType, typename VectorType>
-  class Functional<dim, MatrixType, VectorType>::Line
-    : public LineRestriction<VectorType>
+  template <int dim, typename MatrixType>
+  class Functional<dim, MatrixType>::Line : public LineRestriction
   {
   public:
-    Line(const Functional &functional, const VectorType &x, const VectorType &d)
+    Line(const Functional &functional, const DofVector &x, const DofVector &d)
       : functional(functional)
       , gradient(memory)
       , A_d(memory)
@@ -41,7 +38,7 @@ namespace Debond
     }
 
     void
-    subgradient(const double t, VectorType &eta) const override
+    subgradient(const double t, DofVector &eta) const override
     {
       eta = *gradient;
       eta.add(t, *A_d);
@@ -59,9 +56,9 @@ namespace Debond
     const Functional &functional;
 
     // The vectors of earlier lines are used again.
-    dealii::GrowingVectorMemory<VectorType>            memory;
-    typename dealii::VectorMemory<VectorType>::Pointer gradient; ///< A x - f
-    typename dealii::VectorMemory<VectorType>::Pointer A_d;
+    dealii::GrowingVectorMemory<DofVector>   memory;
+    dealii::VectorMemory<DofVector>::Pointer gradient; ///< A x - f
+    dealii::VectorMemory<DofVector>::Pointer A_d;
 
     Eigen::VectorXd s;
     Eigen::VectorXd s_d;
@@ -72,12 +69,11 @@ namespace Debond
 
 
 
-  template <int dim, typename MatrixType, typename VectorType>
-  Functional<dim, MatrixType, VectorType>::Functional(
-    const MatrixType            &A,
-    const VectorType            &f,
-    const ContactSpace<dim>     &contact,
-    const AdhesionIntegral<dim> &adhesion)
+  template <int dim, typename MatrixType>
+  Functional<dim, MatrixType>::Functional(const MatrixType            &A,
+                                          const DofVector             &f,
+                                          const ContactSpace<dim>     &contact,
+                                          const AdhesionIntegral<dim> &adhesion)
     : A(A)
     , f(f)
     , contact(contact)
@@ -86,21 +82,21 @@ namespace Debond
 
 
 
-  template <int dim, typename MatrixType, typename VectorType>
+  template <int dim, typename MatrixType>
   double
-  Functional<dim, MatrixType, VectorType>::value(const VectorType &v) const
+  Functional<dim, MatrixType>::value(const DofVector &v) const
   {
-    VectorType A_v(v);
+    DofVector A_v(v);
     A.vmult(A_v, v);
     return 0.5 * (A_v * v) - f * v + adhesion.value(contact.trace(v));
   }
 
 
 
-  template <int dim, typename MatrixType, typename VectorType>
+  template <int dim, typename MatrixType>
   void
-  Functional<dim, MatrixType, VectorType>::subgradient(const VectorType &v,
-                                                       VectorType &eta) const
+  Functional<dim, MatrixType>::subgradient(const DofVector &v,
+                                           DofVector       &eta) const
   {
     A.vmult(eta, v);
     eta -= f;
@@ -109,32 +105,18 @@ namespace Debond
 
 
 
-  template <int dim, typename MatrixType, typename VectorType>
-  std::unique_ptr<LineRestriction<VectorType>>
-  Functional<dim, MatrixType, VectorType>::along(const VectorType &x,
-                                                 const VectorType &d) const
+  template <int dim, typename MatrixType>
+  std::unique_ptr<LineRestriction>
+  Functional<dim, MatrixType>::along(const DofVector &x,
+                                     const DofVector &d) const
   {
     return std::make_unique<Line>(*this, x, d);
   }
 
 
 
-  template class Functional<2,
-                            dealii::SparseMatrix<double>,
-                            dealii::Vector<double>>;
-  template class Functional<3,
-                            dealii::SparseMatrix<double>,
-                            dealii::Vector<double>>;
-  template class Functional<2,
-                            dealii::FullMatrix<double>,
-                            dealii::Vector<double>>;
-  template class Functional<3,
-                            dealii::FullMatrix<double>,
-                            dealii::Vector<double>>;
-  template class Functional<2,
-                            dealii::TrilinosWrappers::SparseMatrix,
-                            dealii::Vector<double>>;
-  template class Functional<3,
-                            dealii::TrilinosWrappers::SparseMatrix,
-                            dealii::Vector<double>>;
+  template class Functional<2, dealii::SparseMatrix<double>>;
+  template class Functional<3, dealii::SparseMatrix<double>>;
+  template class Functional<2, dealii::FullMatrix<double>>;
+  template class Functional<3, dealii::FullMatrix<double>>;
 } // namespace Debond

@@ -56,18 +56,16 @@ namespace Debond
       const MatrixView                 S = condensed.schur_complement();
       const dealii::FullMatrix<double> matrix(S.rows(), S.cols(), S.data());
       const Vector load(condensed.load().begin(), condensed.load().end());
-      const Functional<dim, dealii::FullMatrix<double>, Vector> functional(
+      const Functional<dim, dealii::FullMatrix<double>> functional(
         matrix, load, contact, scene.adhesion());
 
       // Without loads any tolerance will do.
       bundle.epsilon_s =
         std::max(bundle.epsilon_s * condensed.energy_without_contact(),
                  std::numeric_limits<double>::min());
-      MetricDirection<Vector> direction(S,
-                                        scene.adhesion(),
-                                        bundle.bundle_size);
-      Vector                  x(s.begin(), s.end());
-      add_bundle_result(ProximalBundle<Vector>(bundle).minimize(
+      MetricDirection direction(S, scene.adhesion(), bundle.bundle_size);
+      Vector          x(s.begin(), s.end());
+      add_bundle_result(ProximalBundle(bundle).minimize(
                           functional, direction, x, std::ref(watch)),
                         result);
       s = eigen_view(x);

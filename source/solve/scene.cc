@@ -300,12 +300,11 @@ namespace Debond
                      0.);
     if (problem_piece)
       return;
-    energy =
-      std::make_unique<Functional<dim, dealii::SparseMatrix<double>, Vector>>(
-        elastic_problem->matrix(),
-        elastic_problem->load(),
-        elastic_problem->unknowns().contact(),
-        *adhesion_integral);
+    energy = std::make_unique<Functional<dim, dealii::SparseMatrix<double>>>(
+      elastic_problem->matrix(),
+      elastic_problem->load(),
+      elastic_problem->unknowns().contact(),
+      *adhesion_integral);
   }
 
 
@@ -401,7 +400,7 @@ namespace Debond
 
 
   template <int dim>
-  const Objective<DofVector> &
+  const Objective &
   Scene<dim>::functional() const
   {
     return *energy;

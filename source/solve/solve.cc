@@ -36,7 +36,7 @@ namespace Debond
       watch.add_energy(energy);
       result.u = scene.start();
       add_bundle_result(
-        ProximalBundle<Vector>(parameters)
+        ProximalBundle(parameters)
           .minimize(scene.functional(),
                     scene.problem().unknowns().contact().bounds(),
                     result.u,

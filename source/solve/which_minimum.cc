@@ -188,25 +188,18 @@ namespace Debond
       void
       search_all_nodes()
       {
-        const auto look_at_coarser = [&](const bool found, Eigen::VectorXd &) {
+        const auto look_at_coarser = [&](const bool found) {
           return s.size() > coarse_look && !found &&
                  look_on_coarse_mesh(coarse_look);
         };
         const GuidedSearchResult guided =
-          guided_search(S,
-                        g,
-                        adhesion,
-                        lumped,
+          guided_search(problem(),
                         separable,
-                        graph,
-                        method,
                         guided_search_parameters(parameters,
                                                  energy,
                                                  /*proof_first=*/false),
                         s,
-                        may_go_on,
-                        look_at_coarser,
-                        make_guess());
+                        look_at_coarser);
         const bool rests_on_coarse = result.closed_nodes > 0;
         add_search(guided.search, static_cast<unsigned int>(s.size()), result);
         // What a limit of time has cut may not have come to any bound.
@@ -241,29 +234,21 @@ namespace Debond
       bool
       search_nodes(const BranchSearchParameters &moves)
       {
-        const unsigned int       before = result.search_improvements;
-        const BranchSearchResult search = search_branches(S,
-                                                          g,
-                                                          adhesion,
-                                                          lumped,
-                                                          graph,
-                                                          method,
-                                                          moves,
-                                                          s,
-                                                          may_go_on,
-                                                          make_guess());
-        add_search(search, result.search_nodes, result);
+        const unsigned int before = result.search_improvements;
+        add_search(search_branches(problem(), moves, s),
+                   result.search_nodes,
+                   result);
         return result.search_improvements > before;
       }
 
     private:
-      /// Where starts from afar are in contact.
-      const ActiveSetGuess &
-      make_guess()
+      /// With a guess where starts from afar are in contact.
+      SearchProblem
+      problem()
       {
         if (guess.empty())
           guess = ActiveSetGuess(S, coarsen(boundary, coarse_look));
-        return guess;
+        return {S, g, adhesion, lumped, graph, method, may_go_on, &guess};
       }
 
       bool
@@ -305,21 +290,25 @@ namespace Debond
               const PiecewiseQuadratic &phi,
               Eigen::VectorXd          &coarse_s) {
             const unsigned int n = static_cast<unsigned int>(coarse_s.size());
-            const GuidedSearchResult guided = guided_search(
-              coarse_S,
-              coarse_g,
-              phi,
+            const SeparableBranches coarse_lumped =
               lumped_branches(phi,
                               n,
                               law.branches(),
                               coarse_stretches(stretches(adhesion),
-                                               prolongations)),
+                                               prolongations));
+            const NeighbourGraph coarse_graph =
+              coarse_neighbours(prolongations.back());
+            const GuidedSearchResult guided = guided_search(
+              {coarse_S,
+               coarse_g,
+               phi,
+               coarse_lumped,
+               coarse_graph,
+               method,
+               may_go_on},
               false,
-              coarse_neighbours(prolongations.back()),
-              method,
               guided_search_parameters(parameters, energy, n <= coarse_look),
-              coarse_s,
-              may_go_on);
+              coarse_s);
             add_search(guided.search, n, result);
             is_closed = guided.is_closed;
           });

@@ -392,7 +392,9 @@ namespace
         if (is_stepped)
           {
             const auto search =
-              search_branches(p.S, p.g, p.phi, p.phi, chain(n), method, {}, s);
+              search_branches({p.S, p.g, p.phi, p.phi, chain(n), method},
+                              {},
+                              s);
             wrong_search +=
               !search.complete || search.failures > 0 ||
               std::abs(search.functional - p.value(s)) > tolerance ||

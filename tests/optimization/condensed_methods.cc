@@ -22,6 +22,7 @@
 #include <random>
 
 #include "../check.h"
+#include "plain_restriction.h"
 
 using namespace Debond;
 
@@ -72,7 +73,7 @@ namespace
 
 
 
-  class Energy : public Objective<dealii::Vector<double>>
+  class Energy : public Objective
   {
   public:
     Energy(const Eigen::MatrixXd &matrix,
@@ -102,6 +103,12 @@ namespace
       const auto            point = eigen_view(s);
       const Eigen::VectorXd sum   = S * point - g + phi.subgradient(point);
       eta = dealii::Vector<double>(sum.begin(), sum.end());
+    }
+
+    std::unique_ptr<LineRestriction>
+    along(const DofVector &x, const DofVector &d) const override
+    {
+      return std::make_unique<PlainRestriction>(*this, x, d);
     }
 
   private:
@@ -365,11 +372,10 @@ namespace
         parameters.epsilon_s          = 1e-14;
         parameters.bundle_size        = 50;
         parameters.maximum_iterations = 500;
-        MetricDirection<dealii::Vector<double>> direction(
-          p.S, p.bonds, parameters.bundle_size);
+        MetricDirection        direction(p.S, p.bonds, parameters.bundle_size);
         dealii::Vector<double> x(start.begin(), start.end());
         const auto             bundle =
-          ProximalBundle<dealii::Vector<double>>(parameters)
+          ProximalBundle(parameters)
             .minimize(Energy(p.S, p.g, p.bonds), direction, x);
         bundle_failures += bundle.status != SolverStatus::success;
         raise(worst_bundle, distance(bundle.functional));

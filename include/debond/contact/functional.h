@@ -16,31 +16,31 @@ namespace Debond
    * on the vector of all degrees of freedom, with one Clarke subgradient.
    * Needs of MatrixType only vmult(). Keeps references to its arguments.
    */
-  template <int dim, typename MatrixType, typename VectorType>
-  class Functional : public Objective<VectorType>
+  template <int dim, typename MatrixType>
+  class Functional : public Objective
   {
   public:
     Functional(const MatrixType            &A,
-               const VectorType            &f,
+               const DofVector             &f,
                const ContactSpace<dim>     &contact,
                const AdhesionIntegral<dim> &adhesion);
 
     double
-    value(const VectorType &v) const override;
+    value(const DofVector &v) const override;
 
     void
-    subgradient(const VectorType &v, VectorType &eta) const override;
+    subgradient(const DofVector &v, DofVector &eta) const override;
 
     /// Needs two products with A; every further value costs only the contact
     /// boundary.
-    std::unique_ptr<LineRestriction<VectorType>>
-    along(const VectorType &x, const VectorType &d) const override;
+    std::unique_ptr<LineRestriction>
+    along(const DofVector &x, const DofVector &d) const override;
 
   private:
     class Line;
 
     const MatrixType            &A;
-    const VectorType            &f;
+    const DofVector             &f;
     const ContactSpace<dim>     &contact;
     const AdhesionIntegral<dim> &adhesion;
   };

@@ -6,7 +6,8 @@
 
 namespace Debond
 {
-  /// An entry for each degree of freedom: displacements u, loads f, residuals.
+  /// An entry for each degree of freedom: displacements u, loads f, residuals;
+  /// and what bundle methods minimise over.
   /// What has an entry for each contact node is an Eigen vector.
   using DofVector = dealii::Vector<double>;
 } // namespace Debond

@@ -2,6 +2,8 @@
 #ifndef debond_optimization_objective_h
 #define debond_optimization_objective_h
 
+#include <debond/linear_algebra/dof_vector.h>
+
 #include <memory>
 #include <vector>
 
@@ -12,7 +14,6 @@ namespace Debond
    * asks for many values on one line; an objective that can share work
    * between them returns its own implementation from Objective::along().
    */
-  template <typename VectorType>
   class LineRestriction
   {
   public:
@@ -25,7 +26,7 @@ namespace Debond
 
     /// One element of the Clarke subdifferential of J at x + t d.
     virtual void
-    subgradient(const double t, VectorType &eta) const = 0;
+    subgradient(const double t, DofVector &eta) const = 0;
   };
 
 
@@ -35,7 +36,6 @@ namespace Debond
    * value and one (any) element of its Clarke subdifferential at each point
    * (Section 4 of Czepiel's paper).
    */
-  template <typename VectorType>
   class Objective
   {
   public:
@@ -43,17 +43,17 @@ namespace Debond
 
     /// J(x).
     virtual double
-    value(const VectorType &x) const = 0;
+    value(const DofVector &x) const = 0;
 
     /// One element of the Clarke subdifferential of J at x, written to eta,
     /// which has the size of x.
     virtual void
-    subgradient(const VectorType &x, VectorType &eta) const = 0;
+    subgradient(const DofVector &x, DofVector &eta) const = 0;
 
     /// The restriction to the line through x with direction d. Both vectors
-    /// must outlive the result. The default evaluates J at x + t d.
-    virtual std::unique_ptr<LineRestriction<VectorType>>
-    along(const VectorType &x, const VectorType &d) const;
+    /// must outlive the result.
+    virtual std::unique_ptr<LineRestriction>
+    along(const DofVector &x, const DofVector &d) const = 0;
   };
 
 

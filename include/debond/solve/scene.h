@@ -88,7 +88,7 @@ namespace Debond
     adhesion() const;
 
     /// J, on vectors of problem().unknowns().n_dofs() entries.
-    const Objective<DofVector> &
+    const Objective &
     functional() const;
 
     /// The first iterate for methods on all degrees of freedom.
@@ -163,7 +163,7 @@ namespace Debond
     std::unique_ptr<ContactQuadrature<dim>>  quadrature;
     std::unique_ptr<BondField<dim>>          bond_field;
     std::unique_ptr<AdhesionIntegral<dim>>   adhesion_integral;
-    std::unique_ptr<Objective<DofVector>>    energy;
+    std::unique_ptr<Objective>               energy;
     DofVector                                first_iterate;
     double                                   seconds_for_mesh;
     double                                   seconds_for_assembly;

@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/lac/la_parallel_vector.h>
-#include <deal.II/lac/vector.h>
-
 #include <debond/optimization/bundle/euclidean_direction.h>
 
 #include <algorithm>
 
 namespace Debond
 {
-  template <typename VectorType>
-  EuclideanDirection<VectorType>::EuclideanDirection(
-    const double       proximal_weight,
-    const UpperBounds &upper_bounds,
-    const unsigned int bundle_size,
-    const VectorType  &model)
+  EuclideanDirection::EuclideanDirection(const double       proximal_weight,
+                                         const UpperBounds &upper_bounds,
+                                         const unsigned int bundle_size,
+                                         const DofVector   &model)
     : u(proximal_weight)
     , bounds(upper_bounds)
     , qp(bundle_size, static_cast<unsigned int>(bounds.indices.size()))
@@ -22,9 +17,8 @@ namespace Debond
 
 
 
-  template <typename VectorType>
   bool
-  EuclideanDirection<VectorType>::is_feasible(const VectorType &x) const
+  EuclideanDirection::is_feasible(const DofVector &x) const
   {
     for (unsigned int i = 0; i < bounds.indices.size(); ++i)
       if (!(x(bounds.indices[i]) <= bounds.upper[i]))
@@ -34,30 +28,27 @@ namespace Debond
 
 
 
-  template <typename VectorType>
   unsigned int
-  EuclideanDirection<VectorType>::size() const
+  EuclideanDirection::size() const
   {
     return qp.n_cuts();
   }
 
 
 
-  template <typename VectorType>
   void
-  EuclideanDirection<VectorType>::clear()
+  EuclideanDirection::clear()
   {
     qp.clear();
   }
 
 
 
-  template <typename VectorType>
   void
-  EuclideanDirection<VectorType>::add(const VectorType &eta)
+  EuclideanDirection::add(const DofVector &eta)
   {
     const unsigned int j   = size();
-    VectorType        &cut = subgradients[j];
+    DofVector         &cut = subgradients[j];
     cut                    = eta;
 
     Eigen::VectorXd bounded(bounds.indices.size());
@@ -74,10 +65,8 @@ namespace Debond
 
 
 
-  template <typename VectorType>
-  const typename EuclideanDirection<VectorType>::Solution &
-  EuclideanDirection<VectorType>::solve(const VectorType      &x,
-                                        const Eigen::VectorXd &beta)
+  const EuclideanDirection::Solution &
+  EuclideanDirection::solve(const DofVector &x, const Eigen::VectorXd &beta)
   {
     Eigen::VectorXd b(bounds.indices.size());
     for (unsigned int i = 0; i < bounds.indices.size(); ++i)
@@ -98,9 +87,8 @@ namespace Debond
 
 
 
-  template <typename VectorType>
   void
-  EuclideanDirection<VectorType>::direction(VectorType &d) const
+  EuclideanDirection::direction(DofVector &d) const
   {
     d = 0.;
     // Two at a time, to read and write d half as often.
@@ -125,27 +113,20 @@ namespace Debond
 
 
 
-  template <typename VectorType>
   double
-  EuclideanDirection<VectorType>::length(const VectorType &d) const
+  EuclideanDirection::length(const DofVector &d) const
   {
     return d.l2_norm();
   }
 
 
 
-  template <typename VectorType>
   void
-  EuclideanDirection<VectorType>::project(VectorType &x) const
+  EuclideanDirection::project(DofVector &x) const
   {
     for (unsigned int i = 0; i < bounds.indices.size(); ++i)
       x(bounds.indices[i]) =
         std::min<double>(x(bounds.indices[i]), bounds.upper[i]);
   }
 
-
-
-  template class EuclideanDirection<dealii::Vector<double>>;
-  template class EuclideanDirection<
-    dealii::LinearAlgebra::distributed::Vector<double>>;
 } // namespace Debond

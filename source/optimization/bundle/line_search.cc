@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/lac/la_parallel_vector.h>
-#include <deal.II/lac/vector.h>
-
 #include <debond/optimization/bundle/line_search.h>
 
 #include <algorithm>
@@ -39,12 +36,11 @@ namespace Debond
 
     /// t_L and J(x_k + t_L d_k) - J(x_k) by the given rule; zero if there is
     /// no descent.
-    template <typename VectorType>
     void
-    find_descent(const LineRestriction<VectorType> &line,
-                 const double                       v,
-                 const LineSearchParameters        &parameters,
-                 LineSearchResult                  &result)
+    find_descent(const LineRestriction      &line,
+                 const double                v,
+                 const LineSearchParameters &parameters,
+                 LineSearchResult           &result)
     {
       const auto descends = [&](const double t, const double change) {
         return change <= parameters.m_L * t * v;
@@ -111,14 +107,13 @@ namespace Debond
 
 
 
-  template <typename VectorType>
   LineSearchResult
-  line_search(const LineRestriction<VectorType> &line,
-              const VectorType                  &d,
-              const double                       d_norm,
-              const double                       v,
-              const LineSearchParameters        &parameters,
-              VectorType                        &eta)
+  line_search(const LineRestriction      &line,
+              const DofVector            &d,
+              const double                d_norm,
+              const double                v,
+              const LineSearchParameters &parameters,
+              DofVector                  &eta)
   {
     LineSearchResult result;
     find_descent(line, v, parameters, result);
@@ -171,21 +166,4 @@ namespace Debond
     return result;
   }
 
-
-
-  template LineSearchResult
-  line_search(const LineRestriction<dealii::Vector<double>> &,
-              const dealii::Vector<double> &,
-              const double,
-              const double,
-              const LineSearchParameters &,
-              dealii::Vector<double> &);
-  template LineSearchResult
-  line_search(
-    const LineRestriction<dealii::LinearAlgebra::distributed::Vector<double>> &,
-    const dealii::LinearAlgebra::distributed::Vector<double> &,
-    const double,
-    const double,
-    const LineSearchParameters &,
-    dealii::LinearAlgebra::distributed::Vector<double> &);
 } // namespace Debond

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/lac/vector.h>
-
 #include <debond/linear_algebra/eigen_view.h>
 #include <debond/optimization/bundle/bundle_qp.h>
 #include <debond/optimization/bundle/metric_direction.h>
@@ -13,11 +11,9 @@
 
 namespace Debond
 {
-  template <typename VectorType>
-  MetricDirection<VectorType>::MetricDirection(
-    const MatrixView         &metric,
-    const PiecewiseQuadratic &nonsmooth,
-    const unsigned int        bundle_size)
+  MetricDirection::MetricDirection(const MatrixView         &metric,
+                                   const PiecewiseQuadratic &nonsmooth,
+                                   const unsigned int        bundle_size)
     : S(metric)
     , phi(nonsmooth)
     , eta(S.rows(), bundle_size)
@@ -26,9 +22,8 @@ namespace Debond
 
 
 
-  template <typename VectorType>
   bool
-  MetricDirection<VectorType>::is_feasible(const VectorType &x) const
+  MetricDirection::is_feasible(const DofVector &x) const
   {
     return std::all_of(x.begin(), x.end(), [](const double s) {
       return s <= 0.;
@@ -37,37 +32,32 @@ namespace Debond
 
 
 
-  template <typename VectorType>
   unsigned int
-  MetricDirection<VectorType>::size() const
+  MetricDirection::size() const
   {
     return m;
   }
 
 
 
-  template <typename VectorType>
   void
-  MetricDirection<VectorType>::clear()
+  MetricDirection::clear()
   {
     m = 0;
   }
 
 
 
-  template <typename VectorType>
   void
-  MetricDirection<VectorType>::add(const VectorType &new_eta)
+  MetricDirection::add(const DofVector &new_eta)
   {
     eta.col(m++) = eigen_view(new_eta);
   }
 
 
 
-  template <typename VectorType>
-  const typename MetricDirection<VectorType>::Solution &
-  MetricDirection<VectorType>::solve(const VectorType      &x,
-                                     const Eigen::VectorXd &beta)
+  const MetricDirection::Solution &
+  MetricDirection::solve(const DofVector &x, const Eigen::VectorXd &beta)
   {
     const unsigned int n = x.size();
     Eigen::MatrixXd    M = S;
@@ -154,18 +144,16 @@ namespace Debond
 
 
 
-  template <typename VectorType>
   void
-  MetricDirection<VectorType>::direction(VectorType &direction) const
+  MetricDirection::direction(DofVector &direction) const
   {
     std::copy(d.begin(), d.end(), direction.begin());
   }
 
 
 
-  template <typename VectorType>
   double
-  MetricDirection<VectorType>::length(const VectorType &direction) const
+  MetricDirection::length(const DofVector &direction) const
   {
     const auto v = eigen_view(direction);
     return std::sqrt(v.dot(S * v));
@@ -173,15 +161,11 @@ namespace Debond
 
 
 
-  template <typename VectorType>
   void
-  MetricDirection<VectorType>::project(VectorType &x) const
+  MetricDirection::project(DofVector &x) const
   {
     for (double &s : x)
       s = std::min(s, 0.);
   }
 
-
-
-  template class MetricDirection<dealii::Vector<double>>;
 } // namespace Debond

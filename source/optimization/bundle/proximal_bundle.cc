@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
-#include <deal.II/lac/la_parallel_vector.h>
-#include <deal.II/lac/vector.h>
 
-#include <debond/optimization/bundle/bundle.h>
 #include <debond/optimization/bundle/euclidean_direction.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
 
@@ -20,11 +17,93 @@ namespace Debond
     /// not used.
     constexpr double acceptable_qp_residual = 1e-9;
 
+    /**
+     * The bundle of the paper's Section 4: up to @p capacity subgradients
+     * eta_j, which the direction problem holds, with their linearisation errors
+     * alpha_j (energy) and the lengths s_j of the way from y_j to x_k (in the
+     * norm of the direction problem). Keeps a reference to the direction
+     * problem, which has to outlive it and is cleared at the start.
+     */
+    class Bundle
+    {
+    public:
+      using Solution = DirectionProblem::Solution;
+
+      Bundle(DirectionProblem &direction_problem, const unsigned int capacity)
+        : problem(direction_problem)
+        , alpha(capacity)
+        , distance(capacity)
+      {
+        problem.clear();
+      }
+
+      unsigned int
+      size() const
+      {
+        return problem.size();
+      }
+
+      bool
+      full() const
+      {
+        return size() == alpha.size();
+      }
+
+      void
+      clear()
+      {
+        problem.clear();
+      }
+
+      /// Adds the subgradient eta with its alpha_j and s_j at x_k. There has to
+      /// be room: !full().
+      void
+      add(const DofVector &eta,
+          const double     new_alpha,
+          const double     new_distance)
+      {
+        alpha(size())    = new_alpha;
+        distance(size()) = new_distance;
+        problem.add(eta);
+      }
+
+      /// The direction at @p x = x_k, from beta_j = max(|alpha_j|, gamma
+      /// s_j^2). The result is valid until the next call.
+      const Solution &
+      solve(const DofVector &x, const double gamma)
+      {
+        const unsigned int m = size();
+        return problem.solve(x,
+                             alpha.head(m).cwiseAbs().cwiseMax(
+                               gamma * distance.head(m).cwiseAbs2()));
+      }
+
+      /// Changes alpha_j and s_j of all subgradients from x_k to x_{k+1} = x_k
+      /// + t_L d, where d is the direction of @p solution and @p d_length its
+      /// length.
+      void
+      move(const Solution         &solution,
+           const LineSearchResult &step,
+           const double            d_length)
+      {
+        const unsigned int m = size();
+        alpha.head(m) +=
+          (step.change - step.t_L * solution.slopes.array()).matrix();
+        distance.head(m).array() += step.t_L * d_length;
+      }
+
+    private:
+      DirectionProblem &problem;
+      Eigen::VectorXd   alpha;    ///< linearisation errors
+      Eigen::VectorXd   distance; ///< s_j^k
+    };
+
+
+
     /// Whether inner products with a subgradient, which the QP is made of, are
     /// finite numbers.
-    template <typename VectorType>
     bool
-    is_usable(const VectorType &eta)
+    is_usable(const DofVector &eta)
     {
       constexpr double largest = 1e140;
       return eta.linfty_norm() < largest && std::isfinite(eta * eta);
@@ -120,9 +199,7 @@ namespace Debond
 
 
 
-  template <typename VectorType>
-  ProximalBundle<VectorType>::ProximalBundle(
-    const ProximalBundleParameters &parameters)
+  ProximalBundle::ProximalBundle(const ProximalBundleParameters &parameters)
     : parameters(parameters)
   {
     parameters.validate();
@@ -130,29 +207,26 @@ namespace Debond
 
 
 
-  template <typename VectorType>
   ProximalBundleResult
-  ProximalBundle<VectorType>::minimize(const Objective<VectorType> &objective,
-                                       const UpperBounds           &bounds,
-                                       VectorType                  &x,
-                                       const Monitor &monitor) const
+  ProximalBundle::minimize(const Objective   &objective,
+                           const UpperBounds &bounds,
+                           DofVector         &x,
+                           const Monitor     &monitor) const
   {
-    EuclideanDirection<VectorType> direction_problem(parameters.u,
-                                                     bounds,
-                                                     parameters.bundle_size,
-                                                     x);
+    EuclideanDirection direction_problem(parameters.u,
+                                         bounds,
+                                         parameters.bundle_size,
+                                         x);
     return minimize(objective, direction_problem, x, monitor);
   }
 
 
 
-  template <typename VectorType>
   ProximalBundleResult
-  ProximalBundle<VectorType>::minimize(
-    const Objective<VectorType>  &objective,
-    DirectionProblem<VectorType> &direction_problem,
-    VectorType                   &x,
-    const Monitor                &monitor) const
+  ProximalBundle::minimize(const Objective  &objective,
+                           DirectionProblem &direction_problem,
+                           DofVector        &x,
+                           const Monitor    &monitor) const
   {
     if (!direction_problem.is_feasible(x))
       throw std::invalid_argument(
@@ -170,10 +244,10 @@ namespace Debond
     objective_timer.stop();
     algebra_timer.stop();
 
-    VectorType eta(x), d(x);
+    DofVector eta(x), d(x);
 
-    Bundle<VectorType> bundle(direction_problem, parameters.bundle_size);
-    const auto         restart = [&]() {
+    Bundle     bundle(direction_problem, parameters.bundle_size);
+    const auto restart = [&]() {
       bundle.clear();
       result.functional = objective.value(x);
       objective.subgradient(x, eta);
@@ -182,7 +256,7 @@ namespace Debond
     };
     restart();
 
-    const typename Bundle<VectorType>::Solution *direction = nullptr;
+    const Bundle::Solution *direction = nullptr;
     while (true)
       {
         if (!std::isfinite(result.functional) || !is_usable(eta))
@@ -309,9 +383,4 @@ namespace Debond
     return result;
   }
 
-
-
-  template class ProximalBundle<dealii::Vector<double>>;
-  template class ProximalBundle<
-    dealii::LinearAlgebra::distributed::Vector<double>>;
 } // namespace Debond

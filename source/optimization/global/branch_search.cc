@@ -221,29 +221,20 @@ namespace Debond
     class StateSearch
     {
     public:
-      StateSearch(const MatrixView             &S,
-                  const VectorView             &g,
-                  const PiecewiseQuadratic     &phi,
-                  const SeparableBranches      &lumped,
-                  const MajoriseMinimise       &method,
+      StateSearch(const SearchProblem          &problem,
                   const BranchSearchParameters &parameters,
-                  const ActiveSetGuess         &guess,
                   Eigen::VectorXd              &s)
-        : S(S)
-        , g(g)
-        , phi(phi)
-        , lumped(lumped)
-        , method(method)
+        : problem(problem)
         , parameters(parameters)
-        , guess(guess)
         , s(s)
       {
-        const auto state  = CondensedProblem(S, g, phi, s).evaluate();
+        const auto state =
+          CondensedProblem(problem.S, problem.g, problem.phi, s).evaluate();
         given_functional  = state.functional;
         result.functional = state.functional;
         rounding          = state.functional_rounding;
         tried.insert(state_of(s));
-        if (method.has_converged(state))
+        if (problem.method.has_converged(state))
           known.push_back(majorant(s, state.functional));
       }
 
@@ -252,40 +243,38 @@ namespace Debond
       {
         BranchState state(point.size());
         for (unsigned int i = 0; i < point.size(); ++i)
-          state[i] = lumped.f[i].index(point(i));
+          state[i] = problem.lumped.f[i].index(point(i));
         return state;
       }
 
       /// Minimises from the changed state. Returns whether the functional is
       /// below that of @p point, which then moves.
       bool
-      attempt(const Trial                 &trial,
-              const std::function<bool()> &monitor,
-              Eigen::VectorXd             &point)
+      attempt(const Trial &trial, Eigen::VectorXd &point)
       {
+        const std::vector<BranchMinimum> &f = problem.lumped.f;
         // Beside a clamped side quadrature points move less than the node, so
         // that they are on the last branch only if the node is far below its
         // kink. Only their branches matter.
-        const bool to_the_end = trial.move == BranchMove::start &&
-                                !trial.down.empty() &&
-                                trial.piece + 1 == number_of_pieces(lumped);
+        const bool to_the_end =
+          trial.move == BranchMove::start && !trial.down.empty() &&
+          trial.piece + 1 == number_of_pieces(problem.lumped);
         Eigen::VectorXd next = point;
         // Where there are no bonds no branch is to be left.
         for (const unsigned int i : trial.down)
-          if (trial.piece < lumped.f[i].size())
-            next(i) =
-              std::min(next(i),
-                       to_the_end ? 1e3 * lumped.f[i][trial.piece].upper :
-                                    lumped.f[i].point_inside(trial.piece));
+          if (trial.piece < f[i].size())
+            next(i) = std::min(next(i),
+                               to_the_end ? 1e3 * f[i][trial.piece].upper :
+                                            f[i].point_inside(trial.piece));
         for (const unsigned int i : trial.up)
-          if (lumped.f[i].index(next(i)) >= trial.piece)
-            next(i) = lumped.f[i].point_inside(trial.piece - 1);
+          if (f[i].index(next(i)) >= trial.piece)
+            next(i) = f[i].point_inside(trial.piece - 1);
         // Beside what holds a vertex off the foundation points are farther from
         // it than the node: its bonds hold from there only if it is closed.
         const bool from_contact =
           trial.move == BranchMove::start && trial.down.empty() &&
-          (phi.curvature(Eigen::VectorXd::Zero(next.size())) -
-           phi.curvature(next))
+          (problem.phi.curvature(Eigen::VectorXd::Zero(next.size())) -
+           problem.phi.curvature(next))
               .norm() > 0.;
         if (from_contact)
           next.setZero();
@@ -295,16 +284,16 @@ namespace Debond
 
         ++result.trials[static_cast<unsigned int>(trial.move)];
         const BranchState start = state_of(next);
-        CondensedProblem  problem(S, g, phi, next);
+        CondensedProblem  condensed(problem.S, problem.g, problem.phi, next);
         if (trial.move != BranchMove::shift)
-          problem.guess_by(guess);
+          condensed.guess_by(problem.guess);
         bool                         ends_at_known = false;
         const MajoriseMinimiseResult minimum =
-          minimise_trial(method,
-                         problem,
+          minimise_trial(problem.method,
+                         condensed,
                          [&](const MajoriseMinimiseIteration &) {
                            ends_at_known = leads_to_known(next, trial.move);
-                           return !ends_at_known && (!monitor || monitor());
+                           return !ends_at_known && problem.may_go_on();
                          });
         if (ends_at_known)
           return false;
@@ -345,13 +334,13 @@ namespace Debond
       }
 
       bool
-      may_go_on(const std::function<bool()> &monitor)
+      may_go_on()
       {
         result.complete =
           result.complete &&
           std::accumulate(result.trials.begin(), result.trials.end(), 0u) <
             parameters.maximum_trials &&
-          (!monitor || monitor());
+          problem.may_go_on();
         return result.complete;
       }
 
@@ -361,8 +350,10 @@ namespace Debond
       KnownMajorant
       majorant(const VectorView &point, const double value) const
       {
-        const Eigen::SparseMatrix<double> E = phi.curvature(point);
-        return {E, g - phi.subgradient(point) + E * point, value};
+        const Eigen::SparseMatrix<double> E = problem.phi.curvature(point);
+        return {E,
+                problem.g - problem.phi.subgradient(point) + E * point,
+                value};
       }
 
       /// Whether the descent from @p point ends at a known minimum that is no
@@ -381,13 +372,8 @@ namespace Debond
           });
       }
 
-      const MatrixView             &S;
-      const VectorView             &g;
-      const PiecewiseQuadratic     &phi;
-      const SeparableBranches      &lumped;
-      const MajoriseMinimise       &method;
+      const SearchProblem          &problem;
       const BranchSearchParameters &parameters;
-      const ActiveSetGuess         &guess;
       Eigen::VectorXd              &s;
       double                        given_functional;
       double                        functional; ///< where moves start
@@ -416,20 +402,13 @@ namespace Debond
 
 
   BranchSearchResult
-  search_branches(const MatrixView             &S,
-                  const VectorView             &g,
-                  const PiecewiseQuadratic     &phi,
-                  const SeparableBranches      &lumped,
-                  const NeighbourGraph         &neighbours,
-                  const MajoriseMinimise       &method,
+  search_branches(const SearchProblem          &problem,
                   const BranchSearchParameters &parameters,
-                  Eigen::VectorXd              &s,
-                  const std::function<bool()>  &monitor,
-                  const ActiveSetGuess         &guess)
+                  Eigen::VectorXd              &s)
   {
-    const unsigned int n_pieces = number_of_pieces(lumped);
-    StateSearch        search(S, g, phi, lumped, method, parameters, guess, s);
-    const Moves        moves(parameters, neighbours);
+    const unsigned int n_pieces = number_of_pieces(problem.lumped);
+    StateSearch        search(problem, parameters, s);
+    const Moves        moves(parameters, problem.neighbours);
     const auto         descend = [&](Eigen::VectorXd point) {
       bool fell = true;
       while (fell)
@@ -438,9 +417,9 @@ namespace Debond
           for (const Trial &trial :
                moves.from(search.state_of(point), n_pieces))
             {
-              if (!search.may_go_on(monitor))
+              if (!search.may_go_on())
                 return;
-              fell = search.attempt(trial, monitor, point);
+              fell = search.attempt(trial, point);
               if (fell)
                 break;
             }
@@ -460,8 +439,7 @@ namespace Debond
         for (const Trial &trial : starts)
           {
             Eigen::VectorXd point = given;
-            if (search.may_go_on(monitor) &&
-                search.attempt(trial, monitor, point))
+            if (search.may_go_on() && search.attempt(trial, point))
               descend(point);
           }
       }

@@ -26,31 +26,16 @@ namespace Debond
     class GuidedSearch
     {
     public:
-      GuidedSearch(const MatrixView             &S,
-                   const VectorView             &g,
-                   const PiecewiseQuadratic     &phi,
-                   const SeparableBranches      &lumped,
+      GuidedSearch(const SearchProblem          &problem,
                    const bool                    is_separable,
-                   const NeighbourGraph         &neighbours,
-                   const MajoriseMinimise       &method,
-                   const GuidedSearchParameters &parameters,
-                   const std::function<bool()>  &monitor,
-                   const ActiveSetGuess         &guess)
-        : S(S)
-        , g(g)
-        , phi(phi)
-        , lumped(lumped)
+                   const GuidedSearchParameters &parameters)
+        : problem(problem)
         , is_separable(is_separable)
-        , neighbours(neighbours)
-        , method(method)
         , parameters(parameters)
-        , monitor(monitor)
-        , guess(guess)
       {}
 
       GuidedSearchResult
-      run(const std::function<bool(bool, Eigen::VectorXd &)> &may_end,
-          Eigen::VectorXd                                    &s)
+      run(const std::function<bool(bool)> &may_end, Eigen::VectorXd &s)
       {
         const bool has_tried = is_separable || parameters.proof_first;
         const bool looks_at_node =
@@ -72,9 +57,9 @@ namespace Debond
           found = found || improvements > 0;
         // The same point has the same bounds.
         const bool is_same = has_tried && !found;
-        if (!monitor() || (!is_same && is_proved(s, 0)))
+        if (!problem.may_go_on() || (!is_same && is_proved(s, 0)))
           return result;
-        if ((may_end && may_end(found, s)) || !monitor() ||
+        if ((may_end && may_end(found)) || !problem.may_go_on() ||
             (!(is_same && parameters.proof_first) && is_proved(s, 1)))
           return result;
         search({}, s);
@@ -82,10 +67,10 @@ namespace Debond
         const unsigned int n_nodes = static_cast<unsigned int>(std::ceil(
           std::min(double(most_nodes), most_operations / (n * n * n))));
         // What the proof finds is where moves have not been tried from.
-        for (unsigned int k = 0; k < most_proofs && monitor(); ++k)
+        for (unsigned int k = 0; k < most_proofs && problem.may_go_on(); ++k)
           {
             const Eigen::VectorXd searched = s;
-            if (is_proved(s, n_nodes) || s == searched || !monitor())
+            if (is_proved(s, n_nodes) || s == searched || !problem.may_go_on())
               break;
             search({}, s);
           }
@@ -93,12 +78,20 @@ namespace Debond
       }
 
     private:
+      /// Adds what it did to the result.
       void
       search(const BranchSearchParameters &moves, Eigen::VectorXd &s)
       {
-        add(search_branches(
-              S, g, phi, lumped, neighbours, method, moves, s, monitor, guess),
-            result.search);
+        const BranchSearchResult more = search_branches(problem, moves, s);
+        BranchSearchResult      &sum  = result.search;
+        for (unsigned int k = 0; k < more.trials.size(); ++k)
+          {
+            sum.trials[k] += more.trials[k];
+            sum.improvements[k] += more.improvements[k];
+          }
+        sum.failures += more.failures;
+        sum.complete   = sum.complete && more.complete;
+        sum.functional = more.functional;
       }
 
       /// Branch and bound, and whether it ends with a proof. What it finds is
@@ -108,21 +101,27 @@ namespace Debond
                 const unsigned int maximum_nodes,
                 const bool         only_while_halving = false)
       {
-        CondensedProblem         problem(S, g, phi, s);
-        const double             functional = problem.evaluate().functional;
+        const double functional = condensed(s).evaluate().functional;
         BranchAndBoundParameters limits;
-        limits.tolerance                 = parameters.tolerance;
-        limits.maximum_nodes             = maximum_nodes;
-        limits.only_while_halving        = only_while_halving;
-        limits.n_threads                 = parameters.n_threads;
-        const BranchAndBoundResult proof = BranchAndBound(limits).minimize(
-          S, g, lumped, s, [this](const ProofProgress &) { return monitor(); });
+        limits.tolerance          = parameters.tolerance;
+        limits.maximum_nodes      = maximum_nodes;
+        limits.only_while_halving = only_while_halving;
+        limits.n_threads          = parameters.n_threads;
+        const BranchAndBoundResult proof =
+          BranchAndBound(limits).minimize(problem.S,
+                                          problem.g,
+                                          problem.lumped,
+                                          s,
+                                          [this](const ProofProgress &) {
+                                            return problem.may_go_on();
+                                          });
         if (is_separable)
           result.proof = proof;
-        Eigen::VectorXd  other = proof.s;
-        CondensedProblem other_problem(S, g, phi, other);
-        if (!is_separable && minimise_trial(method, other_problem).status !=
-                               SolverStatus::success)
+        Eigen::VectorXd  other         = proof.s;
+        CondensedProblem other_problem = condensed(other);
+        if (!is_separable &&
+            minimise_trial(problem.method, other_problem).status !=
+              SolverStatus::success)
           {
             ++result.search.failures;
             return false;
@@ -134,16 +133,15 @@ namespace Debond
         return result.is_closed;
       }
 
-      const MatrixView             &S;
-      const VectorView             &g;
-      const PiecewiseQuadratic     &phi;
-      const SeparableBranches      &lumped;
+      CondensedProblem
+      condensed(Eigen::VectorXd &s) const
+      {
+        return CondensedProblem(problem.S, problem.g, problem.phi, s);
+      }
+
+      const SearchProblem          &problem;
       const bool                    is_separable;
-      const NeighbourGraph         &neighbours;
-      const MajoriseMinimise       &method;
       const GuidedSearchParameters &parameters;
-      const std::function<bool()>  &monitor;
-      const ActiveSetGuess         &guess;
       GuidedSearchResult            result;
     };
   } // namespace
@@ -168,45 +166,13 @@ namespace Debond
 
 
 
-  void
-  add(const BranchSearchResult &more, BranchSearchResult &search)
-  {
-    for (unsigned int k = 0; k < more.trials.size(); ++k)
-      {
-        search.trials[k] += more.trials[k];
-        search.improvements[k] += more.improvements[k];
-      }
-    search.failures += more.failures;
-    search.complete   = search.complete && more.complete;
-    search.functional = more.functional;
-  }
-
-
-
   GuidedSearchResult
-  guided_search(const MatrixView             &S,
-                const VectorView             &g,
-                const PiecewiseQuadratic     &phi,
-                const SeparableBranches      &lumped,
-                const bool                    is_separable,
-                const NeighbourGraph         &neighbours,
-                const MajoriseMinimise       &method,
-                const GuidedSearchParameters &parameters,
-                Eigen::VectorXd              &s,
-                const std::function<bool()>  &monitor,
-                const std::function<bool(bool, Eigen::VectorXd &)> &may_end,
-                const ActiveSetGuess                               &guess)
+  guided_search(const SearchProblem             &problem,
+                const bool                       is_separable,
+                const GuidedSearchParameters    &parameters,
+                Eigen::VectorXd                 &s,
+                const std::function<bool(bool)> &may_end)
   {
-    return GuidedSearch(S,
-                        g,
-                        phi,
-                        lumped,
-                        is_separable,
-                        neighbours,
-                        method,
-                        parameters,
-                        monitor,
-                        guess)
-      .run(may_end, s);
+    return GuidedSearch(problem, is_separable, parameters).run(may_end, s);
   }
 } // namespace Debond

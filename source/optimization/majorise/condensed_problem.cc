@@ -103,9 +103,9 @@ namespace Debond
 
 
   void
-  CondensedProblem::guess_by(const ActiveSetGuess &other)
+  CondensedProblem::guess_by(const ActiveSetGuess *other)
   {
-    guess = &other;
+    guess = other;
   }
 
 

@@ -2,6 +2,7 @@
 #ifndef debond_optimization_bundle_direction_problem_h
 #define debond_optimization_bundle_direction_problem_h
 
+#include <debond/linear_algebra/dof_vector.h>
 
 #include <Eigen/Core>
 
@@ -17,7 +18,6 @@ namespace Debond
    *
    * The paper has M = u_k I. Holds the subgradients eta_j.
    */
-  template <typename VectorType>
   class DirectionProblem
   {
   public:
@@ -46,7 +46,7 @@ namespace Debond
 
     /// Whether x is in K.
     virtual bool
-    is_feasible(const VectorType &x) const = 0;
+    is_feasible(const DofVector &x) const = 0;
 
     /// Number of subgradients.
     virtual unsigned int
@@ -58,24 +58,24 @@ namespace Debond
     clear() = 0;
 
     virtual void
-    add(const VectorType &eta) = 0;
+    add(const DofVector &eta) = 0;
 
     /// Solves at x for the given beta >= 0, one for each subgradient.
     virtual const Solution &
-    solve(const VectorType &x, const Eigen::VectorXd &beta) = 0;
+    solve(const DofVector &x, const Eigen::VectorXd &beta) = 0;
 
     /// The d of the last solve().
     virtual void
-    direction(VectorType &d) const = 0;
+    direction(DofVector &d) const = 0;
 
     /// The distance that the locality measure counts: the length of d in the
     /// metric M / u.
     virtual double
-    length(const VectorType &d) const = 0;
+    length(const DofVector &d) const = 0;
 
     /// Takes rounding back that may have taken x out of K.
     virtual void
-    project(VectorType &x) const = 0;
+    project(DofVector &x) const = 0;
   };
 } // namespace Debond
 

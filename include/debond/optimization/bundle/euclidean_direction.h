@@ -14,21 +14,18 @@ namespace Debond
   /// on any deal.II vector. Only the components with bounds are handed to the
   /// QP; of all others it knows the Gram matrix. Keeps a reference to the
   /// bounds.
-  template <typename VectorType>
-  class EuclideanDirection : public DirectionProblem<VectorType>
+  class EuclideanDirection : public DirectionProblem
   {
   public:
-    using typename DirectionProblem<VectorType>::Solution;
-
     /// @p model: a vector with the layout of x. @p bundle_size: the most
     /// subgradients that will be added.
     EuclideanDirection(const double       u,
                        const UpperBounds &bounds,
                        const unsigned int bundle_size,
-                       const VectorType  &model);
+                       const DofVector   &model);
 
     bool
-    is_feasible(const VectorType &x) const override;
+    is_feasible(const DofVector &x) const override;
 
     unsigned int
     size() const override;
@@ -37,19 +34,19 @@ namespace Debond
     clear() override;
 
     void
-    add(const VectorType &eta) override;
+    add(const DofVector &eta) override;
 
     const Solution &
-    solve(const VectorType &x, const Eigen::VectorXd &beta) override;
+    solve(const DofVector &x, const Eigen::VectorXd &beta) override;
 
     void
-    direction(VectorType &d) const override;
+    direction(DofVector &d) const override;
 
     double
-    length(const VectorType &d) const override;
+    length(const DofVector &d) const override;
 
     void
-    project(VectorType &x) const override;
+    project(DofVector &x) const override;
 
   private:
     const double       u;
@@ -58,7 +55,7 @@ namespace Debond
 
     /// With zeros in the bounded components, which the QP holds: so the part of
     /// the Gram matrix that remains when bounds are active is not a difference.
-    std::vector<VectorType> subgradients;
+    std::vector<DofVector> subgradients;
 
     Eigen::VectorXd lambda; ///< of the last solve()
     Eigen::VectorXd d_bounded;

@@ -77,14 +77,13 @@ namespace Debond
    * @p v is v_k < 0, @p d_norm the length of d_k. On success @p eta is the
    * subgradient at y_{k+1}.
    */
-  template <typename VectorType>
   LineSearchResult
-  line_search(const LineRestriction<VectorType> &line,
-              const VectorType                  &d,
-              const double                       d_norm,
-              const double                       v,
-              const LineSearchParameters        &parameters,
-              VectorType                        &eta);
+  line_search(const LineRestriction      &line,
+              const DofVector            &d,
+              const double                d_norm,
+              const double                v,
+              const LineSearchParameters &parameters,
+              DofVector                  &eta);
 } // namespace Debond
 
 #endif

@@ -18,18 +18,15 @@ namespace Debond
    *
    * Keeps references to S and Phi.
    */
-  template <typename VectorType>
-  class MetricDirection : public DirectionProblem<VectorType>
+  class MetricDirection : public DirectionProblem
   {
   public:
-    using typename DirectionProblem<VectorType>::Solution;
-
     MetricDirection(const MatrixView         &S,
                     const PiecewiseQuadratic &phi,
                     const unsigned int        bundle_size);
 
     bool
-    is_feasible(const VectorType &x) const override;
+    is_feasible(const DofVector &x) const override;
 
     unsigned int
     size() const override;
@@ -38,20 +35,20 @@ namespace Debond
     clear() override;
 
     void
-    add(const VectorType &eta) override;
+    add(const DofVector &eta) override;
 
     const Solution &
-    solve(const VectorType &x, const Eigen::VectorXd &beta) override;
+    solve(const DofVector &x, const Eigen::VectorXd &beta) override;
 
     void
-    direction(VectorType &d) const override;
+    direction(DofVector &d) const override;
 
     /// (d'S d)^(1/2), the paper's ||d||_V.
     double
-    length(const VectorType &d) const override;
+    length(const DofVector &d) const override;
 
     void
-    project(VectorType &x) const override;
+    project(DofVector &x) const override;
 
   private:
     const MatrixView          S;

@@ -107,7 +107,6 @@ namespace Debond
    * with the Euclidean proximal term, the subgradient locality measure, long,
    * short and null steps, and the bundle emptied when it is full.
    */
-  template <typename VectorType>
   class ProximalBundle
   {
   public:
@@ -120,19 +119,19 @@ namespace Debond
 
     /// Improves x. Throws std::invalid_argument if x is not in K.
     ProximalBundleResult
-    minimize(const Objective<VectorType> &objective,
-             const UpperBounds           &bounds,
-             VectorType                  &x,
-             const Monitor               &monitor = {}) const;
+    minimize(const Objective   &objective,
+             const UpperBounds &bounds,
+             DofVector         &x,
+             const Monitor     &monitor = {}) const;
 
     /// The same in the metric of @p direction_problem, which also knows K and
     /// has to have room for `bundle_size` subgradients; the parameter u is not
     /// used. One method, whatever the metric.
     ProximalBundleResult
-    minimize(const Objective<VectorType>  &objective,
-             DirectionProblem<VectorType> &direction_problem,
-             VectorType                   &x,
-             const Monitor                &monitor = {}) const;
+    minimize(const Objective  &objective,
+             DirectionProblem &direction_problem,
+             DofVector        &x,
+             const Monitor    &monitor = {}) const;
 
   private:
     ProximalBundleParameters parameters;

@@ -19,6 +19,30 @@ namespace Debond
 
 
 
+  /// 1/2 s'S s - g's + Phi(s), s <= 0, and what a search needs to know of it.
+  /// Keeps references.
+  struct SearchProblem
+  {
+    MatrixView                S;
+    VectorView                g;
+    const PiecewiseQuadratic &phi;
+
+    /// Says on which branch a node is (lumped_branches()); all its terms have
+    /// to have the same number of pieces.
+    const SeparableBranches &lumped;
+
+    const NeighbourGraph   &neighbours;
+    const MajoriseMinimise &method;
+
+    /// Returns false to end.
+    std::function<bool()> may_go_on = []() { return true; };
+
+    /// For states that are far from the point that they are made from.
+    const ActiveSetGuess *guess = nullptr;
+  };
+
+
+
   struct BranchSearchParameters
   {
     /// Start from rest and from all unknowns on each further branch as well.
@@ -73,33 +97,23 @@ namespace Debond
 
 
   /**
-   * Improves a minimum of 1/2 s'S s - g's + Phi(s), s <= 0, by moves on
-   * patches. For each kink of the branches of @p lumped, these are the
-   * connected parts of the nodes below it (with the paper's law: the broken
-   * ones) and of those above: starts from rest and from all nodes on each
-   * further branch; the edge of a patch (an end of an interval in 2D, all
-   * around in 3D) moved in or out by some nodes; a patch taken to the other
-   * side of the kink as a whole, which merges its neighbours, or in its middle,
-   * which splits it. Each new state goes through majorise-minimise and is taken
-   * if the functional falls; then the moves begin anew.
+   * Improves a minimum by moves on patches. For each kink of the branches of
+   * `lumped`, these are the connected parts of the nodes below it (with the
+   * paper's law: the broken ones) and of those above: starts from rest and from
+   * all nodes on each further branch; the edge of a patch (an end of an
+   * interval in 2D, all around in 3D) moved in or out by some nodes; a patch
+   * taken to the other side of the kink as a whole, which merges its
+   * neighbours, or in its middle, which splits it. Each new state goes through
+   * majorise-minimise and is taken if the functional falls; then the moves
+   * begin anew.
    *
-   * @p lumped says on which branch a node is (lumped_branches()); all its terms
-   * have to have the same number of pieces. @p s has to be <= 0. The monitor
-   * returns false to end. What comes to the majorant of a minimum that is known
-   * is not followed further: it ends there. @p guess is for states that are far
-   * from the point that they are made from.
+   * @p s has to be <= 0. What comes to the majorant of a minimum that is known
+   * is not followed further: it ends there.
    */
   BranchSearchResult
-  search_branches(const MatrixView             &S,
-                  const VectorView             &g,
-                  const PiecewiseQuadratic     &phi,
-                  const SeparableBranches      &lumped,
-                  const NeighbourGraph         &neighbours,
-                  const MajoriseMinimise       &method,
+  search_branches(const SearchProblem          &problem,
                   const BranchSearchParameters &parameters,
-                  Eigen::VectorXd              &s,
-                  const std::function<bool()>  &monitor = {},
-                  const ActiveSetGuess         &guess   = {});
+                  Eigen::VectorXd              &s);
 } // namespace Debond
 
 #endif

@@ -46,15 +46,9 @@ namespace Debond
 
 
 
-  /// Adds the counts.
-  void
-  add(const BranchSearchResult &more, BranchSearchResult &search);
-
-
-
   /**
-   * Improves a minimum of 1/2 s'S s - g's + Phi(s), s <= 0, with as much effort
-   * as it takes to prove it, up to a limit: nothing if its certificate does
+   * Improves a minimum with as much effort as it takes to prove it, up to a
+   * limit: nothing if its certificate does
    * (NodeBound::certificate) or, with proof_first, the first node of branch
    * and bound, or up to 100 unknowns a few relaxations of that node
    * (BranchAndBoundParameters::only_while_halving), else a search that starts
@@ -63,28 +57,18 @@ namespace Debond
    * bound; then the full search, and branch and bound with a number of nodes
    * that depends on n only, 500 up to n = 92 and as n^-3 from there on; both
    * again, at most thrice, if that finds something. @p may_end is asked after
-   * the first search, with whether that found anything, and may change s; if
-   * true the search ends.
+   * the first search, with whether that found anything; if true the search
+   * ends.
    *
    * If Phi is not separable, the proof is for the lumped one and says where
    * to look: the minimum that it finds is a start for the true Phi.
-   *
-   * Other arguments as for search_branches().
    */
   GuidedSearchResult
-  guided_search(
-    const MatrixView                                   &S,
-    const VectorView                                   &g,
-    const PiecewiseQuadratic                           &phi,
-    const SeparableBranches                            &lumped,
-    const bool                                          is_separable,
-    const NeighbourGraph                               &neighbours,
-    const MajoriseMinimise                             &method,
-    const GuidedSearchParameters                       &parameters,
-    Eigen::VectorXd                                    &s,
-    const std::function<bool()>                        &monitor,
-    const std::function<bool(bool, Eigen::VectorXd &)> &may_end = {},
-    const ActiveSetGuess                               &guess   = {});
+  guided_search(const SearchProblem             &problem,
+                const bool                       is_separable,
+                const GuidedSearchParameters    &parameters,
+                Eigen::VectorXd                 &s,
+                const std::function<bool(bool)> &may_end = {});
 } // namespace Debond
 
 #endif

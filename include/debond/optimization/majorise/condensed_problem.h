@@ -40,10 +40,10 @@ namespace Debond
                      const Eigen::MatrixXd    &free_motions = {},
                      const double              stiffness    = 0.);
 
-    /// From now on a majorant's active set starts from this guess, of which a
-    /// reference is kept, in place of the one before.
+    /// From now on a majorant's active set starts from this guess, if it is not
+    /// null, in place of the one before.
     void
-    guess_by(const ActiveSetGuess &guess);
+    guess_by(const ActiveSetGuess *guess);
 
     State
     evaluate() override;
