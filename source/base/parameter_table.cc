@@ -27,14 +27,6 @@ namespace Debond
 
 
 
-  bool
-  Pattern::match(const std::string &value) const
-  {
-    return printable(value) == value && (!property || property(value));
-  }
-
-
-
   std::string
   Pattern::description(const OutputStyle /*style*/) const
   {
@@ -484,24 +476,6 @@ namespace Debond
       set(trim(assignment.substr(0, equals)),
           trim(assignment.substr(equals + 1)),
           "--set");
-  }
-
-
-
-  void
-  ParameterTable::derive(const std::string &path,
-                         const std::string &value,
-                         const std::string &source)
-  {
-    set(path, value, locations().at(source));
-  }
-
-
-
-  bool
-  ParameterTable::is_set(const std::string &path) const
-  {
-    return entries.count(path) > 0 && !entries.at(path).set_at.empty();
   }
 
 

@@ -717,14 +717,6 @@ namespace Debond
 
 
 
-  double
-  ErrorEstimate::relative() const
-  {
-    return scale > 0. ? functional / scale : 0.;
-  }
-
-
-
   template <int dim>
   ErrorEstimate
   estimate_error(const ElasticProblem<dim>   &problem,

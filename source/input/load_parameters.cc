@@ -101,14 +101,6 @@ namespace Debond
 
 
 
-  unsigned int
-  SurfaceLoad::n_components(const unsigned int dimension) const
-  {
-    return kind == "Pressure" ? 1 : dimension;
-  }
-
-
-
   std::vector<SurfaceLoad>
   LoadParameters::on_boundaries() const
   {

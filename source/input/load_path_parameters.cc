@@ -223,14 +223,6 @@ namespace Debond
 
 
 
-  double
-  LoadPathParameters::varying(const LoadFactors &at_step) const
-  {
-    return moves_only() ? at_step.displacements : at_step.loads;
-  }
-
-
-
   std::string
   LoadPathParameters::name(const LoadFactors &at_step) const
   {

@@ -16,22 +16,6 @@ namespace Debond
 
 
 
-  void
-  UpdatableCholesky::clear()
-  {
-    n = 0;
-  }
-
-
-
-  unsigned int
-  UpdatableCholesky::size() const
-  {
-    return n;
-  }
-
-
-
   double
   UpdatableCholesky::append(const Eigen::Ref<const Eigen::VectorXd> &column,
                             const double                             diagonal,
@@ -69,14 +53,6 @@ namespace Debond
 
     Eigen::VectorXd w = deleted;
     update_trailing(k, w);
-  }
-
-
-
-  void
-  UpdatableCholesky::update(Eigen::VectorXd w)
-  {
-    update_trailing(0, w);
   }
 
 

@@ -519,14 +519,6 @@ namespace Debond
 
 
   DofVector
-  Condensation::expand(const VectorView &s) const
-  {
-    return backward(y, s);
-  }
-
-
-
-  DofVector
   Condensation::solve(
     const DofVector &other_f,
     const std::function<Eigen::VectorXd(const Eigen::VectorXd &)>

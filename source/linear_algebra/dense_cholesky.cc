@@ -36,14 +36,6 @@ namespace Debond
 
 
 
-  bool
-  DenseCholesky::is_positive_definite() const
-  {
-    return exists;
-  }
-
-
-
   void
   DenseCholesky::solve_in_place(Eigen::VectorXd &b) const
   {

@@ -248,26 +248,10 @@ namespace Debond
 
 
 
-  double
-  StationaryPath::t() const
-  {
-    return parameter;
-  }
-
-
-
   const Eigen::VectorXd &
   StationaryPath::point() const
   {
     return s;
-  }
-
-
-
-  bool
-  StationaryPath::was_at_kink() const
-  {
-    return had_kink;
   }
 
 

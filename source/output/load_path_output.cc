@@ -20,20 +20,6 @@ namespace Debond
 
 
   template <int dim>
-  LoadPathOutput<dim>::LoadPathOutput(
-    const OutputParameters               &output,
-    const ElasticProblem<dim>            &problem,
-    const std::vector<LoadPathStep<dim>> &steps,
-    const std::vector<LoadPathStep<dim>> &arc)
-    : output(output)
-    , problem(problem)
-    , steps(steps)
-    , arc(arc)
-  {}
-
-
-
-  template <int dim>
   void
   LoadPathOutput<dim>::remove_steps() const
   {

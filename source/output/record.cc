@@ -12,26 +12,10 @@ namespace Debond
 
 
 
-  bool
-  Record::has_details() const
-  {
-    return details;
-  }
-
-
-
   void
   Record::add(const std::string &pointer, const Json &value)
   {
     json[Json::json_pointer(pointer)] = value;
-  }
-
-
-
-  void
-  Record::heading(const std::string &text)
-  {
-    log << text << '\n';
   }
 
 

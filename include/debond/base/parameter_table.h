@@ -29,7 +29,10 @@ namespace Debond
     explicit Pattern(const std::string &words, const Property &property = {});
 
     bool
-    match(const std::string &value) const override;
+    match(const std::string &value) const override
+    {
+      return printable(value) == value && (!property || property(value));
+    }
 
     std::string
     description(const OutputStyle style = Machine) const override;
@@ -150,10 +153,16 @@ namespace Debond
     void
     derive(const std::string &path,
            const std::string &value,
-           const std::string &source);
+           const std::string &source)
+    {
+      set(path, value, locations().at(source));
+    }
 
     bool
-    is_set(const std::string &path) const;
+    is_set(const std::string &path) const
+    {
+      return entries.count(path) > 0 && !entries.at(path).set_at.empty();
+    }
 
     /// The value as it was written.
     const std::string &

@@ -32,7 +32,10 @@ namespace Debond
 
     /// Zero if there is nothing to compare with.
     double
-    relative() const;
+    relative() const
+    {
+      return scale > 0. ? functional / scale : 0.;
+    }
   };
 
 

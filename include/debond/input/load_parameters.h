@@ -26,7 +26,10 @@ namespace Debond
 
     /// Of the expression: a pressure has one.
     unsigned int
-    n_components(const unsigned int dimension) const;
+    n_components(const unsigned int dimension) const
+    {
+      return kind == "Pressure" ? 1 : dimension;
+    }
   };
 
 

@@ -54,7 +54,10 @@ namespace Debond
 
     /// That of the loads, unless they stay as they are.
     double
-    varying(const LoadFactors &factors) const;
+    varying(const LoadFactors &at_step) const
+    {
+      return moves_only() ? at_step.displacements : at_step.loads;
+    }
 
     /// "factor 0.5", "displacement factor 0.5", or both.
     std::string

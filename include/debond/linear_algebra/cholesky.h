@@ -19,10 +19,16 @@ namespace Debond
     reserve(const unsigned int capacity);
 
     void
-    clear();
+    clear()
+    {
+      n = 0;
+    }
 
     unsigned int
-    size() const;
+    size() const
+    {
+      return n;
+    }
 
     /// Appends a row and column to K: @p column holds the new entries of K
     /// next to the existing rows, @p diagonal the new diagonal entry. Returns
@@ -40,7 +46,10 @@ namespace Debond
 
     /// K <- K + w w'.
     void
-    update(Eigen::VectorXd w);
+    update(Eigen::VectorXd w)
+    {
+      update_trailing(0, w);
+    }
 
     /// K <- K - w w'. Returns 1 - w' K^{-1} w; if it is not above
     /// @p tolerance the factor is left as it was.

@@ -119,7 +119,10 @@ namespace Debond
 
     /// u at equilibrium for given s, with the size of f.
     DofVector
-    expand(const VectorView &s) const;
+    expand(const VectorView &s) const
+    {
+      return backward(y, s);
+    }
 
     /// u at equilibrium under another load, for the s that @p kept_unknowns
     /// returns for the g of this load.

@@ -16,7 +16,10 @@ namespace Debond
 
     /// If not there is no factor.
     bool
-    is_positive_definite() const;
+    is_positive_definite() const
+    {
+      return exists;
+    }
 
     /// b <- A^{-1} b.
     void

@@ -66,14 +66,20 @@ namespace Debond
     advance(const double lower, const double upper);
 
     double
-    t() const;
+    t() const
+    {
+      return parameter;
+    }
 
     const Eigen::VectorXd &
     point() const;
 
     /// Whether some s_i was at a kink between the last two points.
     bool
-    was_at_kink() const;
+    was_at_kink() const
+    {
+      return had_kink;
+    }
 
     /// The point with each s_i that is at a kink inside the piece that it
     /// has not left.

@@ -26,7 +26,12 @@ namespace Debond
     LoadPathOutput(const OutputParameters               &output,
                    const ElasticProblem<dim>            &problem,
                    const std::vector<LoadPathStep<dim>> &steps,
-                   const std::vector<LoadPathStep<dim>> &arc);
+                   const std::vector<LoadPathStep<dim>> &arc)
+      : output(output)
+      , problem(problem)
+      , steps(steps)
+      , arc(arc)
+    {}
 
     /// Those that an earlier run left in load_path/.
     void

@@ -23,7 +23,10 @@ namespace Debond
     explicit Record(const bool details);
 
     bool
-    has_details() const;
+    has_details() const
+    {
+      return details;
+    }
 
     /// An entry of summary.json by its JSON pointer, such as
     /// "/iterations/total"; studies find it by the same one.
@@ -32,7 +35,10 @@ namespace Debond
 
     /// A line of the log that has no label.
     void
-    heading(const std::string &text);
+    heading(const std::string &text)
+    {
+      log << text << '\n';
+    }
 
     void
     line(const std::string &label, const std::string &text);

@@ -79,14 +79,6 @@ namespace Debond
 
 
 
-  unsigned int
-  BundleQP::n_cuts() const
-  {
-    return m;
-  }
-
-
-
   void
   BundleQP::add_cut(const Eigen::Ref<const Eigen::VectorXd> &products,
                     const Eigen::Ref<const Eigen::VectorXd> &bounded_part)
@@ -570,15 +562,6 @@ namespace Debond
     for (unsigned int k = 0; k < cuts.size(); ++k)
       solution.slopes -= lambda(k) / u * gram.col(cuts[k]).head(m);
     solution.v = (solution.slopes - beta).maxCoeff();
-  }
-
-
-
-  /// At the point of evaluate(), where mu'(d - b) = 0.
-  double
-  BundleQP::dual_objective() const
-  {
-    return solution.lambda.dot(0.5 * solution.slopes - beta) - 0.5 * mu.dot(b);
   }
 
 

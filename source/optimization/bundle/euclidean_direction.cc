@@ -28,22 +28,6 @@ namespace Debond
 
 
 
-  unsigned int
-  EuclideanDirection::size() const
-  {
-    return qp.n_cuts();
-  }
-
-
-
-  void
-  EuclideanDirection::clear()
-  {
-    qp.clear();
-  }
-
-
-
   void
   EuclideanDirection::add(const DofVector &eta)
   {
@@ -109,14 +93,6 @@ namespace Debond
             subgradients[active.back()]);
     for (unsigned int i = 0; i < bounds.indices.size(); ++i)
       d(bounds.indices[i]) = d_bounded(i);
-  }
-
-
-
-  double
-  EuclideanDirection::length(const DofVector &d) const
-  {
-    return d.l2_norm();
   }
 
 

@@ -32,30 +32,6 @@ namespace Debond
 
 
 
-  unsigned int
-  MetricDirection::size() const
-  {
-    return m;
-  }
-
-
-
-  void
-  MetricDirection::clear()
-  {
-    m = 0;
-  }
-
-
-
-  void
-  MetricDirection::add(const DofVector &new_eta)
-  {
-    eta.col(m++) = eigen_view(new_eta);
-  }
-
-
-
   const MetricDirection::Solution &
   MetricDirection::solve(const DofVector &x, const Eigen::VectorXd &beta)
   {

@@ -55,10 +55,83 @@ namespace Debond
                 const MatrixView               &S,
                 const VectorView               &g,
                 const SeparableBranches        &phi,
-                const VectorView               &start);
+                const VectorView               &start)
+        : parameters(parameters)
+        , S(S)
+        , g(g)
+        , phi(phi)
+        , n(static_cast<unsigned int>(g.size()))
+        , node_bound(S, g, phi)
+        , least_left_out(std::numeric_limits<double>::infinity())
+      {
+        result.upper = std::numeric_limits<double>::infinity();
+        result.lower = -std::numeric_limits<double>::infinity();
+        Job job;
+        minimise_from(start, job);
+        take_if_better(job);
+      }
 
       BranchAndBoundResult
-      run(const BranchAndBound::Monitor &monitor);
+      run(const BranchAndBound::Monitor &monitor)
+      {
+        const double certified = node_bound.certificate(result.s);
+        if (certified >= result.upper - parameters.tolerance)
+          {
+            result.status  = ProofStatus::proved;
+            least_left_out = certified;
+            result.nodes   = 1;
+          }
+        else if (parameters.maximum_nodes > 0)
+          {
+            auto root = node_bound.root(result.upper);
+            if (!root)
+              return result;
+            root->bound = std::max(root->bound, certified);
+            open.insert(*root);
+            result.status = ProofStatus::proved;
+          }
+        else
+          {
+            result.status  = ProofStatus::node_limit;
+            least_left_out = certified;
+          }
+        unsigned int next_record = 1;
+        while (!open.empty() && result.status == ProofStatus::proved)
+          {
+            result.status = check_limits();
+            if (result.status != ProofStatus::proved)
+              break;
+            std::vector<Job> batch = next_batch();
+            work_on(batch);
+            for (const Job &job : batch)
+              {
+                take_if_better(job);
+                // What a signal has cut short is to be done again.
+                if (InterruptGuard::requested())
+                  open.insert(job.node);
+                else
+                  branch(job);
+              }
+            result.nodes += static_cast<unsigned int>(batch.size());
+            if ((InterruptGuard::requested() ||
+                 (monitor && !monitor(progress()))) &&
+                !open.empty())
+              result.status = ProofStatus::interrupted;
+            if (result.nodes >= next_record)
+              {
+                result.history.push_back(progress());
+                next_record = result.nodes + 1 + result.nodes / 10;
+              }
+          }
+        const ProofProgress end = progress();
+        if (result.status == ProofStatus::proved &&
+            result.upper - end.lower > parameters.tolerance)
+          result.status = ProofStatus::rounding;
+        result.lower   = end.lower;
+        result.seconds = end.seconds;
+        result.history.push_back(end);
+        return result;
+      }
 
     private:
       const BranchAndBoundParameters &parameters;
@@ -76,260 +149,134 @@ namespace Debond
       unsigned int            n_created = 0;
 
       void
-      minimise_from(const Eigen::VectorXd &x, Job &job) const;
+      minimise_from(const Eigen::VectorXd &x, Job &job) const
+      {
+        job.state.resize(n);
+        for (unsigned int i = 0; i < n; ++i)
+          job.state[i] = phi.f[i].index(x(i));
+        if (tried.count(job.state) > 0)
+          return;
+        Eigen::VectorXd  s = x.cwiseMin(0.);
+        CondensedProblem problem(S, g, phi, s);
+        MajoriseMinimise({}).minimize(problem);
+        const double value = problem.evaluate().functional;
+        if (value < job.value)
+          {
+            job.s     = s;
+            job.value = value;
+          }
+      }
 
       void
-      take_if_better(const Job &job);
+      take_if_better(const Job &job)
+      {
+        tried.insert(job.state);
+        if (job.value < result.upper)
+          {
+            result.upper = job.value;
+            result.s     = job.s;
+          }
+      }
 
       ProofStatus
-      check_limits() const;
+      check_limits() const
+      {
+        if (result.nodes >= parameters.maximum_nodes)
+          return ProofStatus::node_limit;
+        if (seconds() > parameters.maximum_seconds)
+          return ProofStatus::time_limit;
+        if (double(open.size()) * vectors_per_node * n * sizeof(double) >
+            parameters.maximum_bytes)
+          return ProofStatus::memory_limit;
+        return ProofStatus::proved;
+      }
 
+      /// Takes the open nodes with the lowest bounds.
       std::vector<Job>
-      next_batch();
+      next_batch()
+      {
+        std::vector<Job> batch;
+        while (!open.empty() && batch.size() < batch_size &&
+               result.nodes + batch.size() < parameters.maximum_nodes)
+          {
+            batch.emplace_back();
+            batch.back().node = open.extract(open.begin()).value();
+            if (batch.back().node.bound >= result.upper - parameters.tolerance)
+              {
+                least_left_out =
+                  std::min(least_left_out, batch.back().node.bound);
+                batch.pop_back();
+              }
+          }
+        return batch;
+      }
 
       void
-      work_on(std::vector<Job> &batch) const;
+      work_on(std::vector<Job> &batch) const
+      {
+        std::atomic<unsigned int> next(0);
+        const auto                work = [&]() {
+          for (unsigned int k = next++; k < batch.size(); k = next++)
+            {
+              Job &job   = batch[k];
+              job.result = node_bound.bound(job.node,
+                                            result.upper,
+                                            parameters.tolerance,
+                                            parameters.only_while_halving);
+              if (job.node.bound < result.upper - parameters.tolerance)
+                minimise_from(job.node.x, job);
+            }
+        };
+        std::vector<std::future<void>> others;
+        for (unsigned int t = 1;
+             t < std::min<std::size_t>(parameters.n_threads, batch.size());
+             ++t)
+          others.push_back(std::async(std::launch::async, work));
+        work();
+        for (std::future<void> &other : others)
+          other.get();
+      }
 
       void
-      branch(const Job &job);
+      branch(const Job &job)
+      {
+        if (!job.result.unknown)
+          {
+            least_left_out = std::min(least_left_out, job.result.least);
+            return;
+          }
+        const unsigned int i     = *job.result.unknown;
+        const double       kink  = phi.f[i][job.result.piece].upper;
+        ProofNode          upper = job.node, lower = job.node;
+        upper.number   = ++n_created;
+        lower.number   = ++n_created;
+        upper.lower(i) = kink;
+        lower.upper(i) = kink;
+        upper.bound    = std::max(job.node.bound, job.result.half_bounds[0]);
+        lower.bound    = std::max(job.node.bound, job.result.half_bounds[1]);
+        open.insert(upper);
+        open.insert(lower);
+      }
 
       double
-      seconds() const;
+      seconds() const
+      {
+        return std::chrono::duration<double>(Clock::now() - begin).count();
+      }
 
       ProofProgress
-      progress() const;
+      progress() const
+      {
+        double lower = std::min(result.upper, least_left_out);
+        if (!open.empty())
+          lower = std::min(lower, open.begin()->bound);
+        return {result.nodes,
+                static_cast<unsigned int>(open.size()),
+                lower,
+                result.upper,
+                seconds()};
+      }
     };
-
-
-
-    ProofTree::ProofTree(const BranchAndBoundParameters &parameters,
-                         const MatrixView               &S,
-                         const VectorView               &g,
-                         const SeparableBranches        &phi,
-                         const VectorView               &start)
-      : parameters(parameters)
-      , S(S)
-      , g(g)
-      , phi(phi)
-      , n(static_cast<unsigned int>(g.size()))
-      , node_bound(S, g, phi)
-      , least_left_out(std::numeric_limits<double>::infinity())
-    {
-      result.upper = std::numeric_limits<double>::infinity();
-      result.lower = -std::numeric_limits<double>::infinity();
-      Job job;
-      minimise_from(start, job);
-      take_if_better(job);
-    }
-
-
-
-    void
-    ProofTree::minimise_from(const Eigen::VectorXd &x, Job &job) const
-    {
-      job.state.resize(n);
-      for (unsigned int i = 0; i < n; ++i)
-        job.state[i] = phi.f[i].index(x(i));
-      if (tried.count(job.state) > 0)
-        return;
-      Eigen::VectorXd  s = x.cwiseMin(0.);
-      CondensedProblem problem(S, g, phi, s);
-      MajoriseMinimise({}).minimize(problem);
-      const double value = problem.evaluate().functional;
-      if (value < job.value)
-        {
-          job.s     = s;
-          job.value = value;
-        }
-    }
-
-
-
-    void
-    ProofTree::take_if_better(const Job &job)
-    {
-      tried.insert(job.state);
-      if (job.value < result.upper)
-        {
-          result.upper = job.value;
-          result.s     = job.s;
-        }
-    }
-
-
-
-    ProofStatus
-    ProofTree::check_limits() const
-    {
-      if (result.nodes >= parameters.maximum_nodes)
-        return ProofStatus::node_limit;
-      if (seconds() > parameters.maximum_seconds)
-        return ProofStatus::time_limit;
-      if (double(open.size()) * vectors_per_node * n * sizeof(double) >
-          parameters.maximum_bytes)
-        return ProofStatus::memory_limit;
-      return ProofStatus::proved;
-    }
-
-
-
-    /// Takes the open nodes with the lowest bounds.
-    std::vector<Job>
-    ProofTree::next_batch()
-    {
-      std::vector<Job> batch;
-      while (!open.empty() && batch.size() < batch_size &&
-             result.nodes + batch.size() < parameters.maximum_nodes)
-        {
-          batch.emplace_back();
-          batch.back().node = open.extract(open.begin()).value();
-          if (batch.back().node.bound >= result.upper - parameters.tolerance)
-            {
-              least_left_out =
-                std::min(least_left_out, batch.back().node.bound);
-              batch.pop_back();
-            }
-        }
-      return batch;
-    }
-
-
-
-    void
-    ProofTree::work_on(std::vector<Job> &batch) const
-    {
-      std::atomic<unsigned int> next(0);
-      const auto                work = [&]() {
-        for (unsigned int k = next++; k < batch.size(); k = next++)
-          {
-            Job &job   = batch[k];
-            job.result = node_bound.bound(job.node,
-                                          result.upper,
-                                          parameters.tolerance,
-                                          parameters.only_while_halving);
-            if (job.node.bound < result.upper - parameters.tolerance)
-              minimise_from(job.node.x, job);
-          }
-      };
-      std::vector<std::future<void>> others;
-      for (unsigned int t = 1;
-           t < std::min<std::size_t>(parameters.n_threads, batch.size());
-           ++t)
-        others.push_back(std::async(std::launch::async, work));
-      work();
-      for (std::future<void> &other : others)
-        other.get();
-    }
-
-
-
-    void
-    ProofTree::branch(const Job &job)
-    {
-      if (!job.result.unknown)
-        {
-          least_left_out = std::min(least_left_out, job.result.least);
-          return;
-        }
-      const unsigned int i     = *job.result.unknown;
-      const double       kink  = phi.f[i][job.result.piece].upper;
-      ProofNode          upper = job.node, lower = job.node;
-      upper.number   = ++n_created;
-      lower.number   = ++n_created;
-      upper.lower(i) = kink;
-      lower.upper(i) = kink;
-      upper.bound    = std::max(job.node.bound, job.result.half_bounds[0]);
-      lower.bound    = std::max(job.node.bound, job.result.half_bounds[1]);
-      open.insert(upper);
-      open.insert(lower);
-    }
-
-
-
-    double
-    ProofTree::seconds() const
-    {
-      return std::chrono::duration<double>(Clock::now() - begin).count();
-    }
-
-
-
-    ProofProgress
-    ProofTree::progress() const
-    {
-      double lower = std::min(result.upper, least_left_out);
-      if (!open.empty())
-        lower = std::min(lower, open.begin()->bound);
-      return {result.nodes,
-              static_cast<unsigned int>(open.size()),
-              lower,
-              result.upper,
-              seconds()};
-    }
-
-
-
-    BranchAndBoundResult
-    ProofTree::run(const BranchAndBound::Monitor &monitor)
-    {
-      const double certified = node_bound.certificate(result.s);
-      if (certified >= result.upper - parameters.tolerance)
-        {
-          result.status  = ProofStatus::proved;
-          least_left_out = certified;
-          result.nodes   = 1;
-        }
-      else if (parameters.maximum_nodes > 0)
-        {
-          auto root = node_bound.root(result.upper);
-          if (!root)
-            return result;
-          root->bound = std::max(root->bound, certified);
-          open.insert(*root);
-          result.status = ProofStatus::proved;
-        }
-      else
-        {
-          result.status  = ProofStatus::node_limit;
-          least_left_out = certified;
-        }
-      unsigned int next_record = 1;
-      while (!open.empty() && result.status == ProofStatus::proved)
-        {
-          result.status = check_limits();
-          if (result.status != ProofStatus::proved)
-            break;
-          std::vector<Job> batch = next_batch();
-          work_on(batch);
-          for (const Job &job : batch)
-            {
-              take_if_better(job);
-              // What a signal has cut short is to be done again.
-              if (InterruptGuard::requested())
-                open.insert(job.node);
-              else
-                branch(job);
-            }
-          result.nodes += static_cast<unsigned int>(batch.size());
-          if ((InterruptGuard::requested() ||
-               (monitor && !monitor(progress()))) &&
-              !open.empty())
-            result.status = ProofStatus::interrupted;
-          if (result.nodes >= next_record)
-            {
-              result.history.push_back(progress());
-              next_record = result.nodes + 1 + result.nodes / 10;
-            }
-        }
-      const ProofProgress end = progress();
-      if (result.status == ProofStatus::proved &&
-          result.upper - end.lower > parameters.tolerance)
-        result.status = ProofStatus::rounding;
-      result.lower   = end.lower;
-      result.seconds = end.seconds;
-      result.history.push_back(end);
-      return result;
-    }
   } // namespace
 
 
@@ -356,13 +303,6 @@ namespace Debond
       }
     return "unknown";
   }
-
-
-
-  BranchAndBound::BranchAndBound(
-    const BranchAndBoundParameters &proof_parameters)
-    : parameters(proof_parameters)
-  {}
 
 
 

@@ -78,10 +78,54 @@ namespace Debond
       run(const double       best_value,
           const double       tolerance,
           const unsigned int maximum_rounds,
-          const bool         only_while_halving);
+          const bool         only_while_halving)
+      {
+        NodeResult result;
+        for (unsigned int round = 0;; ++round)
+          {
+            const std::size_t n_undecided = undecided().size();
+            const bool        all_decided = n_undecided == 0;
+            if (InterruptGuard::requested() || !set_up(round == 0))
+              break;
+            minimise_relaxation(problem, envelopes, node.x);
+            const LowerBound lower_bound(problem, node.x);
+            node.bound = std::max(node.bound, lower_bound.value);
+            // With all decided, rounding is all that is left.
+            if (node.bound >= best_value - tolerance || all_decided)
+              break;
+
+            if (!shrink(lower_bound, best_value))
+              {
+                result.least = best_value;
+                return result;
+              }
+            if (round > 0 || node.shift.isZero(0.))
+              {
+                for (unsigned int i = 0; i < n; ++i)
+                  node.shift(i) = problem.f[i].convexity;
+                if (round > 0)
+                  raise(best_value - lower_bound.value);
+              }
+            // The second relaxation is the first with shifts that raise it.
+            const bool is_slow = only_while_halving && round > 0 &&
+                                 2 * undecided().size() > n_undecided;
+            if (round + 1 >= maximum_rounds || is_slow)
+              choose(lower_bound, result);
+            if (result.unknown)
+              return result;
+          }
+        result.least = node.bound;
+        return result;
+      }
 
       std::optional<NodeBall>
-      ball(const bool is_first);
+      ball(const bool is_first)
+      {
+        if (!set_up(is_first))
+          return {};
+        minimise_relaxation(problem, envelopes, node.x);
+        return NodeBall{LowerBound(problem, node.x).value, node.x, inverse};
+      }
 
     private:
       const Eigen::MatrixXd   &S;
@@ -96,253 +140,166 @@ namespace Debond
       Eigen::MatrixXd inverse;
 
       std::vector<unsigned int>
-      undecided() const;
+      undecided() const
+      {
+        std::vector<unsigned int> result;
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const Pieces pieces = pieces_in_box(node, i, phi.f[i]);
+            if (pieces.first < pieces.last)
+              result.push_back(i);
+          }
+        return result;
+      }
 
+      /// Returns false if the problem is not safely convex without a shift.
       bool
-      set_up(const bool is_first);
+      set_up(const bool is_first)
+      {
+        problem.A     = S;
+        problem.lower = node.lower;
+        problem.upper = node.upper;
+        problem.f.resize(n);
+        Eigen::VectorXd shift   = Eigen::VectorXd::Zero(n);
+        Eigen::VectorXd weights = Eigen::VectorXd::Zero(n);
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const Pieces  pieces = pieces_in_box(node, i, phi.f[i]);
+            BranchEnergy &f      = problem.f[i];
+            f                    = {0., {}};
+            double least = phi.f[i][pieces.first].curvature, largest = least;
+            for (unsigned int k = pieces.first; k <= pieces.last; ++k)
+              {
+                f.pieces.push_back(phi.f[i][k]);
+                least   = std::min(least, f.pieces.back().curvature);
+                largest = std::max(largest, f.pieces.back().curvature);
+              }
+            if (pieces.first < pieces.last)
+              {
+                shift(i)   = node.shift(i);
+                weights(i) = largest - least;
+              }
+            else if (double &curvature = f.pieces[0].curvature; curvature > 0.)
+              {
+                // Rounded down, A gives a bound all the same.
+                problem.A(i, i) = (problem.A(i, i) + curvature) *
+                                  (1. - std::numeric_limits<double>::epsilon());
+                curvature = 0.;
+              }
+          }
 
+        if (is_first && weights.maxCoeff() > 0.)
+          {
+            const auto inverse_of_A = safe_inverse(problem.A);
+            if (!inverse_of_A)
+              return false;
+            shift =
+              first_share * largest_multiple(*inverse_of_A, weights) * weights;
+          }
+        while (true)
+          {
+            Eigen::MatrixXd rest = problem.A;
+            rest.diagonal() -= shift;
+            if (auto inverse_of_rest = safe_inverse(rest))
+              {
+                problem.A.swap(rest);
+                inverse = *inverse_of_rest;
+                break;
+              }
+            if (shift.isZero(0.))
+              return false;
+            shift *= retreat;
+            if (shift.maxCoeff() <
+                std::numeric_limits<double>::epsilon() * S.trace())
+              shift.setZero();
+          }
+        envelopes.clear();
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            // What was taken, without the rounding of the difference.
+            if (shift(i) > 0.)
+              problem.f[i].convexity = S(i, i) - problem.A(i, i);
+            envelopes.emplace_back(problem.f[i], node.lower(i), node.upper(i));
+          }
+        return true;
+      }
+
+      /// Shrinks the box to where points can have the best value; false if
+      /// there is no such point.
       bool
-      shrink(const LowerBound &lower_bound, const double best_value);
+      shrink(const LowerBound &lower_bound, const double best_value)
+      {
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            Interval left = {1., -1.};
+            for (unsigned int k = 0; k < problem.f[i].pieces.size(); ++k)
+              left = hull(left,
+                          lower_bound.growth(i, k, inverse(i, i))
+                            .where_at_most(best_value,
+                                           box(i, problem.f[i].pieces[k])));
+            if (left.is_empty())
+              return false;
+            node.lower(i) = left.lower;
+            node.upper(i) = left.upper;
+          }
+        return true;
+      }
+
+      /// The convexity that the next relaxation moves.
+      void
+      raise(const double left)
+      {
+        Eigen::VectorXd v(n);
+        for (unsigned int i = 0; i < n; ++i)
+          v(i) = 0.5 * envelopes[i].spread(node.x(i));
+        raise_bound(inverse, v, barrier * left / n, undecided(), node.shift);
+      }
 
       void
-      raise(const double left);
+      choose(const LowerBound &lower_bound, NodeResult &result) const
+      {
+        double highest = -std::numeric_limits<double>::infinity();
+        for (const unsigned int i : undecided())
+          {
+            // At the kink that is nearest to the minimum of the relaxation the
+            // gap of the envelope is largest.
+            const auto  &pieces = problem.f[i].pieces;
+            unsigned int split  = 0;
+            for (unsigned int k = 1; k < pieces.size(); ++k)
+              if (node.lower(i) < pieces[k].upper &&
+                  pieces[k].upper < node.upper(i) &&
+                  (split == 0 || std::abs(node.x(i) - pieces[k].upper) <
+                                   std::abs(node.x(i) - pieces[split].upper)))
+                split = k;
 
-      void
-      choose(const LowerBound &lower_bound, NodeResult &result) const;
+            std::array<double, 2> halves;
+            halves.fill(std::numeric_limits<double>::infinity());
+            for (unsigned int k = 0; k < pieces.size(); ++k)
+              halves[k >= split] =
+                std::min(halves[k >= split],
+                         lower_bound.growth(i, k, inverse(i, i))
+                           .least(box(i, pieces[k])));
+            const double score =
+              std::min(halves[0], halves[1]) +
+              envelope_weight *
+                (problem.f[i].value(node.x(i)) - envelopes[i].value(node.x(i)));
+            if (score > highest)
+              {
+                highest            = score;
+                result.unknown     = i;
+                result.piece       = phi.f[i].index(pieces[split].upper) + 1;
+                result.half_bounds = halves;
+              }
+          }
+      }
 
       Interval
-      box(const unsigned int i, const BranchMinimum::Piece &piece) const;
+      box(const unsigned int i, const BranchMinimum::Piece &piece) const
+      {
+        return {std::max(node.lower(i), piece.lower),
+                std::min(node.upper(i), piece.upper)};
+      }
     };
-
-
-
-    std::vector<unsigned int>
-    Relaxations::undecided() const
-    {
-      std::vector<unsigned int> result;
-      for (unsigned int i = 0; i < n; ++i)
-        {
-          const Pieces pieces = pieces_in_box(node, i, phi.f[i]);
-          if (pieces.first < pieces.last)
-            result.push_back(i);
-        }
-      return result;
-    }
-
-
-
-    /// Returns false if the problem is not safely convex without a shift.
-    bool
-    Relaxations::set_up(const bool is_first)
-    {
-      problem.A     = S;
-      problem.lower = node.lower;
-      problem.upper = node.upper;
-      problem.f.resize(n);
-      Eigen::VectorXd shift   = Eigen::VectorXd::Zero(n);
-      Eigen::VectorXd weights = Eigen::VectorXd::Zero(n);
-      for (unsigned int i = 0; i < n; ++i)
-        {
-          const Pieces  pieces = pieces_in_box(node, i, phi.f[i]);
-          BranchEnergy &f      = problem.f[i];
-          f                    = {0., {}};
-          double least = phi.f[i][pieces.first].curvature, largest = least;
-          for (unsigned int k = pieces.first; k <= pieces.last; ++k)
-            {
-              f.pieces.push_back(phi.f[i][k]);
-              least   = std::min(least, f.pieces.back().curvature);
-              largest = std::max(largest, f.pieces.back().curvature);
-            }
-          if (pieces.first < pieces.last)
-            {
-              shift(i)   = node.shift(i);
-              weights(i) = largest - least;
-            }
-          else if (double &curvature = f.pieces[0].curvature; curvature > 0.)
-            {
-              // Rounded down, A gives a bound all the same.
-              problem.A(i, i) = (problem.A(i, i) + curvature) *
-                                (1. - std::numeric_limits<double>::epsilon());
-              curvature = 0.;
-            }
-        }
-
-      if (is_first && weights.maxCoeff() > 0.)
-        {
-          const auto inverse_of_A = safe_inverse(problem.A);
-          if (!inverse_of_A)
-            return false;
-          shift =
-            first_share * largest_multiple(*inverse_of_A, weights) * weights;
-        }
-      while (true)
-        {
-          Eigen::MatrixXd rest = problem.A;
-          rest.diagonal() -= shift;
-          if (auto inverse_of_rest = safe_inverse(rest))
-            {
-              problem.A.swap(rest);
-              inverse = *inverse_of_rest;
-              break;
-            }
-          if (shift.isZero(0.))
-            return false;
-          shift *= retreat;
-          if (shift.maxCoeff() <
-              std::numeric_limits<double>::epsilon() * S.trace())
-            shift.setZero();
-        }
-      envelopes.clear();
-      for (unsigned int i = 0; i < n; ++i)
-        {
-          // What was taken, without the rounding of the difference.
-          if (shift(i) > 0.)
-            problem.f[i].convexity = S(i, i) - problem.A(i, i);
-          envelopes.emplace_back(problem.f[i], node.lower(i), node.upper(i));
-        }
-      return true;
-    }
-
-
-
-    Interval
-    Relaxations::box(const unsigned int          i,
-                     const BranchMinimum::Piece &piece) const
-    {
-      return {std::max(node.lower(i), piece.lower),
-              std::min(node.upper(i), piece.upper)};
-    }
-
-
-
-    /// Shrinks the box to where points can have the best value; false if
-    /// there is no such point.
-    bool
-    Relaxations::shrink(const LowerBound &lower_bound, const double best_value)
-    {
-      for (unsigned int i = 0; i < n; ++i)
-        {
-          Interval left = {1., -1.};
-          for (unsigned int k = 0; k < problem.f[i].pieces.size(); ++k)
-            left = hull(left,
-                        lower_bound.growth(i, k, inverse(i, i))
-                          .where_at_most(best_value,
-                                         box(i, problem.f[i].pieces[k])));
-          if (left.is_empty())
-            return false;
-          node.lower(i) = left.lower;
-          node.upper(i) = left.upper;
-        }
-      return true;
-    }
-
-
-
-    /// The convexity that the next relaxation moves.
-    void
-    Relaxations::raise(const double left)
-    {
-      Eigen::VectorXd v(n);
-      for (unsigned int i = 0; i < n; ++i)
-        v(i) = 0.5 * envelopes[i].spread(node.x(i));
-      raise_bound(inverse, v, barrier * left / n, undecided(), node.shift);
-    }
-
-
-
-    void
-    Relaxations::choose(const LowerBound &lower_bound, NodeResult &result) const
-    {
-      double highest = -std::numeric_limits<double>::infinity();
-      for (const unsigned int i : undecided())
-        {
-          // At the kink that is nearest to the minimum of the relaxation the
-          // gap of the envelope is largest.
-          const auto  &pieces = problem.f[i].pieces;
-          unsigned int split  = 0;
-          for (unsigned int k = 1; k < pieces.size(); ++k)
-            if (node.lower(i) < pieces[k].upper &&
-                pieces[k].upper < node.upper(i) &&
-                (split == 0 || std::abs(node.x(i) - pieces[k].upper) <
-                                 std::abs(node.x(i) - pieces[split].upper)))
-              split = k;
-
-          std::array<double, 2> halves;
-          halves.fill(std::numeric_limits<double>::infinity());
-          for (unsigned int k = 0; k < pieces.size(); ++k)
-            halves[k >= split] = std::min(
-              halves[k >= split],
-              lower_bound.growth(i, k, inverse(i, i)).least(box(i, pieces[k])));
-          const double score =
-            std::min(halves[0], halves[1]) +
-            envelope_weight *
-              (problem.f[i].value(node.x(i)) - envelopes[i].value(node.x(i)));
-          if (score > highest)
-            {
-              highest            = score;
-              result.unknown     = i;
-              result.piece       = phi.f[i].index(pieces[split].upper) + 1;
-              result.half_bounds = halves;
-            }
-        }
-    }
-
-
-
-    NodeResult
-    Relaxations::run(const double       best_value,
-                     const double       tolerance,
-                     const unsigned int maximum_rounds,
-                     const bool         only_while_halving)
-    {
-      NodeResult result;
-      for (unsigned int round = 0;; ++round)
-        {
-          const std::size_t n_undecided = undecided().size();
-          const bool        all_decided = n_undecided == 0;
-          if (InterruptGuard::requested() || !set_up(round == 0))
-            break;
-          minimise_relaxation(problem, envelopes, node.x);
-          const LowerBound lower_bound(problem, node.x);
-          node.bound = std::max(node.bound, lower_bound.value);
-          // With all decided, rounding is all that is left.
-          if (node.bound >= best_value - tolerance || all_decided)
-            break;
-
-          if (!shrink(lower_bound, best_value))
-            {
-              result.least = best_value;
-              return result;
-            }
-          if (round > 0 || node.shift.isZero(0.))
-            {
-              for (unsigned int i = 0; i < n; ++i)
-                node.shift(i) = problem.f[i].convexity;
-              if (round > 0)
-                raise(best_value - lower_bound.value);
-            }
-          // The second relaxation is the first with shifts that raise it.
-          const bool is_slow = only_while_halving && round > 0 &&
-                               2 * undecided().size() > n_undecided;
-          if (round + 1 >= maximum_rounds || is_slow)
-            choose(lower_bound, result);
-          if (result.unknown)
-            return result;
-        }
-      result.least = node.bound;
-      return result;
-    }
-
-
-
-    std::optional<NodeBall>
-    Relaxations::ball(const bool is_first)
-    {
-      if (!set_up(is_first))
-        return {};
-      minimise_relaxation(problem, envelopes, node.x);
-      return NodeBall{LowerBound(problem, node.x).value, node.x, inverse};
-    }
 
 
 
@@ -366,17 +323,6 @@ namespace Debond
                            std::numeric_limits<double>::infinity();
     }
   } // namespace
-
-
-
-  NodeBound::NodeBound(const MatrixView        &S,
-                       const VectorView        &g,
-                       const SeparableBranches &phi)
-    : phi(phi)
-    , n(static_cast<unsigned int>(g.size()))
-    , S(S)
-    , g(g)
-  {}
 
 
 

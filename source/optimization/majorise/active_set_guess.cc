@@ -22,24 +22,6 @@ namespace Debond
 
 
 
-  bool
-  ActiveSetGuess::empty() const
-  {
-    return levels.empty();
-  }
-
-
-
-  ActiveSet
-  ActiveSetGuess::active_set(const Eigen::MatrixXd             &M,
-                             const Eigen::SparseMatrix<double> &E,
-                             const Eigen::VectorXd             &r) const
-  {
-    return active_set(0, M, E, r);
-  }
-
-
-
   ActiveSet
   ActiveSetGuess::active_set(const unsigned int                 level,
                              const Eigen::MatrixXd             &M,

@@ -102,14 +102,6 @@ namespace Debond
 
 
 
-  void
-  CondensedProblem::guess_by(const ActiveSetGuess *other)
-  {
-    guess = other;
-  }
-
-
-
   MajorantProblem::State
   CondensedProblem::evaluate()
   {
@@ -219,14 +211,6 @@ namespace Debond
                                                                (E * N));
     return N * eigen.eigenvectors().leftCols(
                  (eigen.eigenvalues().array() <= most).count());
-  }
-
-
-
-  double
-  CondensedProblem::held(const Eigen::VectorXd &v) const
-  {
-    return v.dot(E * v);
   }
 
 

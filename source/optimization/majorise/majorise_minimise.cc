@@ -29,13 +29,6 @@ namespace Debond
 
 
 
-  MajoriseMinimise::MajoriseMinimise(
-    const MajoriseMinimiseParameters &mm_parameters)
-    : parameters(mm_parameters)
-  {}
-
-
-
   bool
   MajoriseMinimise::has_converged(const MajorantProblem::State &state) const
   {

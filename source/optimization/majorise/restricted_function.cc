@@ -12,14 +12,6 @@ namespace Debond
 
 
 
-  double
-  RestrictedFunction::value(const VectorView &s) const
-  {
-    return phi.value(P * s);
-  }
-
-
-
   Eigen::VectorXd
   RestrictedFunction::subgradient(const VectorView &s) const
   {

@@ -83,7 +83,10 @@ namespace Debond
     BundleQP(const unsigned int maximum_cuts, const unsigned int n_bounds);
 
     unsigned int
-    n_cuts() const;
+    n_cuts() const
+    {
+      return m;
+    }
 
     /// Adds a subgradient eta. @p products: its inner products with all
     /// earlier cuts and, last, with itself, over the unbounded components
@@ -146,7 +149,11 @@ namespace Debond
     void
     evaluate();
     double
-    dual_objective() const;
+    dual_objective() const
+    {
+      return solution.lambda.dot(0.5 * solution.slopes - beta) -
+             0.5 * mu.dot(b);
+    }
     std::pair<Entering, unsigned int>
     most_violated() const;
     void

@@ -28,10 +28,16 @@ namespace Debond
     is_feasible(const DofVector &x) const override;
 
     unsigned int
-    size() const override;
+    size() const override
+    {
+      return qp.n_cuts();
+    }
 
     void
-    clear() override;
+    clear() override
+    {
+      qp.clear();
+    }
 
     void
     add(const DofVector &eta) override;
@@ -43,7 +49,10 @@ namespace Debond
     direction(DofVector &d) const override;
 
     double
-    length(const DofVector &d) const override;
+    length(const DofVector &d) const override
+    {
+      return d.l2_norm();
+    }
 
     void
     project(DofVector &x) const override;

@@ -29,13 +29,22 @@ namespace Debond
     is_feasible(const DofVector &x) const override;
 
     unsigned int
-    size() const override;
+    size() const override
+    {
+      return m;
+    }
 
     void
-    clear() override;
+    clear() override
+    {
+      m = 0;
+    }
 
     void
-    add(const DofVector &eta) override;
+    add(const DofVector &new_eta) override
+    {
+      eta.col(m++) = eigen_view(new_eta);
+    }
 
     const Solution &
     solve(const DofVector &x, const Eigen::VectorXd &beta) override;

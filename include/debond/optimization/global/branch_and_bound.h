@@ -91,7 +91,9 @@ namespace Debond
     /// Returns false to end.
     using Monitor = std::function<bool(const ProofProgress &)>;
 
-    explicit BranchAndBound(const BranchAndBoundParameters &parameters);
+    explicit BranchAndBound(const BranchAndBoundParameters &proof_parameters)
+      : parameters(proof_parameters)
+    {}
 
     /// @p start is a good point, with s <= 0.
     BranchAndBoundResult

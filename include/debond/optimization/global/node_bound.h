@@ -75,7 +75,12 @@ namespace Debond
   public:
     NodeBound(const MatrixView        &S,
               const VectorView        &g,
-              const SeparableBranches &phi);
+              const SeparableBranches &phi)
+      : phi(phi)
+      , n(static_cast<unsigned int>(g.size()))
+      , S(S)
+      , g(g)
+    {}
 
     /// The box in which points are not above @p best_value; nothing if S is not
     /// safely positive definite.

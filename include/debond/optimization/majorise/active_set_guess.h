@@ -32,13 +32,19 @@ namespace Debond
 
     /// Whether there are no subspaces.
     bool
-    empty() const;
+    empty() const
+    {
+      return levels.empty();
+    }
 
     /// For @p M = S + E.
     ActiveSet
     active_set(const Eigen::MatrixXd             &M,
                const Eigen::SparseMatrix<double> &E,
-               const Eigen::VectorXd             &r) const;
+               const Eigen::VectorXd             &r) const
+    {
+      return active_set(0, M, E, r);
+    }
 
   private:
     struct Level

@@ -43,7 +43,10 @@ namespace Debond
     /// From now on a majorant's active set starts from this guess, if it is not
     /// null, in place of the one before.
     void
-    guess_by(const ActiveSetGuess *guess);
+    guess_by(const ActiveSetGuess *other)
+    {
+      guess = other;
+    }
 
     State
     evaluate() override;
@@ -75,7 +78,10 @@ namespace Debond
 
     /// v'E v.
     double
-    held(const Eigen::VectorXd &v) const;
+    held(const Eigen::VectorXd &v) const
+    {
+      return v.dot(E * v);
+    }
 
     /// Whether the majorant has no minimum: no pressures of the foundation
     /// balance what its forces do along the columns of Z.

@@ -65,7 +65,9 @@ namespace Debond
   public:
     using Monitor = std::function<bool(const MajoriseMinimiseIteration &)>;
 
-    explicit MajoriseMinimise(const MajoriseMinimiseParameters &parameters);
+    explicit MajoriseMinimise(const MajoriseMinimiseParameters &mm_parameters)
+      : parameters(mm_parameters)
+    {}
 
     /// Improves the problem's current point.
     MajoriseMinimiseResult

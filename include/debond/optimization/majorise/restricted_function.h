@@ -15,7 +15,10 @@ namespace Debond
                        const Eigen::SparseMatrix<double> &prolongation);
 
     double
-    value(const VectorView &s) const override;
+    value(const VectorView &s) const override
+    {
+      return phi.value(P * s);
+    }
 
     Eigen::VectorXd
     subgradient(const VectorView &s) const override;
