@@ -2,7 +2,6 @@
 #include <deal.II/base/utilities.h>
 
 #include <debond/base/atomic_file.h>
-#include <debond/base/number_text.h>
 #include <debond/base/parameter_table.h>
 #include <debond/base/text.h>
 

@@ -7,33 +7,8 @@
 
 namespace Debond
 {
-  std::string
-  program_version()
-  {
-    return DEBOND_VERSION;
-  }
-
-
-
-  std::string
-  git_revision()
-  {
-    return DEBOND_REVISION;
-  }
-
-
-
-  std::string
-  deal_ii_version()
-  {
-    return DEAL_II_PACKAGE_VERSION;
-  }
-
-
-
-  std::string
-  build_type()
-  {
-    return DEBOND_BUILD_TYPE;
-  }
+  const Version version = {DEBOND_VERSION,
+                           DEBOND_REVISION,
+                           DEAL_II_PACKAGE_VERSION,
+                           DEBOND_BUILD_TYPE};
 } // namespace Debond

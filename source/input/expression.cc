@@ -2,7 +2,7 @@
 #include <deal.II/base/function_parser.h>
 #include <deal.II/base/utilities.h>
 
-#include <debond/base/number_text.h>
+#include <debond/base/text.h>
 #include <debond/input/expression.h>
 
 #include <cctype>

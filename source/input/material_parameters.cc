@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/number_text.h>
 #include <debond/base/text.h>
 #include <debond/input/material_parameters.h>
 

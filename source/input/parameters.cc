@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
-#include <debond/base/number_text.h>
 #include <debond/base/run_watch.h>
 #include <debond/base/text.h>
 #include <debond/input/material_parameters.h>
 #include <debond/input/mesh_parameters.h>
 #include <debond/input/parameters.h>
-#include <debond/input/part_parameters.h>
 #include <debond/input/probe_parameters.h>
 #include <debond/input/solver_parameters.h>
 

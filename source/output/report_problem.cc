@@ -13,13 +13,13 @@ namespace Debond
     void
     report_program(Record &record)
     {
-      record.add("/revision", git_revision());
-      record.add("/deal_ii_version", deal_ii_version());
-      record.add("/build_type", build_type());
-      record.heading("Debond " + program_version() +
+      record.add("/revision", version.revision);
+      record.add("/deal_ii_version", version.deal_ii);
+      record.add("/build_type", version.build_type);
+      record.heading("Debond " + version.program +
                      (record.has_details() ?
-                        ", revision " + git_revision() + ", deal.II " +
-                          deal_ii_version() + ", " + build_type() :
+                        ", revision " + version.revision + ", deal.II " +
+                          version.deal_ii + ", " + version.build_type :
                         ""));
     }
 

@@ -4,14 +4,12 @@
 
 #include <debond/base/interrupt.h>
 #include <debond/base/run_watch.h>
+#include <debond/base/text.h>
 #include <debond/base/version.h>
 #include <debond/input/parameters.h>
 #include <debond/linear_algebra/blas_threads.h>
 #include <debond/program/command_line.h>
-#include <debond/program/ranks.h>
-#include <debond/program/report_errors.h>
 #include <debond/program/run.h>
-#include <debond/program/run_on_ranks.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve.h>
@@ -25,6 +23,7 @@
 #include <iomanip>
 #include <iostream>
 #include <map>
+#include <new>
 
 namespace Debond
 {
@@ -231,9 +230,9 @@ namespace Debond
         }
       if (values.count("version") > 0)
         {
-          std::cout << "Debond " << program_version() << "\nrevision "
-                    << git_revision() << "\ndeal.II " << deal_ii_version()
-                    << "\nbuild type " << build_type() << std::endl;
+          std::cout << "Debond " << version.program << "\nrevision "
+                    << version.revision << "\ndeal.II " << version.deal_ii
+                    << "\nbuild type " << version.build_type << std::endl;
           return ExitCode::success;
         }
 
@@ -265,10 +264,33 @@ namespace Debond
 
 
 
+    /// Does @p action and returns its exit code. What it throws is reported on
+    /// std::cerr: each error of bad input, too little memory, and faults of the
+    /// program.
     ExitCode
     guard_here(const std::function<ExitCode()> &action)
     {
-      return report_errors("debond", action);
+      try
+        {
+          return action();
+        }
+      catch (const BadInput &error)
+        {
+          for (const std::string &line : error.lines)
+            print_error(line);
+          return ExitCode::bad_input;
+        }
+      catch (const std::bad_alloc &)
+        {
+          print_error("there is not enough memory for this scene; try fewer "
+                      "cells or a smaller bundle");
+          return ExitCode::bad_input;
+        }
+      catch (const std::exception &error)
+        {
+          std::cerr << "debond: internal error: " << error.what() << std::endl;
+          return ExitCode::internal_error;
+        }
     }
 
 
@@ -280,7 +302,7 @@ namespace Debond
     {
       const bool is_first =
         dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
-      return report_errors("debond", [&]() {
+      return guard_here([&]() {
         try
           {
             return action();

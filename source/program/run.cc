@@ -8,9 +8,7 @@
 #include <debond/output/load_path_output.h>
 #include <debond/output/output_files.h>
 #include <debond/output/report.h>
-#include <debond/program/certify_result.h>
 #include <debond/program/check_result.h>
-#include <debond/program/ranks.h>
 #include <debond/program/run.h>
 #include <debond/program/session.h>
 #include <debond/solve/load_path.h>

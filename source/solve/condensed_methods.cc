@@ -5,7 +5,7 @@
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/elasticity/refinement.h>
-#include <debond/linear_algebra/eigen_view.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/bundle/metric_direction.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>

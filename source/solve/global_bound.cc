@@ -217,12 +217,12 @@ namespace Debond
                               D,
                               std::vector<double>(known.ranges.size(), 0.)));
       const BranchAndBoundResult bound =
-        BranchAndBound(parameters)
-          .minimize(problem->S,
-                    problem->g,
-                    *problem->phi,
-                    problem->kept_of(given_means),
-                    [&](const ProofProgress &) { return may_go_on(); });
+        branch_and_bound(parameters,
+                         problem->S,
+                         problem->g,
+                         *problem->phi,
+                         problem->kept_of(given_means),
+                         [&](const ProofProgress &) { return may_go_on(); });
       nodes += bound.nodes;
       const double lower =
         bound.status == ProofStatus::no_bound ?

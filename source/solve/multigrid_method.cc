@@ -7,7 +7,7 @@
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/elasticity/multigrid_problem.h>
 #include <debond/input/bad_input.h>
-#include <debond/optimization/majorise/restricted_function.h>
+#include <debond/optimization/piecewise_quadratic.h>
 #include <debond/solve/condensed_methods.h>
 #include <debond/solve/multigrid_method.h>
 #include <debond/solve/refine_result.h>

@@ -42,10 +42,8 @@ namespace Debond
                const unsigned int        n_nodes,
                WhichMinimum             &result)
     {
-      for (const unsigned int trials : search.trials)
-        result.search_trials += trials;
-      for (const unsigned int improvements : search.improvements)
-        result.search_improvements += improvements;
+      result.search_trials += search.trials;
+      result.search_improvements += search.improvements;
       result.search_failures += search.failures;
       result.search_nodes = n_nodes;
       result.kind         = search.complete && result.search_failures == 0 ?
@@ -218,7 +216,6 @@ namespace Debond
         BranchSearchParameters starts;
         starts.maximum_shift = 0;
         starts.flips         = false;
-        starts.splits        = false;
         if (!search_nodes(starts) && look_on_coarse_mesh(coarse_look))
           return;
         look_on_coarse_mesh(largest_automatic_search);
@@ -258,7 +255,7 @@ namespace Debond
         no_nodes.maximum_nodes = 0;
         no_nodes.tolerance     = parameters.proof.tolerance * energy;
         const BranchAndBoundResult certificate =
-          BranchAndBound(no_nodes).minimize(S, g, lumped, s);
+          branch_and_bound(no_nodes, S, g, lumped, s);
         if (certificate.status != ProofStatus::proved)
           return false;
         add_proof(certificate, lumped, condensed, result);
@@ -370,12 +367,12 @@ namespace Debond
       proof_parameters.tolerance *= energy_of_bonds(condensed, lumped);
       proof_parameters.maximum_bytes = memory_left(parameters.memory_limit);
       const BranchAndBoundResult proof =
-        BranchAndBound(proof_parameters)
-          .minimize(condensed.schur_complement(),
-                    condensed.load(),
-                    lumped,
-                    s,
-                    [&](const ProofProgress &) { return may_go_on(); });
+        branch_and_bound(proof_parameters,
+                         condensed.schur_complement(),
+                         condensed.load(),
+                         lumped,
+                         s,
+                         [&](const ProofProgress &) { return may_go_on(); });
       add_proof(proof, lumped, condensed, result);
       result.proof_history = proof.history;
       for (ProofProgress &progress : result.proof_history)

@@ -13,7 +13,7 @@
 #include <debond/mesh/make_body.h>
 #include <debond/mesh/mesh_piece.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
-#include <debond/optimization/majorise/restricted_function.h>
+#include <debond/optimization/piecewise_quadratic.h>
 
 #include <array>
 #include <cstring>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Variables bound to entries: what is written into them, and what is said of
 // values that are not allowed and of entries without effect.
-#include <debond/base/number_text.h>
+#include <debond/base/text.h>
 #include <debond/input/parameters.h>
 
 #include <iostream>

@@ -350,7 +350,7 @@ namespace
         BranchAndBoundParameters parameters;
         parameters.tolerance = tolerance;
         const auto proof =
-          BranchAndBound(parameters).minimize(p.S, p.g, p.phi, Vector::Zero(n));
+          branch_and_bound(parameters, p.S, p.g, p.phi, Vector::Zero(n));
         not_proved += proof.status != ProofStatus::proved;
         above += proof.lower > minimum + rounding;
         wrong += std::abs(proof.upper - minimum) > tolerance ||

@@ -5,7 +5,7 @@
 
 #include <deal.II/lac/full_matrix.h>
 
-#include <debond/linear_algebra/eigen_view.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/bundle/metric_direction.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
 #include <debond/optimization/majorise/active_set_guess.h>

@@ -7,7 +7,7 @@
 
 #include <debond/base/atomic_file.h>
 #include <debond/base/directory_lock.h>
-#include <debond/check/largest_values.h>
+#include <debond/check/plausibility.h>
 #include <debond/contact/laws/none.h>
 #include <debond/contact/laws/winkler.h>
 #include <debond/mesh/box.h>

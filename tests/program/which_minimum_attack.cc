@@ -291,8 +291,11 @@ namespace
         proof_parameters.maximum_nodes = static_cast<unsigned int>(
           std::min<double>(proof_nodes, proof_operations / std::pow(n, 3)));
         const BranchAndBoundResult proof =
-          BranchAndBound(proof_parameters)
-            .minimize(condensed.schur_complement(), condensed.load(), bonds, s);
+          branch_and_bound(proof_parameters,
+                           condensed.schur_complement(),
+                           condensed.load(),
+                           bonds,
+                           s);
         minimum = proof.upper;
         counts.unknown += proof.upper - proof.lower > allowed * std::abs(found);
       }

@@ -4,6 +4,8 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <debond/base/text.h>
+
 #include <functional>
 #include <istream>
 #include <map>

@@ -6,21 +6,19 @@
 
 namespace Debond
 {
-  /// Debond's version, "0.1.0".
-  std::string
-  program_version();
+  /// What the program was built from, and how.
+  struct Version
+  {
+    std::string program; ///< "0.1.0"
 
-  /// The git revision that the program was built from, with "-dirty" if the
-  /// working copy had changes; "unknown" without git.
-  std::string
-  git_revision();
+    /// With "-dirty" if the working copy had changes; "unknown" without git.
+    std::string revision;
 
-  std::string
-  deal_ii_version();
+    std::string deal_ii;
+    std::string build_type; ///< "Release" or "Debug"
+  };
 
-  /// "Release" or "Debug".
-  std::string
-  build_type();
+  extern const Version version;
 } // namespace Debond
 
 #endif

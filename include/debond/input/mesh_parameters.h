@@ -3,8 +3,10 @@
 #define debond_input_mesh_parameters_h
 
 #include <debond/base/parameter_table.h>
+#include <debond/mesh/body.h>
 #include <debond/mesh/make_body.h>
 
+#include <map>
 #include <memory>
 #include <string>
 
@@ -21,6 +23,22 @@ namespace Debond
             const unsigned int dimension,
             BodyParameters     body,
             ParameterTable    &table);
+
+
+
+  /// The section Parts: the texts "BOUNDARY: CONDITION" or "CONDITION" by the
+  /// names of the parts.
+  void
+  bind_parts(std::map<std::string, std::string> &parts, ParameterTable &table);
+
+  /// Gives the @p body, a Body<dimension>, these parts. Conditions may use the
+  /// @p constants. Texts that make no part are left in the table as errors.
+  void
+  add_parts(BodyDescription                          &body,
+            const std::map<std::string, std::string> &parts,
+            const unsigned int                        dimension,
+            const std::map<std::string, double>      &constants,
+            ParameterTable                           &table);
 } // namespace Debond
 
 #endif

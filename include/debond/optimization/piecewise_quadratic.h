@@ -35,6 +35,42 @@ namespace Debond
 
 
 
+  /// s_k -> Phi(P s_k): Phi on a subspace.
+  class RestrictedFunction : public PiecewiseQuadratic
+  {
+  public:
+    /// Keeps references.
+    RestrictedFunction(const PiecewiseQuadratic          &phi,
+                       const Eigen::SparseMatrix<double> &prolongation)
+      : phi(phi)
+      , P(prolongation)
+    {}
+
+    double
+    value(const VectorView &s) const override
+    {
+      return phi.value(P * s);
+    }
+
+    Eigen::VectorXd
+    subgradient(const VectorView &s) const override
+    {
+      return P.transpose() * phi.subgradient(P * s);
+    }
+
+    Eigen::SparseMatrix<double>
+    curvature(const VectorView &s) const override
+    {
+      return P.transpose() * phi.curvature(P * s) * P;
+    }
+
+  private:
+    const PiecewiseQuadratic          &phi;
+    const Eigen::SparseMatrix<double> &P;
+  };
+
+
+
   /// The Frobenius norm of a curvature or a difference of such; Eigen's own
   /// refuses matrices without entries, as bodies without contact have.
   inline double

@@ -5,7 +5,7 @@
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/input/output_parameters.h>
 #include <debond/linear_algebra/dof_vector.h>
-#include <debond/output/output_file.h>
+#include <debond/output/output_files.h>
 #include <debond/solve/load_path_steps.h>
 
 #include <string>

@@ -2,7 +2,7 @@
 #ifndef debond_output_matrices_h
 #define debond_output_matrices_h
 
-#include <debond/output/output_file.h>
+#include <debond/output/output_files.h>
 #include <debond/solve/scene.h>
 
 #include <vector>

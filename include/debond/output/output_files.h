@@ -3,15 +3,40 @@
 #define debond_output_output_files_h
 
 #include <debond/input/output_parameters.h>
-#include <debond/output/output_file.h>
 #include <debond/output/run_result.h>
 #include <debond/solve/scene.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace Debond
 {
+  /// A file that a run may write into its directory.
+  struct OutputFile
+  {
+    std::string name;
+
+    /// Whether the scene asks for it and the run has it.
+    std::function<bool()> is_wanted;
+
+    /// Gets the path. Throws std::runtime_error naming what cannot be written.
+    std::function<void(const std::string &)> write;
+  };
+
+  /// Removes what an earlier run left: it must not stand beside new results.
+  void
+  remove_files(const std::vector<OutputFile> &files,
+               const std::string             &directory);
+
+  /// Writes those that are wanted and returns the paths. Throws
+  /// std::runtime_error as their functions do.
+  std::vector<std::string>
+  write_files(const std::vector<OutputFile> &files,
+              const std::string             &directory);
+
+
+
   /**
    * The files of a run but those that are there before the end of the solve
    * (parameters.prm), those of a load path (LoadPathOutput) and

@@ -5,7 +5,7 @@
 #include <debond/check/coming_off.h>
 #include <debond/check/displacement_error.h>
 #include <debond/check/error_estimate.h>
-#include <debond/check/largest_values.h>
+#include <debond/check/plausibility.h>
 #include <debond/solve/adaptive_loop.h>
 #include <debond/solve/certificate.h>
 #include <debond/solve/load_path_steps.h>

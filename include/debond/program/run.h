@@ -2,6 +2,8 @@
 #ifndef debond_program_run_h
 #define debond_program_run_h
 
+#include <deal.II/base/mpi.h>
+
 #include <debond/input/parameters.h>
 #include <debond/program/exit_code.h>
 
@@ -23,6 +25,31 @@ namespace Debond
   template <int dim>
   ExitCode
   run(const Parameters &parameters, std::ostream &out, const bool terminal);
+
+
+
+  /// The number of processes that a launcher such as mpirun has started, as it
+  /// says in the environment; 1 if there is none. MPI need not be there yet.
+  unsigned int
+  n_started_ranks();
+
+  /// Starts MPI with one thread, unless it has been started, until the program
+  /// ends.
+  void
+  start_mpi();
+
+
+
+  /// run() by all ranks, which share the scene (BodyPiece): the first one
+  /// writes log, messages and files but body.pvtu, and all return its exit
+  /// code. There are no probes. Throws BadInput on all of them if they cannot
+  /// share the scene, before anything is written.
+  template <int dim>
+  ExitCode
+  run_on_ranks(const Parameters &parameters,
+               const MPI_Comm    ranks,
+               std::ostream     &out,
+               const bool        terminal);
 } // namespace Debond
 
 #endif

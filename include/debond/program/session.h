@@ -2,7 +2,7 @@
 #ifndef debond_program_session_h
 #define debond_program_session_h
 
-#include <debond/output/output_file.h>
+#include <debond/output/output_files.h>
 #include <debond/output/record.h>
 #include <debond/output/run_result.h>
 #include <debond/program/exit_code.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/number_text.h>
 #include <debond/base/parameter_table.h>
+#include <debond/base/text.h>
 #include <debond/contact/laws/stepped.h>
 
 #include <cmath>

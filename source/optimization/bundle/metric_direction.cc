@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/linear_algebra/eigen_view.h>
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/bundle/bundle_qp.h>
 #include <debond/optimization/bundle/metric_direction.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/optimization/bundle/euclidean_direction.h>
+#include <debond/optimization/bundle/bundle_qp.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
 
 #include <algorithm>
@@ -16,6 +16,139 @@ namespace Debond
     /// Relative residual of the direction problem above which its solution is
     /// not used.
     constexpr double acceptable_qp_residual = 1e-9;
+
+    /// The paper's direction problem, M = u I (u > 0, energy per squared
+    /// length). Only the components with bounds are handed to the QP; of all
+    /// others it knows the Gram matrix. Keeps a reference to the bounds.
+    class EuclideanDirection : public DirectionProblem
+    {
+    public:
+      /// @p model: a vector with the layout of x. @p bundle_size: the most
+      /// subgradients that will be added.
+      EuclideanDirection(const double       proximal_weight,
+                         const UpperBounds &upper_bounds,
+                         const unsigned int bundle_size,
+                         const DofVector   &model)
+        : u(proximal_weight)
+        , bounds(upper_bounds)
+        , qp(bundle_size, static_cast<unsigned int>(bounds.indices.size()))
+        , subgradients(bundle_size, model)
+      {}
+
+      bool
+      is_feasible(const DofVector &x) const override
+      {
+        for (unsigned int i = 0; i < bounds.indices.size(); ++i)
+          if (!(x(bounds.indices[i]) <= bounds.upper[i]))
+            return false;
+        return true;
+      }
+
+      unsigned int
+      size() const override
+      {
+        return qp.n_cuts();
+      }
+
+      void
+      clear() override
+      {
+        qp.clear();
+      }
+
+      void
+      add(const DofVector &eta) override
+      {
+        const unsigned int j   = size();
+        DofVector         &cut = subgradients[j];
+        cut                    = eta;
+
+        Eigen::VectorXd bounded(bounds.indices.size());
+        for (unsigned int i = 0; i < bounds.indices.size(); ++i)
+          {
+            bounded(i)             = cut(bounds.indices[i]);
+            cut(bounds.indices[i]) = 0.;
+          }
+        Eigen::VectorXd products(j + 1);
+        for (unsigned int k = 0; k <= j; ++k)
+          products(k) = subgradients[k] * cut;
+        qp.add_cut(products, bounded);
+      }
+
+      const Solution &
+      solve(const DofVector &x, const Eigen::VectorXd &beta) override
+      {
+        Eigen::VectorXd b(bounds.indices.size());
+        for (unsigned int i = 0; i < bounds.indices.size(); ++i)
+          b(i) = bounds.upper[i] - x(bounds.indices[i]);
+
+        const BundleQP::Solution &qp_solution = qp.solve(beta, b, u);
+        lambda                                = qp_solution.lambda;
+        d_bounded                             = qp_solution.d;
+
+        solution.v           = qp_solution.v;
+        solution.duality_gap = qp_solution.duality_gap;
+        solution.residual    = qp_solution.residual();
+        solution.steps       = qp_solution.steps;
+        solution.status      = to_string(qp_solution.status);
+        solution.slopes      = qp_solution.slopes;
+        return solution;
+      }
+
+      void
+      direction(DofVector &d) const override
+      {
+        d = 0.;
+        // Two at a time, to read and write d half as often.
+        std::vector<unsigned int> active;
+        for (unsigned int j = 0; j < size(); ++j)
+          if (lambda(j) > 0.)
+            active.push_back(j);
+        const auto factor = [&](const unsigned int k) {
+          return -lambda(active[k]) / u;
+        };
+        for (unsigned int k = 0; k + 1 < active.size(); k += 2)
+          d.add(factor(k),
+                subgradients[active[k]],
+                factor(k + 1),
+                subgradients[active[k + 1]]);
+        if (active.size() % 2 == 1)
+          d.add(factor(static_cast<unsigned int>(active.size()) - 1),
+                subgradients[active.back()]);
+        for (unsigned int i = 0; i < bounds.indices.size(); ++i)
+          d(bounds.indices[i]) = d_bounded(i);
+      }
+
+      double
+      length(const DofVector &d) const override
+      {
+        return d.l2_norm();
+      }
+
+      void
+      project(DofVector &x) const override
+      {
+        for (unsigned int i = 0; i < bounds.indices.size(); ++i)
+          x(bounds.indices[i]) =
+            std::min<double>(x(bounds.indices[i]), bounds.upper[i]);
+      }
+
+    private:
+      const double       u;
+      const UpperBounds &bounds;
+      BundleQP           qp;
+
+      /// With zeros in the bounded components, which the QP holds: so the part
+      /// of the Gram matrix that remains when bounds are active is not a
+      /// difference.
+      std::vector<DofVector> subgradients;
+
+      Eigen::VectorXd lambda; ///< of the last solve()
+      Eigen::VectorXd d_bounded;
+      Solution        solution;
+    };
+
+
 
     /**
      * The bundle of the paper's Section 4: up to @p capacity subgradients

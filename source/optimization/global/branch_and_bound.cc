@@ -72,7 +72,7 @@ namespace Debond
       }
 
       BranchAndBoundResult
-      run(const BranchAndBound::Monitor &monitor)
+      run(const std::function<bool(const ProofProgress &)> &monitor)
       {
         const double certified = node_bound.certificate(result.s);
         if (certified >= result.upper - parameters.tolerance)
@@ -307,11 +307,12 @@ namespace Debond
 
 
   BranchAndBoundResult
-  BranchAndBound::minimize(const MatrixView        &S,
-                           const VectorView        &g,
-                           const SeparableBranches &phi,
-                           const VectorView        &start,
-                           const Monitor           &monitor) const
+  branch_and_bound(const BranchAndBoundParameters                   &parameters,
+                   const MatrixView                                 &S,
+                   const VectorView                                 &g,
+                   const SeparableBranches                          &phi,
+                   const VectorView                                 &start,
+                   const std::function<bool(const ProofProgress &)> &monitor)
   {
     return ProofTree(parameters, S, g, phi, start).run(monitor);
   }

@@ -3,7 +3,6 @@
 #include <debond/optimization/majorise/condensed_problem.h>
 
 #include <algorithm>
-#include <numeric>
 
 namespace Debond
 {
@@ -110,10 +109,22 @@ namespace Debond
 
 
 
+    /// States that are minimised, at most.
+    constexpr unsigned int maximum_trials = 100000;
+
+
+
+    enum class Move
+    {
+      start, ///< of all nodes
+      shift, ///< of the edge of a patch
+      flip   ///< of a patch or its middle
+    };
+
     /// Nodes that go to a piece or to the one above it.
     struct Trial
     {
-      BranchMove   move;
+      Move         move;
       unsigned int piece;
       NodeSet      down, up;
     };
@@ -146,22 +157,16 @@ namespace Debond
 
             for (const NodeSet &patch : lower_patches)
               shift_edges(patch, piece, below, trials);
-            if (parameters.flips)
-              {
-                for (const NodeSet &patch : upper_patches)
-                  trials.push_back({BranchMove::flip, piece, patch, {}});
-                for (const NodeSet &patch : lower_patches)
-                  trials.push_back({BranchMove::flip, piece, {}, patch});
-              }
-            if (parameters.splits)
-              {
-                for (const NodeSet &patch : upper_patches)
-                  trials.push_back(
-                    {BranchMove::split, piece, middle(patch, graph), {}});
-                for (const NodeSet &patch : lower_patches)
-                  trials.push_back(
-                    {BranchMove::split, piece, {}, middle(patch, graph)});
-              }
+            if (!parameters.flips)
+              continue;
+            for (const NodeSet &patch : upper_patches)
+              trials.push_back({Move::flip, piece, patch, {}});
+            for (const NodeSet &patch : lower_patches)
+              trials.push_back({Move::flip, piece, {}, patch});
+            for (const NodeSet &patch : upper_patches)
+              trials.push_back({Move::flip, piece, middle(patch, graph), {}});
+            for (const NodeSet &patch : lower_patches)
+              trials.push_back({Move::flip, piece, {}, middle(patch, graph)});
           }
         return trials;
       }
@@ -180,8 +185,8 @@ namespace Debond
              connected_parts(neighbours_of(patch, graph), graph))
           {
             NodeSet outer = edge, inner = edge;
-            Trial   out = {BranchMove::shift, piece, {}, {}},
-                  in    = {BranchMove::shift, piece, {}, {}};
+            Trial   out = {Move::shift, piece, {}, {}},
+                  in    = {Move::shift, piece, {}, {}};
             for (unsigned int k = 0; k < parameters.maximum_shift; ++k)
               {
                 NodeSet next_outer, next_inner;
@@ -257,7 +262,7 @@ namespace Debond
         // that they are on the last branch only if the node is far below its
         // kink. Only their branches matter.
         const bool to_the_end =
-          trial.move == BranchMove::start && !trial.down.empty() &&
+          trial.move == Move::start && !trial.down.empty() &&
           trial.piece + 1 == number_of_pieces(problem.lumped);
         Eigen::VectorXd next = point;
         // Where there are no bonds no branch is to be left.
@@ -272,7 +277,7 @@ namespace Debond
         // Beside what holds a vertex off the foundation points are farther from
         // it than the node: its bonds hold from there only if it is closed.
         const bool from_contact =
-          trial.move == BranchMove::start && trial.down.empty() &&
+          trial.move == Move::start && trial.down.empty() &&
           (problem.phi.curvature(Eigen::VectorXd::Zero(next.size())) -
            problem.phi.curvature(next))
               .norm() > 0.;
@@ -282,10 +287,10 @@ namespace Debond
         if (is_known && !to_the_end && !from_contact)
           return false;
 
-        ++result.trials[static_cast<unsigned int>(trial.move)];
+        ++result.trials;
         const BranchState start = state_of(next);
         CondensedProblem  condensed(problem.S, problem.g, problem.phi, next);
-        if (trial.move != BranchMove::shift)
+        if (trial.move != Move::shift)
           condensed.guess_by(problem.guess);
         bool                         ends_at_known = false;
         const MajoriseMinimiseResult minimum =
@@ -308,7 +313,7 @@ namespace Debond
         // Starts go on from wherever they lead to, but not from a state that
         // was tried, unless it is lower: nodes do not tell on which branches
         // the quadrature points between them are.
-        const bool        is_start = trial.move == BranchMove::start;
+        const bool        is_start = trial.move == Move::start;
         const BranchState end      = state_of(next);
         const bool        is_new   = end == start || tried.insert(end).second;
         const double known_best    = is_start ? result.functional : functional;
@@ -319,7 +324,7 @@ namespace Debond
         functional = minimum.functional;
         if (functional < result.functional - rounding)
           {
-            ++result.improvements[static_cast<unsigned int>(trial.move)];
+            ++result.improvements;
             result.functional = functional;
             s                 = point;
           }
@@ -336,11 +341,8 @@ namespace Debond
       bool
       may_go_on()
       {
-        result.complete =
-          result.complete &&
-          std::accumulate(result.trials.begin(), result.trials.end(), 0u) <
-            parameters.maximum_trials &&
-          problem.may_go_on();
+        result.complete = result.complete && result.trials < maximum_trials &&
+                          problem.may_go_on();
         return result.complete;
       }
 
@@ -359,12 +361,12 @@ namespace Debond
       /// Whether the descent from @p point ends at a known minimum that is no
       /// better than where moves start.
       bool
-      leads_to_known(const VectorView &point, const BranchMove move) const
+      leads_to_known(const VectorView &point, const Move move) const
       {
         const KnownMajorant own = majorant(point, functional);
         return std::any_of(
           known.begin(), known.end(), [&](const KnownMajorant &other) {
-            return (move == BranchMove::start ||
+            return (move == Move::start ||
                     other.functional >= functional - rounding) &&
                    (own.r - other.r).lpNorm<Eigen::Infinity>() <=
                      majorant_noise * own.r.lpNorm<Eigen::Infinity>() &&
@@ -434,8 +436,8 @@ namespace Debond
           all.insert(all.end(), i);
         std::vector<Trial> starts;
         for (unsigned int piece = n_pieces; piece-- > 1;)
-          starts.push_back({BranchMove::start, piece, all, {}});
-        starts.push_back({BranchMove::start, 1, {}, all});
+          starts.push_back({Move::start, piece, all, {}});
+        starts.push_back({Move::start, 1, {}, all});
         for (const Trial &trial : starts)
           {
             Eigen::VectorXd point = given;

@@ -50,11 +50,8 @@ namespace Debond
         BranchSearchParameters quick;
         quick.maximum_shift = 1;
         quick.flips         = false;
-        quick.splits        = false;
         search(quick, s);
-        bool found = false;
-        for (const unsigned int improvements : result.search.improvements)
-          found = found || improvements > 0;
+        const bool found = result.search.improvements > 0;
         // The same point has the same bounds.
         const bool is_same = has_tried && !found;
         if (!problem.may_go_on() || (!is_same && is_proved(s, 0)))
@@ -84,11 +81,8 @@ namespace Debond
       {
         const BranchSearchResult more = search_branches(problem, moves, s);
         BranchSearchResult      &sum  = result.search;
-        for (unsigned int k = 0; k < more.trials.size(); ++k)
-          {
-            sum.trials[k] += more.trials[k];
-            sum.improvements[k] += more.improvements[k];
-          }
+        sum.trials += more.trials;
+        sum.improvements += more.improvements;
         sum.failures += more.failures;
         sum.complete   = sum.complete && more.complete;
         sum.functional = more.functional;
@@ -108,13 +102,14 @@ namespace Debond
         limits.only_while_halving = only_while_halving;
         limits.n_threads          = parameters.n_threads;
         const BranchAndBoundResult proof =
-          BranchAndBound(limits).minimize(problem.S,
-                                          problem.g,
-                                          problem.lumped,
-                                          s,
-                                          [this](const ProofProgress &) {
-                                            return problem.may_go_on();
-                                          });
+          branch_and_bound(limits,
+                           problem.S,
+                           problem.g,
+                           problem.lumped,
+                           s,
+                           [this](const ProofProgress &) {
+                             return problem.may_go_on();
+                           });
         if (is_separable)
           result.proof = proof;
         Eigen::VectorXd  other         = proof.s;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
-#include <debond/optimization/majorise/restricted_function.h>
 
 #include <algorithm>
 

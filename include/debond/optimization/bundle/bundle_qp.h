@@ -148,6 +148,7 @@ namespace Debond
     enter_bound(const unsigned int i);
     void
     evaluate();
+    /// At the point of evaluate(), where mu'(d - b) = 0.
     double
     dual_objective() const
     {

@@ -2,6 +2,7 @@
 #ifndef debond_optimization_bundle_metric_direction_h
 #define debond_optimization_bundle_metric_direction_h
 
+#include <debond/linear_algebra/dof_vector.h>
 #include <debond/linear_algebra/views.h>
 #include <debond/optimization/bundle/direction_problem.h>
 #include <debond/optimization/majorise/bound_qp.h>

@@ -84,28 +84,17 @@ namespace Debond
    * nodes with the lowest bounds are next, some at a time, in as many threads
    * as there are. The order of the nodes does not depend on the number of
    * threads, so that only a limit of time makes a result depend on the machine.
+   *
+   * @p start is a good point, with s <= 0; the monitor returns false to end.
    */
-  class BranchAndBound
-  {
-  public:
-    /// Returns false to end.
-    using Monitor = std::function<bool(const ProofProgress &)>;
-
-    explicit BranchAndBound(const BranchAndBoundParameters &proof_parameters)
-      : parameters(proof_parameters)
-    {}
-
-    /// @p start is a good point, with s <= 0.
-    BranchAndBoundResult
-    minimize(const MatrixView        &S,
-             const VectorView        &g,
-             const SeparableBranches &phi,
-             const VectorView        &start,
-             const Monitor           &monitor = {}) const;
-
-  private:
-    BranchAndBoundParameters parameters;
-  };
+  BranchAndBoundResult
+  branch_and_bound(
+    const BranchAndBoundParameters                   &parameters,
+    const MatrixView                                 &S,
+    const VectorView                                 &g,
+    const SeparableBranches                          &phi,
+    const VectorView                                 &start,
+    const std::function<bool(const ProofProgress &)> &monitor = {});
 } // namespace Debond
 
 #endif

@@ -7,7 +7,6 @@
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
-#include <array>
 #include <functional>
 #include <set>
 #include <vector>
@@ -51,25 +50,11 @@ namespace Debond
     /// Nodes by which the edge of a patch moves, 0 for no such moves.
     unsigned int maximum_shift = 4;
 
-    /// Take whole patches to the other side.
+    /// Take whole patches, and the middle of each, to the other side.
     bool flips = true;
-
-    /// Take the middle of a patch to the other side.
-    bool splits = true;
-
-    /// States that are minimised, at most.
-    unsigned int maximum_trials = 100000;
   };
 
 
-
-  enum class BranchMove
-  {
-    start,
-    shift,
-    flip,
-    split
-  };
 
   struct BranchSearchResult
   {
@@ -78,8 +63,8 @@ namespace Debond
     /// Whether all moves were tried from there.
     bool complete = true;
 
-    /// States minimised, and those that lowered the functional, by BranchMove.
-    std::array<unsigned int, 4> trials = {}, improvements = {};
+    /// States minimised, and those that lowered the functional.
+    unsigned int trials = 0, improvements = 0;
 
     /// Of the states minimised, those that led to no minimum.
     unsigned int failures = 0;
