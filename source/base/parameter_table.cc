@@ -19,29 +19,6 @@ namespace Debond
   using dealii::Utilities::split_string_list;
   using dealii::Utilities::trim;
 
-  Pattern::Pattern(const std::string &words, const Property &property)
-    : words(words)
-    , property(property)
-  {}
-
-
-
-  std::string
-  Pattern::description(const OutputStyle /*style*/) const
-  {
-    return words;
-  }
-
-
-
-  std::unique_ptr<dealii::Patterns::PatternBase>
-  Pattern::clone() const
-  {
-    return std::make_unique<Pattern>(*this);
-  }
-
-
-
   Pattern
   number(const std::string &range, bool (*const property)(double))
   {
@@ -50,14 +27,6 @@ namespace Debond
                      double result;
                      return read_number(value, result) && property(result);
                    });
-  }
-
-
-
-  Pattern
-  positive_number()
-  {
-    return number("> 0", [](double x) { return x > 0; });
   }
 
 
@@ -147,45 +116,11 @@ namespace Debond
 
 
 
-    /// The known paths that a misspelt one may have meant, best first, at most
-    /// three: no more than a third of the letters (or two) differ, or one name
-    /// is a part of the other. Names are compared before sections, so that the
-    /// right name in the wrong section is found.
-    std::vector<std::string>
-    nearest(const std::string &path, const std::vector<std::string> &known)
-    {
-      const auto split = [](std::string text) {
-        boost::to_lower(text);
-        const std::size_t name = text.rfind('/') + 1; // 0 without a section
-        return std::make_pair(text.substr(0, name), text.substr(name));
-      };
-      const auto has = [](const std::string &word, const std::string &part) {
-        return part.size() > 2 && word.find(part) != std::string::npos;
-      };
-      const auto [section, name] = split(path);
-      std::vector<std::tuple<std::size_t, std::size_t, std::string>> near;
-      for (const std::string &other : known)
-        {
-          const auto [its_section, its_name] = split(other);
-          const std::size_t distance         = edit_distance(name, its_name);
-          if (distance <= std::max<std::size_t>(2, name.size() / 3) ||
-              has(its_name, name) || has(name, its_name))
-            near.emplace_back(distance,
-                              edit_distance(section, its_section),
-                              other);
-        }
-      std::sort(near.begin(), near.end());
-
-      std::vector<std::string> names;
-      for (std::size_t i = 0; i < std::min<std::size_t>(3, near.size()); ++i)
-        names.push_back(std::get<2>(near[i]));
-      return names;
-    }
-
-
-
-    /// "; did you mean ...?", or what there is in the same section, or that
-    /// there is no such thing.
+    /// "; did you mean ...?" of a path that is not known, with those that it
+    /// may have meant, best first, at most three: no more than a third of the
+    /// letters (or two) differ, or one name is a part of the other, whatever
+    /// the section. If there is none, what there is in the same section, or
+    /// that there is no such thing.
     std::string
     suggestion(const std::string &path, const std::vector<std::string> &known)
     {
@@ -204,30 +139,40 @@ namespace Debond
           return "; Debond has no " + what +
                  ", see 'What the model does not contain' in "
                  "doc/guide/manual.md";
-      const std::vector<std::string> near = nearest(path, known);
-      if (!near.empty())
-        return "; did you mean " + join(near, " or ") + "?";
 
-      const std::string        section = path.substr(0, path.rfind('/') + 1);
-      std::vector<std::string> siblings;
+      const auto split = [](std::string text) {
+        boost::to_lower(text);
+        const std::size_t name = text.rfind('/') + 1; // 0 without a section
+        return std::make_pair(text.substr(0, name), text.substr(name));
+      };
+      const auto has = [](const std::string &word, const std::string &part) {
+        return part.size() > 2 && word.find(part) != std::string::npos;
+      };
+      const auto [section, name] = split(path);
+      std::vector<std::tuple<std::size_t, std::size_t, std::string>> near;
+      std::vector<std::string>                                       siblings;
       for (const std::string &other : known)
-        if (starts_with(other, section) &&
-            other.find('/', section.size()) == std::string::npos)
-          siblings.push_back(other);
-      return siblings.empty() ? "" : "; known are " + join(siblings, ", ");
+        {
+          const auto [its_section, its_name] = split(other);
+          const std::size_t distance         = edit_distance(name, its_name);
+          if (distance <= std::max<std::size_t>(2, name.size() / 3) ||
+              has(its_name, name) || has(name, its_name))
+            near.emplace_back(distance,
+                              edit_distance(section, its_section),
+                              other);
+          if (other.substr(0, other.rfind('/') + 1) ==
+              path.substr(0, path.rfind('/') + 1))
+            siblings.push_back(other);
+        }
+      std::sort(near.begin(), near.end());
+      std::vector<std::string> names;
+      for (std::size_t i = 0; i < std::min<std::size_t>(3, near.size()); ++i)
+        names.push_back(std::get<2>(near[i]));
+      return !names.empty()   ? "; did you mean " + join(names, " or ") + "?" :
+             siblings.empty() ? "" :
+                                "; known are " + join(siblings, ", ");
     }
   } // namespace
-
-
-
-  std::string
-  ParameterTable::text(const std::string &documentation,
-                       const Pattern     &pattern,
-                       const std::string &units)
-  {
-    return documentation + ". Allowed: " + pattern.description() +
-           ". Units: " + units + ".";
-  }
 
 
 
@@ -475,14 +420,6 @@ namespace Debond
       set(trim(assignment.substr(0, equals)),
           trim(assignment.substr(equals + 1)),
           "--set");
-  }
-
-
-
-  const std::string &
-  ParameterTable::get(const std::string &path) const
-  {
-    return entries.at(path).value;
   }
 
 

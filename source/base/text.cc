@@ -78,17 +78,9 @@ namespace Debond
 
 
   void
-  print_error(const std::string &message, const std::string &program)
+  print_error(const std::string &message)
   {
-    std::cerr << program << ": " << printable(message) << std::endl;
-  }
-
-
-
-  std::string
-  scientific(const double value, const int digits)
-  {
-    return words(std::scientific, std::setprecision(digits), value);
+    std::cerr << "debond: " << printable(message) << std::endl;
   }
 
 
@@ -110,13 +102,5 @@ namespace Debond
   {
     const std::string text = scientific_below(-value, digits);
     return text[0] == '-' ? text.substr(1) : "-" + text;
-  }
-
-
-
-  std::string
-  fixed_point(const double value, const int digits)
-  {
-    return words(std::fixed, std::setprecision(digits), value);
   }
 } // namespace Debond

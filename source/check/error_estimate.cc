@@ -223,11 +223,10 @@ namespace Debond
             for (unsigned int f = 0; f <= dim; ++f)
               if (cell->neighbor_index(f) < 0)
                 add_boundary_face(cell, f, vertices);
-              else if (is_before(cell->neighbor_level(f),
-                                 cell->neighbor_index(f),
-                                 cell->level(),
-                                 cell->index()))
-                add_inner_face(cell, f, vertices, cell->neighbor(f));
+              else if (const auto neighbor = cell->neighbor(f);
+                       neighbor->active_cell_index() <
+                       cell->active_cell_index())
+                add_inner_face(cell, f, vertices, neighbor);
           }
       }
 
@@ -244,31 +243,12 @@ namespace Debond
     private:
       using Vertices = std::array<dealii::Point<dim>, dim + 1>;
 
-      /// Of the material of the last cell.
-      struct Moduli
-      {
-        Moduli() = default;
-
-        explicit Moduli(const Material &material)
-          : material(&material)
-          , mu(material.shear_modulus())
-          , lambda(material.template lame_lambda<dim>())
-          , part_of_lambda(lambda / (2. * mu + dim * lambda))
-          , half_compliance(1. / (2. * mu))
-        {}
-
-        const Material *material = nullptr;
-        double          mu;
-        double          lambda;
-        double          part_of_lambda; ///< times the trace of sigma: of eps
-        double          half_compliance;
-      };
-
       /// What the next cells need of one that is done.
       struct CellStress
       {
         double                          mu;
         double                          lambda;
+        double                          part_of_lambda; ///< tr sigma's in eps
         dealii::SymmetricTensor<2, dim> stress;
 
         /// sigma is what shears minus this times the identity.
@@ -309,48 +289,38 @@ namespace Debond
         std::array<unsigned int, dim> in_cell;
       };
 
-      /// Whether a cell comes before another one among the active cells.
-      static bool
-      is_before(const int level,
-                const int index,
-                const int other_level,
-                const int other_index)
-      {
-        return level != other_level ? level < other_level : index < other_index;
-      }
-
       /// Of the next cell; @p stresses: at stress_points().
       void
       add_cell(const Vertices          &vertices,
                const Material          &material,
                const CellStresses<dim> &stresses)
       {
-        if (moduli.material != &material)
-          moduli = Moduli(material);
-        CellStress here = {moduli.mu,
-                           moduli.lambda,
-                           stresses.stress(0),
-                           0.,
-                           bubble_energy<dim>(barycentric, volume)};
-        VolumeLoad load;
+        const double mu     = material.shear_modulus();
+        const double lambda = material.template lame_lambda<dim>();
+        CellStress   here   = {mu,
+                               lambda,
+                               lambda / (2. * mu + dim * lambda),
+                               stresses.stress(0),
+                               0.,
+                               bubble_energy<dim>(barycentric, volume)};
+        VolumeLoad   load;
         if (has_volume_loads)
           load = volume_load(vertices, material);
         const double trace = dealii::trace(here.stress);
         here.pressure =
           load.thermal_pressure -
-          moduli.part_of_lambda * (trace + dim * load.thermal_pressure);
+          here.part_of_lambda * (trace + dim * load.thermal_pressure);
         if (degree == 2)
           {
-            add_linear_part(vertices, stresses, load);
+            add_linear_part(vertices, stresses, here.part_of_lambda, load);
             parts[cells.size()] =
               fall_inside<dim>(barycentric, volume, load.force, here.mu);
           }
         stress_energies.push_back(
-          0.5 * moduli.half_compliance * volume *
-          (here.stress * here.stress - moduli.part_of_lambda * trace * trace));
+          0.5 * (1. / (2. * mu)) * volume *
+          (here.stress * here.stress - here.part_of_lambda * trace * trace));
         is_nearly_incompressible =
-          is_nearly_incompressible ||
-          here.lambda > largest_calibrated_lambda * here.mu;
+          is_nearly_incompressible || lambda > largest_calibrated_lambda * mu;
         has_stretched_cells =
           has_stretched_cells || (dim == 3 && is_stretched<dim>(vertices));
         cells.push_back(here);
@@ -407,6 +377,7 @@ namespace Debond
       void
       add_linear_part(const Vertices          &vertices,
                       const CellStresses<dim> &at_points,
+                      const double             part_of_lambda,
                       VolumeLoad              &load)
       {
         linear_stresses.emplace_back();
@@ -418,8 +389,8 @@ namespace Debond
               load.thermal_pressure +
               load.pressure_gradient * (vertices[v] - load.middle);
             pressures[v] =
-              thermal - moduli.part_of_lambda *
-                          (dealii::trace(stresses[v]) + dim * thermal);
+              thermal -
+              part_of_lambda * (dealii::trace(stresses[v]) + dim * thermal);
             load.force += volume * (stresses[v] * barycentric.shape_grad(v, 0));
           }
       }
@@ -686,7 +657,6 @@ namespace Debond
       double                         volume = 0.; ///< of the cell
       const std::array<std::array<unsigned int, dim>, dim + 1> face_vertices =
         make_face_vertices();
-      Moduli                    moduli;
       std::vector<CellStress>   cells;
       std::vector<LinearStress> linear_stresses; ///< of degree 2
       std::vector<VolumeLoad>   volume_loads;    ///< if there are any

@@ -92,14 +92,6 @@ namespace Debond
 
 
 
-  std::string
-  SurfaceLoad::entry() const
-  {
-    return "Loads/" + kind + ' ' + boundary;
-  }
-
-
-
   std::vector<SurfaceLoad>
   LoadParameters::on_boundaries() const
   {
@@ -110,15 +102,6 @@ namespace Debond
       for (const auto &[boundary, expression] : *loads)
         result.push_back({kind, boundary, expression});
     return result;
-  }
-
-
-
-  Pattern
-  vector_expression()
-  {
-    return Pattern(
-      "nothing, or an expression for each component, separated by ';'");
   }
 
 

@@ -203,16 +203,6 @@ namespace Debond
 
 
 
-  LoadFactors
-  LoadPathParameters::at(const unsigned int step) const
-  {
-    return {factors[step],
-            displacement_factors.empty() ? factors[step] :
-                                           displacement_factors[step]};
-  }
-
-
-
   bool
   LoadPathParameters::moves_only() const
   {

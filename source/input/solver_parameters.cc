@@ -240,16 +240,11 @@ namespace Debond
   void
   check_solver(const SolverParameters &solver, ParameterTable &table)
   {
-    // Only m_L < m_R is left.
-    try
-      {
-        solver.bundle.validate();
-      }
-    catch (const std::invalid_argument &error)
-      {
-        table.reject("Solver/Euclidean bundle/Slope fraction",
-                     error.what(),
-                     {"Solver/Euclidean bundle/Descent fraction"});
-      }
+    if (!(solver.bundle.m_R > solver.bundle.m_L))
+      table.reject("Solver/Euclidean bundle/Slope fraction",
+                   words("Slope fraction m_R = ",
+                         solver.bundle.m_R,
+                         " must be in (m_L, 1)."),
+                   {"Solver/Euclidean bundle/Descent fraction"});
   }
 } // namespace Debond

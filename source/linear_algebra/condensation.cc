@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <new>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -17,53 +19,60 @@ namespace Debond
 {
   namespace
   {
-    /// A CHOLMOD object that frees itself.
-    template <typename Object, int (*release)(Object **, cholmod_common *)>
-    class Owned
+    /// CHOLMOD's workspace. It prints nothing: errors are thrown.
+    struct Common : cholmod_common
     {
-    public:
-      Owned(Object *object, cholmod_common &common)
-        : object(object)
-        , common(common)
+      Common()
       {
-        if (object == nullptr)
-          throw std::bad_alloc();
+        cholmod_start(this);
+        print         = 0;
+        error_handler = nullptr;
       }
 
-      ~Owned()
+      ~Common()
       {
-        release(&object, &common);
+        cholmod_finish(this);
       }
 
-      Owned(const Owned &) = delete;
-
-      Object *
-      operator->() const
-      {
-        return object;
-      }
-
-      Object *
-      get() const
-      {
-        return object;
-      }
-
-    private:
-      Object         *object;
-      cholmod_common &common;
+      Common(const Common &) = delete;
     };
 
 
 
-    using Dense  = Owned<cholmod_dense, cholmod_free_dense>;
-    using Sparse = Owned<cholmod_sparse, cholmod_free_sparse>;
+    template <typename Object, int (*release)(Object **, cholmod_common *)>
+    struct Release
+    {
+      cholmod_common *common;
+
+      void
+      operator()(Object *object) const
+      {
+        release(&object, common);
+      }
+    };
+
+    /// A CHOLMOD object that frees itself. Throws std::bad_alloc if it is null.
+    template <typename Object, int (*release)(Object **, cholmod_common *)>
+    class Owned : public std::unique_ptr<Object, Release<Object, release>>
+    {
+    public:
+      Owned(Object *object, cholmod_common &common)
+        : std::unique_ptr<Object, Release<Object, release>>(object, {&common})
+      {
+        if (object == nullptr)
+          throw std::bad_alloc();
+      }
+    };
+
+    using Dense    = Owned<cholmod_dense, cholmod_free_dense>;
+    using Sparse   = Owned<cholmod_sparse, cholmod_free_sparse>;
+    using Symbolic = Owned<cholmod_factor, cholmod_free_factor>;
 
 
 
     /// The symbolic factorisation of the symmetric matrix with the last
     /// @p n_kept unknowns last, the others by minimum degree.
-    cholmod_factor *
+    Symbolic
     analyse(cholmod_sparse    *matrix,
             const unsigned int n_kept,
             cholmod_common    &common)
@@ -84,11 +93,9 @@ namespace Debond
       common.method[0].ordering = CHOLMOD_GIVEN;
       // A postordering is free to mix the kept unknowns with the others.
       common.postorder = 0;
-      cholmod_factor *const L =
-        cholmod_analyze_p(matrix, permutation.data(), nullptr, 0, &common);
-      if (L == nullptr)
-        throw std::bad_alloc();
-      return L;
+      return Symbolic(
+        cholmod_analyze_p(matrix, permutation.data(), nullptr, 0, &common),
+        common);
     }
   } // namespace
 
@@ -107,29 +114,10 @@ namespace Debond
       : n(static_cast<int>(unknowns.size()))
       , n_kept(n_kept)
     {
-      cholmod_start(&common);
-      common.print = 0;
-      // Errors are thrown below.
-      common.error_handler = nullptr;
-      try
-        {
-          factorize(A, unknowns, diagonal_factor);
-        }
-      catch (...)
-        {
-          cholmod_free_factor(&L, &common);
-          cholmod_finish(&common);
-          throw;
-        }
+      // CHOLMOD factorises nothing less.
+      if (n > 0)
+        factorize(A, unknowns, diagonal_factor);
     }
-
-    ~Factor()
-    {
-      cholmod_free_factor(&L, &common);
-      cholmod_finish(&common);
-    }
-
-    Factor(const Factor &) = delete;
 
     /// Solves with one part of the factorisation, CHOLMOD_P, CHOLMOD_L, ...
     std::vector<double>
@@ -141,7 +129,8 @@ namespace Debond
       std::copy(right_side.begin(),
                 right_side.end(),
                 static_cast<double *>(b->x));
-      const Dense   x(cholmod_solve(system, L, b.get(), &common), common);
+      const Dense   x(cholmod_solve(system, factor->get(), b.get(), &common),
+                    common);
       const double *values = static_cast<const double *>(x->x);
       return std::vector<double>(values, values + n);
     }
@@ -153,12 +142,13 @@ namespace Debond
       dealii::FullMatrix<double> block(n_kept, n_kept);
       if (n_kept == 0)
         return block;
-      const int     first = n - n_kept;
-      const int    *super = static_cast<const int *>(L->super);
-      const int    *pi    = static_cast<const int *>(L->pi);
-      const int    *px    = static_cast<const int *>(L->px);
-      const int    *rows  = static_cast<const int *>(L->s);
-      const double *x     = static_cast<const double *>(L->x);
+      const int             first = n - n_kept;
+      const cholmod_factor *L     = factor->get();
+      const int            *super = static_cast<const int *>(L->super);
+      const int            *pi    = static_cast<const int *>(L->pi);
+      const int            *px    = static_cast<const int *>(L->px);
+      const int            *rows  = static_cast<const int *>(L->s);
+      const double         *x     = static_cast<const double *>(L->x);
       for (int k = 0; k < static_cast<int>(L->nsuper); ++k)
         {
           const int n_rows = pi[k + 1] - pi[k];
@@ -179,9 +169,6 @@ namespace Debond
               const std::vector<unsigned int>    &unknowns,
               const double                        diagonal_factor)
     {
-      // CHOLMOD factorises nothing less.
-      if (n == 0)
-        return;
       std::vector<int> position(A.m(), -1);
       for (int i = 0; i < n; ++i)
         position[unknowns[i]] = i;
@@ -217,7 +204,8 @@ namespace Debond
 
       common.supernodal = CHOLMOD_SUPERNODAL;
       common.final_ll   = 1;
-      L                 = analyse(matrix.get(), n_kept, common);
+      factor.emplace(analyse(matrix.get(), n_kept, common));
+      cholmod_factor *const L = factor->get();
       for (unsigned int k = 0; k < n_kept; ++k)
         if (static_cast<const int *>(L->Perm)[n - n_kept + k] !=
             static_cast<int>(n - n_kept + k))
@@ -238,10 +226,10 @@ namespace Debond
         throw std::bad_alloc();
     }
 
-    int             n;
-    unsigned int    n_kept;
-    cholmod_common  common;
-    cholmod_factor *L = nullptr;
+    const int               n;
+    const unsigned int      n_kept;
+    Common                  common;
+    std::optional<Symbolic> factor; ///< none without unknowns
   };
 
 
@@ -285,32 +273,16 @@ namespace Debond
         starts.push_back(static_cast<int>(rows.size()));
       }
 
-    cholmod_common common;
-    cholmod_start(&common);
-    common.print         = 0;
-    common.error_handler = nullptr;
-    common.supernodal    = CHOLMOD_SIMPLICIAL;
-    FactorisationCost cost;
-    try
-      {
-        const Sparse graph(
-          cholmod_allocate_sparse(
-            n, n, rows.size(), 1, 1, 1, CHOLMOD_PATTERN, &common),
-          common);
-        std::copy(starts.begin(), starts.end(), static_cast<int *>(graph->p));
-        std::copy(rows.begin(), rows.end(), static_cast<int *>(graph->i));
-        cholmod_factor *L = analyse(graph.get(), n_kept, common);
-        cholmod_free_factor(&L, &common);
-        cost.operations = std::pow(n_components, 3) * common.fl;
-        cost.entries    = std::pow(n_components, 2) * common.lnz;
-      }
-    catch (...)
-      {
-        cholmod_finish(&common);
-        throw;
-      }
-    cholmod_finish(&common);
-    return cost;
+    Common common;
+    common.supernodal = CHOLMOD_SIMPLICIAL;
+    const Sparse graph(cholmod_allocate_sparse(
+                         n, n, rows.size(), 1, 1, 1, CHOLMOD_PATTERN, &common),
+                       common);
+    std::copy(starts.begin(), starts.end(), static_cast<int *>(graph->p));
+    std::copy(rows.begin(), rows.end(), static_cast<int *>(graph->i));
+    analyse(graph.get(), n_kept, common);
+    return {std::pow(n_components, 3) * common.fl,
+            std::pow(n_components, 2) * common.lnz};
   }
 
 
@@ -358,12 +330,6 @@ namespace Debond
 
   Condensation::~Condensation() = default;
 
-  void
-  Condensation::scale_load(const double factor)
-  {
-    scale_load(factor, factor);
-  }
-
 
 
   void
@@ -391,14 +357,6 @@ namespace Debond
     return Eigen::Map<const Eigen::MatrixXd>(S.empty() ? nullptr : &S(0, 0),
                                              S.m(),
                                              S.n());
-  }
-
-
-
-  const Eigen::VectorXd &
-  Condensation::load() const
-  {
-    return g;
   }
 
 

@@ -108,22 +108,6 @@ namespace Debond
 
 
 
-  double
-  BranchMinimum::Piece::value(const double s) const
-  {
-    return curvature * s * s / 2. + slope * s + static_cast<double>(constant);
-  }
-
-
-
-  double
-  BranchMinimum::Piece::derivative(const double s) const
-  {
-    return curvature * s + slope;
-  }
-
-
-
   BranchMinimum::BranchMinimum(const std::vector<ConvexBranch> &branches)
   {
     if (branches.empty())
@@ -207,36 +191,12 @@ namespace Debond
 
 
   unsigned int
-  BranchMinimum::size() const
-  {
-    return static_cast<unsigned int>(pieces.size());
-  }
-
-
-
-  const BranchMinimum::Piece &
-  BranchMinimum::operator[](const unsigned int piece) const
-  {
-    return pieces[piece];
-  }
-
-
-
-  unsigned int
   BranchMinimum::index(const double s) const
   {
     unsigned int k = 0;
     while (k + 1 < pieces.size() && s < pieces[k].lower)
       ++k;
     return k;
-  }
-
-
-
-  double
-  BranchMinimum::value(const double s) const
-  {
-    return pieces[index(s)].value(s);
   }
 
 

@@ -45,28 +45,12 @@ namespace Debond
 
 
 
-  bool
-  StationaryPath::is_free(const unsigned int i) const
-  {
-    return segments[i] % 2 == 1;
-  }
-
-
-
   double
   StationaryPath::derivative(const unsigned int i, const unsigned int k) const
   {
     // At the end of the piece towards 0 for contact, at the kink else.
     const double at = segments[i] == 0 ? 0. : f[(segments[i] - 1) / 2].lower;
     return bonds[i].energy / bonds[i].stretch * f[k].derivative(at);
-  }
-
-
-
-  double
-  StationaryPath::opening(const unsigned int i) const
-  {
-    return is_free(i) ? -ds(i) : segments[i] == 0 ? -dr(i) : dr(i);
   }
 
 
@@ -244,14 +228,6 @@ namespace Debond
         has_bonds = has_bonds || (one.from > 0 && segments[one.i] > 0);
       }
     return has_bonds ? Event::bond : Event::contact;
-  }
-
-
-
-  const Eigen::VectorXd &
-  StationaryPath::point() const
-  {
-    return s;
   }
 
 

@@ -29,12 +29,4 @@ namespace Debond
       }
     return "unknown";
   }
-
-
-
-  bool
-  can_be_verified(const SolverStatus status)
-  {
-    return status == SolverStatus::success || status == SolverStatus::stagnated;
-  }
 } // namespace Debond

@@ -7,12 +7,6 @@
 
 namespace Debond
 {
-  CsvTable::CsvTable(const Row &titles)
-    : rows({titles})
-  {}
-
-
-
   std::string
   CsvTable::cell(const std::string &text)
   {
@@ -23,36 +17,11 @@ namespace Debond
 
 
 
-  std::string
-  CsvTable::cell(const double number)
-  {
-    return shortest_text(number);
-  }
-
-
-
-  std::string
-  CsvTable::cell(const std::optional<double> &number)
-  {
-    return number ? shortest_text(*number) : "";
-  }
-
-
-
-  void
-  CsvTable::add_row(const Row &cells)
-  {
-    rows.push_back(cells);
-    rows.back().resize(rows[0].size());
-  }
-
-
-
   void
   CsvTable::write(const std::string &file_name) const
   {
     write_atomically(file_name, [&](std::ostream &out) {
-      for (const Row &row : rows)
+      for (const std::vector<std::string> &row : rows)
         out << join(row, ",") << '\n';
     });
   }

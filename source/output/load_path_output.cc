@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/data_out_base.h>
 
-#include <debond/base/append.h>
 #include <debond/base/atomic_file.h>
 #include <debond/output/csv_table.h>
 #include <debond/output/load_path_output.h>
@@ -19,75 +18,56 @@ namespace Debond
 
 
 
-    using NamedCells = std::vector<std::pair<std::string, std::string>>;
-
-
-
-    template <int dim>
-    NamedCells
-    cells_of(const LoadPathState<dim> &state, const std::string &prefix)
+    /// The columns of the states that @p state_of finds in the steps, empty
+    /// where it is null; @p first tells what states have names for.
+    template <int dim, typename StateOf>
+    void
+    add_states(const std::vector<LoadPathStep<dim>> &steps,
+               const LoadPathState<dim>             &first,
+               const std::string                    &prefix,
+               const StateOf                        &state_of,
+               CsvTable                             &table)
     {
-      NamedCells cells;
+      using State    = LoadPathState<dim>;
       const auto add = [&](const std::string &title, const auto &value) {
-        cells.emplace_back(prefix + title, CsvTable::cell(value));
+        table.add(prefix + title, steps, [&](const LoadPathStep<dim> &step) {
+          const State *const state = state_of(step);
+          return state == nullptr ?
+                   std::nullopt :
+                   std::make_optional(std::invoke(value, *state));
+        });
       };
-      const auto add_vector = [&](const std::string            &title,
-                                  const dealii::Tensor<1, dim> &vector) {
+      const auto add_vector = [&](const std::string &title, const auto &value) {
         for (unsigned int d = 0; d < dim; ++d)
-          add(title + '_' + "xyz"[d], vector[d]);
+          add(title + '_' + "xyz"[d], [&value, d](const State &state) {
+            return std::invoke(value, state)[d];
+          });
       };
-      add("minimum", state.minimum);
-      add("J", state.functional);
-      add("elastic_energy", state.elastic_energy);
-      add("adhesion_energy", state.adhesion_energy);
-      add("unit_load_work", state.unit_load_work);
-      add("unit_displacement_work", state.unit_displacement_work);
-      add("contact_part", state.contact_part);
-      add("bonded_part", state.bonded_part);
-      add("broken_part", state.broken_part);
-      add("mean_gap", state.mean_gap);
-      add("largest_gap", state.largest_gap);
-      add("normal_force", state.normal_force);
-      add_vector("contact_reaction", state.contact_reaction);
-      add_vector("clamped_reaction", state.clamped_reaction);
-      add("law_violation", state.law_violation);
-      add("equilibrium_residual", state.equilibrium_residual);
-      add("force_imbalance", state.force_imbalance);
-      for (const auto &[name, part] : state.other_parts)
-        add(name + "_part", part);
-      add("broken_zone", state.broken_zone);
-      add("dissipated_energy", state.dissipated_energy);
-      for (const auto &[name, vector] : state.vectors)
-        add_vector(name, vector);
-      return cells;
-    }
-
-
-
-    /// What the global branch does not have is empty, under the titles of
-    /// @p first.
-    template <int dim>
-    NamedCells
-    row_of(const LoadPathStep<dim> &step, const LoadPathState<dim> &first)
-    {
-      NamedCells row;
-      const auto add = [&row](const std::string &title, const auto &value) {
-        row.emplace_back(title, CsvTable::cell(value));
-      };
-      add("step", step.step);
-      add("factor", step.factor);
-      add("displacement_factor", step.displacement_factor);
-      add("status", step.status);
-      append(cells_of(step.state, ""), row);
-      add("iterations", step.iterations);
-      add("change_factor", step.change_factor);
-      NamedCells global = cells_of(step.global.value_or(first), "global_");
-      if (!step.global)
-        for (auto &[unused, cell] : global)
-          cell.clear();
-      append(global, row);
-      add("global_relative_gap", step.relative_gap);
-      return row;
+      add("minimum", &State::minimum);
+      add("J", &State::functional);
+      add("elastic_energy", &State::elastic_energy);
+      add("adhesion_energy", &State::adhesion_energy);
+      add("unit_load_work", &State::unit_load_work);
+      add("unit_displacement_work", &State::unit_displacement_work);
+      add("contact_part", &State::contact_part);
+      add("bonded_part", &State::bonded_part);
+      add("broken_part", &State::broken_part);
+      add("mean_gap", &State::mean_gap);
+      add("largest_gap", &State::largest_gap);
+      add("normal_force", &State::normal_force);
+      add_vector("contact_reaction", &State::contact_reaction);
+      add_vector("clamped_reaction", &State::clamped_reaction);
+      add("law_violation", &State::law_violation);
+      add("equilibrium_residual", &State::equilibrium_residual);
+      add("force_imbalance", &State::force_imbalance);
+      for (std::size_t k = 0; k < first.other_parts.size(); ++k)
+        add(first.other_parts[k].first + "_part",
+            [k](const State &state) { return state.other_parts[k].second; });
+      add("broken_zone", &State::broken_zone);
+      add("dissipated_energy", &State::dissipated_energy);
+      for (std::size_t k = 0; k < first.vectors.size(); ++k)
+        add_vector(first.vectors[k].first,
+                   [k](const State &state) { return state.vectors[k].second; });
     }
 
 
@@ -98,17 +78,28 @@ namespace Debond
     write_load_path(const std::vector<LoadPathStep<dim>> &steps,
                     const std::string                    &file_name)
     {
-      const LoadPathStep<dim> first =
-        steps.empty() ? LoadPathStep<dim>() : steps[0];
-      const auto cells = [&](const LoadPathStep<dim> &step, const bool titles) {
-        CsvTable::Row row;
-        for (const auto &[title, cell] : row_of(step, first.state))
-          row.push_back(titles ? CsvTable::cell(title) : cell);
-        return row;
+      using Step = LoadPathStep<dim>;
+      const LoadPathState<dim> first =
+        steps.empty() ? LoadPathState<dim>() : steps[0].state;
+      CsvTable   table;
+      const auto add = [&](const std::string &title, const auto &value) {
+        table.add(title, steps, value);
       };
-      CsvTable table(cells(first, true));
-      for (const LoadPathStep<dim> &step : steps)
-        table.add_row(cells(step, false));
+      add("step", &Step::step);
+      add("factor", &Step::factor);
+      add("displacement_factor", &Step::displacement_factor);
+      add("status", &Step::status);
+      add_states(
+        steps, first, "", [](const Step &step) { return &step.state; }, table);
+      add("iterations", &Step::iterations);
+      add("change_factor", &Step::change_factor);
+      add_states(
+        steps,
+        first,
+        "global_",
+        [](const Step &step) { return step.global ? &*step.global : nullptr; },
+        table);
+      add("global_relative_gap", &Step::relative_gap);
       table.write(file_name);
     }
   } // namespace

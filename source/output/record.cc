@@ -13,14 +13,6 @@ namespace Debond
 
 
   void
-  Record::add(const std::string &pointer, const Json &value)
-  {
-    json[Json::json_pointer(pointer)] = value;
-  }
-
-
-
-  void
   Record::line(const std::string &label, const std::string &text)
   {
     constexpr int label_width = 21;

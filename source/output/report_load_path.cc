@@ -30,10 +30,7 @@ namespace Debond
                  {{"step", change->step},
                   {"factor", change->factor},
                   {"displacement_factor", change->displacement_factor},
-                  {"change_factor",
-                   change->change_factor ?
-                     Record::Json(*change->change_factor) :
-                     Record::Json(nullptr)},
+                  {"change_factor", Record::json_of(change->change_factor)},
                   {"broken_before", change->broken_before},
                   {"broken_after", change->broken_after}});
       record.line(label,

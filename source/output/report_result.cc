@@ -171,17 +171,12 @@ namespace Debond
       record.add("/iterations/short", result.short_steps);
       record.add("/iterations/null", result.null_steps);
       record.add("/stop_criterion", result.criterion);
-      record.add("/relative_descent",
-                 result.relative_descent ?
-                   Record::Json(*result.relative_descent) :
-                   Record::Json());
+      record.add("/relative_descent", Record::json_of(result.relative_descent));
       record.add("/refined", result.is_refined);
       record.add("/largest_qp_residual", result.largest_qp_residual);
       record.add("/linear_iterations", result.linear_iterations);
       record.add("/condition_estimate",
-                 result.condition_estimate ?
-                   Record::Json(*result.condition_estimate) :
-                   Record::Json());
+                 Record::json_of(result.condition_estimate));
       if (!record.has_details())
         return;
       record.line("iterations",

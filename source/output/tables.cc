@@ -12,50 +12,36 @@ namespace Debond
   {
     AssertDimension(boundary.nodes.size(), verification.nodes.size());
 
-    const char *const xyz = "xyz";
-    CsvTable::Row     titles;
+    const std::string xyz = "xyz";
+    CsvTable          table;
+    const auto add_of_node = [&](const std::string &title, const auto &value) {
+      table.add(title, boundary.nodes, value);
+    };
+    const auto add = [&](const std::string &title, const auto &value) {
+      table.add(title, verification.nodes, value);
+    };
     for (unsigned int d = 0; d < dim; ++d)
-      titles.push_back({xyz[d]});
-    for (const char *const title : {"u_nu",
-                                    "normal_force",
-                                    "normal_force_density",
-                                    "allowed_lower",
-                                    "allowed_upper",
-                                    "violation",
-                                    "state"})
-      titles.push_back(title);
+      add_of_node({xyz[d]}, [d](const auto &node) { return node.position[d]; });
+    add("u_nu", &ContactNodeState::u_nu);
+    add("normal_force", &ContactNodeState::normal_force);
+    add_of_node("normal_force_density", [&](const auto &node) {
+      const auto i = &node - boundary.nodes.data();
+      return verification.nodes[i].normal_force / node.measure;
+    });
+    add("allowed_lower",
+        [](const auto &node) { return node.allowed_force.lower; });
+    add("allowed_upper",
+        [](const auto &node) { return node.allowed_force.upper; });
+    add("violation", &ContactNodeState::violation);
+    add("state",
+        [&](const auto &node) { return verification.name(node.state); });
     for (unsigned int d = 0; d < dim; ++d)
-      titles.push_back(std::string("tangential_force_") + xyz[d]);
-    for (const char *const title :
-         {"bond_stiffness", "bond_threshold", "initial_gap"})
-      titles.push_back(title);
-
-    CsvTable table(titles);
-    for (unsigned int i = 0; i < boundary.nodes.size(); ++i)
-      {
-        const auto             &node  = boundary.nodes[i];
-        const ContactNodeState &state = verification.nodes[i];
-        CsvTable::Row           row;
-        const auto              add = [&row](const double number) {
-          row.push_back(CsvTable::cell(number));
-        };
-        for (unsigned int d = 0; d < dim; ++d)
-          add(node.position[d]);
-        for (const double number : {state.u_nu,
-                                    state.normal_force,
-                                    state.normal_force / node.measure,
-                                    state.allowed_force.lower,
-                                    state.allowed_force.upper,
-                                    state.violation})
-          add(number);
-        row.push_back(CsvTable::cell(verification.name(state.state)));
-        for (unsigned int d = 0; d < dim; ++d)
-          add(verification.tangential_forces[i][d]);
-        for (const double number :
-             {state.bond_stiffness, state.bond_threshold, node.gap})
-          add(number);
-        table.add_row(row);
-      }
+      table.add(std::string("tangential_force_") + xyz[d],
+                verification.tangential_forces,
+                [d](const auto &force) { return force[d]; });
+    add("bond_stiffness", &ContactNodeState::bond_stiffness);
+    add("bond_threshold", &ContactNodeState::bond_threshold);
+    add_of_node("initial_gap", [](const auto &node) { return node.gap; });
     table.write(file_name);
   }
 
@@ -66,25 +52,21 @@ namespace Debond
                         const AdhesiveLaw &law,
                         const std::string &file_name)
   {
-    CsvTable table({"x0",
-                    "y0",
-                    "x1",
-                    "y1",
-                    "least_mean",
-                    "largest_mean",
-                    "least_linear",
-                    "largest_linear",
-                    "state"});
-    for (const CertifiedSide &side : certificate.sides)
-      table.add_row(side.ends[0][0],
-                    side.ends[0][1],
-                    side.ends[1][0],
-                    side.ends[1][1],
-                    side.mean.lower,
-                    side.mean.upper,
-                    side.linear().lower,
-                    side.linear().upper,
-                    side.piece ? law.name(*side.piece) : "uncertain");
+    CsvTable   table;
+    const auto add = [&](const std::string &title, const auto &value) {
+      table.add(title, certificate.sides, value);
+    };
+    add("x0", [](const auto &side) { return side.ends[0][0]; });
+    add("y0", [](const auto &side) { return side.ends[0][1]; });
+    add("x1", [](const auto &side) { return side.ends[1][0]; });
+    add("y1", [](const auto &side) { return side.ends[1][1]; });
+    add("least_mean", [](const auto &side) { return side.mean.lower; });
+    add("largest_mean", [](const auto &side) { return side.mean.upper; });
+    add("least_linear", [](const auto &side) { return side.linear().lower; });
+    add("largest_linear", [](const auto &side) { return side.linear().upper; });
+    add("state", [&law](const auto &side) {
+      return side.piece ? law.name(*side.piece) : "uncertain";
+    });
     table.write(file_name);
   }
 
@@ -95,23 +77,18 @@ namespace Debond
                 const std::optional<double>        &found,
                 const std::string                  &file_name)
   {
-    CsvTable table({"iteration",
-                    "functional",
-                    "v",
-                    "t_L",
-                    "t_R",
-                    "bundle_size",
-                    "qp_steps",
-                    "kind"});
-    for (const BundleIteration &step : history)
-      table.add_row(step.iteration,
-                    step.functional,
-                    step.v,
-                    step.t_L,
-                    step.t_R,
-                    step.bundle_size,
-                    step.qp_steps,
-                    to_string(step.kind));
+    CsvTable   table;
+    const auto add = [&](const std::string &title, const auto &value) {
+      table.add(title, history, value);
+    };
+    add("iteration", &BundleIteration::iteration);
+    add("functional", &BundleIteration::functional);
+    add("v", &BundleIteration::v);
+    add("t_L", &BundleIteration::t_L);
+    add("t_R", &BundleIteration::t_R);
+    add("bundle_size", &BundleIteration::bundle_size);
+    add("qp_steps", &BundleIteration::qp_steps);
+    add("kind", [](const auto &step) { return to_string(step.kind); });
     if (found)
       table.add_row(history.size() + 1, *found, "", "", "", "", "", "search");
     table.write(file_name);
@@ -124,19 +101,16 @@ namespace Debond
                 const std::optional<double>                  &found,
                 const std::string                            &file_name)
   {
-    CsvTable table({"iteration",
-                    "functional",
-                    "residual",
-                    "active_set_steps",
-                    "linear_iterations",
-                    "contact_nodes"});
-    for (const MajoriseMinimiseIteration &step : history)
-      table.add_row(step.iteration,
-                    step.functional,
-                    step.residual,
-                    step.active_set_steps,
-                    step.linear_iterations,
-                    step.n_active);
+    CsvTable   table;
+    const auto add = [&](const std::string &title, const auto &value) {
+      table.add(title, history, value);
+    };
+    add("iteration", &MajoriseMinimiseIteration::iteration);
+    add("functional", &MajoriseMinimiseIteration::functional);
+    add("residual", &MajoriseMinimiseIteration::residual);
+    add("active_set_steps", &MajoriseMinimiseIteration::active_set_steps);
+    add("linear_iterations", &MajoriseMinimiseIteration::linear_iterations);
+    add("contact_nodes", &MajoriseMinimiseIteration::n_active);
     if (found)
       table.add_row(history.size() + 1, *found);
     table.write(file_name);
@@ -148,10 +122,15 @@ namespace Debond
   write_history(const std::vector<ProofProgress> &history,
                 const std::string                &file_name)
   {
-    CsvTable table({"nodes", "open", "lower_bound", "functional", "seconds"});
-    for (const ProofProgress &step : history)
-      table.add_row(
-        step.nodes, step.open, step.lower, step.upper, step.seconds);
+    CsvTable   table;
+    const auto add = [&](const std::string &title, const auto &value) {
+      table.add(title, history, value);
+    };
+    add("nodes", &ProofProgress::nodes);
+    add("open", &ProofProgress::open);
+    add("lower_bound", &ProofProgress::lower);
+    add("functional", &ProofProgress::upper);
+    add("seconds", &ProofProgress::seconds);
     table.write(file_name);
   }
 

@@ -33,69 +33,65 @@ namespace Debond
 
     /// The numbers of the cells with their names.
     template <int dim>
-    class CellFields
+    std::vector<std::pair<std::string, dealii::Vector<double>>>
+    cell_fields(const ElasticProblem<dim>    &problem,
+                const DofVector              &displacement,
+                const LoadFactors             factors,
+                const ErrorEstimate          *estimate,
+                const std::vector<CellField> &more)
     {
-    public:
-      CellFields(const ElasticProblem<dim>    &problem,
-                 const DofVector              &displacement,
-                 const LoadFactors             factors,
-                 const ErrorEstimate          *estimate,
-                 const std::vector<CellField> &more)
-      {
-        const auto &dofs   = problem.unknowns().dof_handler();
-        const auto &first  = *dofs.begin_active();
-        const auto &fields = problem.fields();
-        std::vector<dealii::SymmetricTensor<2, 3>> stresses;
-        bool                                       has_regions = false;
-        CellStresses<dim> means(fields, displacement, factors);
-        for (const auto &cell : dofs.active_cell_iterators())
-          {
-            means.reinit(cell);
-            stresses.push_back(means.solid_stress(0));
-            has_regions |= cell->material_id() != first.material_id();
-          }
-        const auto add = [&](const std::string &name, const auto &value) {
-          all.emplace_back(name, stresses.size());
-          for (const auto &cell : dofs.active_cell_iterators())
-            all.back().second(cell->active_cell_index()) =
-              value(cell, stresses[cell->active_cell_index()]);
-        };
-
-        const std::string axes = "xyz";
-        for (unsigned int c = 0;
-             c < dealii::SymmetricTensor<2, dim>::n_independent_components;
-             ++c)
-          {
-            const auto ij =
-              dealii::SymmetricTensor<2, dim>::unrolled_to_component_indices(c);
-            add(std::string("stress_") + axes[ij[0]] + axes[ij[1]],
-                [&](const auto &, const auto &stress) { return stress[ij]; });
-          }
-        if (dim == 2 && fields.material(dofs.begin_active()).hypothesis ==
-                          Material::Hypothesis::plane_strain)
-          add("stress_zz",
-              [](const auto &, const auto &stress) { return stress[2][2]; });
-        if (has_regions)
-          add("region", [](const auto &cell, const auto &) {
-            return cell->material_id();
-          });
-        add("von_mises",
-            [](const auto &, const auto &stress) { return von_mises(stress); });
-        add("strain_energy_density", [&](const auto &cell, const auto &stress) {
-          return fields.material(cell).energy_density(stress);
-        });
-        if (estimate != nullptr)
-          add("error_density", [&](const auto &cell, const auto &) {
-            return estimate->cells[cell->active_cell_index()] / cell->measure();
-          });
-        for (const auto &[name, numbers] : more)
-          add(name, [&numbers = numbers](const auto &cell, const auto &) {
-            return numbers[cell->active_cell_index()];
-          });
-      }
-
       std::vector<std::pair<std::string, dealii::Vector<double>>> all;
-    };
+      const auto &dofs   = problem.unknowns().dof_handler();
+      const auto &first  = *dofs.begin_active();
+      const auto &fields = problem.fields();
+      std::vector<dealii::SymmetricTensor<2, 3>> stresses;
+      bool                                       has_regions = false;
+      CellStresses<dim> means(fields, displacement, factors);
+      for (const auto &cell : dofs.active_cell_iterators())
+        {
+          means.reinit(cell);
+          stresses.push_back(means.solid_stress(0));
+          has_regions |= cell->material_id() != first.material_id();
+        }
+      const auto add = [&](const std::string &name, const auto &value) {
+        all.emplace_back(name, stresses.size());
+        for (const auto &cell : dofs.active_cell_iterators())
+          all.back().second(cell->active_cell_index()) =
+            value(cell, stresses[cell->active_cell_index()]);
+      };
+
+      const std::string axes = "xyz";
+      for (unsigned int c = 0;
+           c < dealii::SymmetricTensor<2, dim>::n_independent_components;
+           ++c)
+        {
+          const auto ij =
+            dealii::SymmetricTensor<2, dim>::unrolled_to_component_indices(c);
+          add(std::string("stress_") + axes[ij[0]] + axes[ij[1]],
+              [&](const auto &, const auto &stress) { return stress[ij]; });
+        }
+      if (dim == 2 && fields.material(dofs.begin_active()).hypothesis ==
+                        Material::Hypothesis::plane_strain)
+        add("stress_zz",
+            [](const auto &, const auto &stress) { return stress[2][2]; });
+      if (has_regions)
+        add("region",
+            [](const auto &cell, const auto &) { return cell->material_id(); });
+      add("von_mises",
+          [](const auto &, const auto &stress) { return von_mises(stress); });
+      add("strain_energy_density", [&](const auto &cell, const auto &stress) {
+        return fields.material(cell).energy_density(stress);
+      });
+      if (estimate != nullptr)
+        add("error_density", [&](const auto &cell, const auto &) {
+          return estimate->cells[cell->active_cell_index()] / cell->measure();
+        });
+      for (const auto &[name, numbers] : more)
+        add(name, [&numbers = numbers](const auto &cell, const auto &) {
+          return numbers[cell->active_cell_index()];
+        });
+      return all;
+    }
 
 
 
@@ -106,7 +102,8 @@ namespace Debond
     write_body(const ElasticProblem<dim>      &problem,
                const DofVector                &u,
                const LoadFactors               factors,
-               const CellFields<dim>          &fields,
+               const ErrorEstimate            *estimate,
+               const std::vector<CellField>   &more,
                const std::string              &file_name,
                const ProblemPiece<dim>        *piece  = nullptr,
                const std::vector<std::string> &pieces = {})
@@ -124,7 +121,9 @@ namespace Debond
         dealii::DataOut<dim>::type_dof_data,
         std::vector<Interpretation::DataComponentInterpretation>(
           dim, Interpretation::component_is_part_of_vector));
-      for (const auto &[name, numbers] : fields.all)
+      const auto fields =
+        cell_fields(problem, displacement, factors, estimate, more);
+      for (const auto &[name, numbers] : fields)
         out.add_data_vector(numbers,
                             name,
                             dealii::DataOut<dim>::type_cell_data);
@@ -240,13 +239,7 @@ namespace Debond
                  const ErrorEstimate          *estimate,
                  const std::vector<CellField> &more)
   {
-    const DofVector displacement =
-      problem.unknowns().cartesian_displacement(u, factors);
-    write_body(problem,
-               u,
-               factors,
-               CellFields<dim>(problem, displacement, factors, estimate, more),
-               file_name);
+    write_body(problem, u, factors, estimate, more, file_name);
   }
 
 
@@ -266,16 +259,8 @@ namespace Debond
       names.push_back("body.rank" + std::to_string(k) + ".vtu");
     const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(ranks);
     std::vector<std::string> written = {directory + "/" + names[rank]};
-    const DofVector          displacement =
-      problem.unknowns().cartesian_displacement(u, 1.);
-    const std::string joined =
-      write_body(problem,
-                 u,
-                 1.,
-                 CellFields<dim>(problem, displacement, 1., estimate, {}),
-                 written[0],
-                 &piece,
-                 names);
+    const std::string        joined =
+      write_body(problem, u, 1., estimate, {}, written[0], &piece, names);
     if (rank == 0)
       {
         written.push_back(directory + "/body.pvtu");

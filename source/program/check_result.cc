@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/timer.h>
 
 #include <debond/base/append.h>
@@ -46,124 +47,132 @@ namespace Debond
     /// Up to here estimates are from half of the error to twice of it, see
     /// doc/notes/error-estimate.md.
     constexpr double largest_judged_error = 0.2;
-  } // namespace
 
 
 
-  template <int dim>
-  std::string
-  verification_message(const double tolerance, const RunResult<dim> &result)
-  {
-    for (const LoadPathStep<dim> &step : result.path)
-      if (!step.message.empty())
-        return step.message;
-    if (!(result.verification.error() <= tolerance))
-      return result.verification.failure(tolerance);
-    if (const std::optional<double> &descent = result.solve.relative_descent;
-        descent && !(*descent <= largest_relative_descent))
-      {
-        std::ostringstream text;
-        text.precision(3);
-        text << "verification: the predicted descent v_k is " << *descent
-             << " of the strain energy, required is at most "
-             << largest_relative_descent << ". Try a smaller stop tolerance.";
-        return text.str();
-      }
-    return "";
-  }
+    /// What the verification has against the result, or against the first
+    /// step of a load path that it has something against; empty if nothing.
+    template <int dim>
+    std::string
+    verification_message(const double tolerance, const RunResult<dim> &result)
+    {
+      for (const LoadPathStep<dim> &step : result.path)
+        if (!step.message.empty())
+          return step.message;
+      if (!(result.verification.error() <= tolerance))
+        return result.verification.failure(tolerance);
+      if (const std::optional<double> &descent = result.solve.relative_descent;
+          descent && !(*descent <= largest_relative_descent))
+        {
+          std::ostringstream text;
+          text.precision(3);
+          text << "verification: the predicted descent v_k is " << *descent
+               << " of the strain energy, required is at most "
+               << largest_relative_descent << ". Try a smaller stop tolerance.";
+          return text.str();
+        }
+      return "";
+    }
 
 
 
-  template <int dim>
-  void
-  judge(const std::string &failure,
-        const std::string &shortfall,
-        RunResult<dim>    &result)
-  {
-    SolveResult &solve = result.solve;
-    if (solve.status == SolverStatus::stagnated && failure.empty())
-      {
-        solve.status = SolverStatus::success;
-        result.notes.push_back(solve.message);
-        solve.message.clear();
-      }
-    else if (solve.status == SolverStatus::stagnated)
-      solve.message += " " + failure;
+    /// Status and message of the result.
+    template <int dim>
+    void
+    judge(const std::string &failure,
+          const std::string &shortfall,
+          RunResult<dim>    &result)
+    {
+      SolveResult &solve = result.solve;
+      if (solve.status == SolverStatus::stagnated && failure.empty())
+        {
+          solve.status = SolverStatus::success;
+          result.notes.push_back(solve.message);
+          solve.message.clear();
+        }
+      else if (solve.status == SolverStatus::stagnated)
+        solve.message += " " + failure;
 
-    result.status  = to_string(solve.status);
-    result.message = solve.message;
-    // The solver is content, but its result is not what it says.
-    if (result.is_answer() && !failure.empty())
-      {
-        result.status  = "not verified";
-        result.message = failure;
-      }
-    else if (solve.status == SolverStatus::success && !shortfall.empty())
-      {
-        result.status  = "not accurate enough";
-        result.message = shortfall;
-      }
-  }
+      result.status  = to_string(solve.status);
+      result.message = solve.message;
+      // The solver is content, but its result is not what it says.
+      if (result.is_answer() && !failure.empty())
+        {
+          result.status  = "not verified";
+          result.message = failure;
+        }
+      else if (solve.status == SolverStatus::success && !shortfall.empty())
+        {
+          result.status  = "not accurate enough";
+          result.message = shortfall;
+        }
+    }
 
 
 
-  namespace
-  {
     /// Bonds that reach over a gap are one as well.
     template <int dim>
     bool
     has_load(const Scene<dim> &scene, const double largest_displacement)
     {
       const ElasticProblem<dim> &problem = scene.problem();
+      const DofVector forces = problem.fields().applied_nodal_forces();
+      const double    largest_force =
+        scene.piece() == nullptr ?
+             forces.linfty_norm() :
+             scene.piece()->nodes().largest(forces.begin());
       return problem.unknowns().has_prescribed_displacements() ||
-             problem.fields().applied_nodal_forces().linfty_norm() > 0. ||
+             largest_force > 0. ||
              (problem.unknowns().has_gap() &&
               largest_displacement >
                 std::numeric_limits<double>::epsilon() *
                   problem.unknowns().lifting().linfty_norm());
     }
+
+
+
+    /// Estimates the error of the mesh, with bonds as the load path has left
+    /// them.
+    template <int dim>
+    void
+    estimate(const Scene<dim>            &scene,
+             const AdhesionIntegral<dim> &bonds,
+             RunResult<dim>              &result)
+    {
+      try
+        {
+          result.estimate = estimate_error(scene.problem(),
+                                           bonds,
+                                           scene.conditions(),
+                                           scene.supports(),
+                                           scene.loads(),
+                                           result.solve.u,
+                                           result.solve.functional,
+                                           result.solve.load_factor,
+                                           &scene.dead_loads(),
+                                           scene.piece());
+          if (const std::string &reason = result.estimate->outside_calibration;
+              !reason.empty())
+            result.notes.push_back(
+              "the error of the mesh may be from two thirds to three times the "
+              "estimate, which was not calibrated for " +
+              reason);
+          else if (result.estimate->is_of_J &&
+                   result.estimate->relative() > largest_judged_error)
+            result.notes.push_back(
+              "the mesh is coarse: estimates of more than a fifth of J are from a "
+              "third of the error to twice of it");
+        }
+      catch (const std::invalid_argument &error)
+        {
+          result.notes.push_back(
+            std::string(
+              "the error of the mesh is not known: a load or a bond "
+              "is none between the points that the solution needs, ") +
+            error.what());
+        }
+    }
   } // namespace
-
-
-
-  template <int dim>
-  void
-  estimate(const Scene<dim>            &scene,
-           const AdhesionIntegral<dim> &bonds,
-           RunResult<dim>              &result)
-  {
-    try
-      {
-        result.estimate = estimate_error(scene.problem(),
-                                         bonds,
-                                         scene.conditions(),
-                                         scene.supports(),
-                                         scene.loads(),
-                                         result.solve.u,
-                                         result.solve.functional,
-                                         result.solve.load_factor,
-                                         &scene.dead_loads(),
-                                         scene.piece());
-        if (const std::string &reason = result.estimate->outside_calibration;
-            !reason.empty())
-          result.notes.push_back(
-            "the error of the mesh may be from two thirds to three times the "
-            "estimate, which was not calibrated for " +
-            reason);
-        else if (result.estimate->is_of_J &&
-                 result.estimate->relative() > largest_judged_error)
-          result.notes.push_back(
-            "the mesh is coarse: estimates of more than a fifth of J are from a "
-            "third of the error to twice of it");
-      }
-    catch (const std::invalid_argument &error)
-      {
-        result.notes.push_back(
-          std::string("the error of the mesh is not known: a load or a bond "
-                      "is none between the points that the solution needs, ") +
-          error.what());
-      }
-  }
 
 
 
@@ -212,13 +221,26 @@ namespace Debond
                                    scene.adhesion(),
                                    scene.law(),
                                    result.solve.u,
-                                   result.solve.load_factor);
-    result.probes = scene.probes().values(scene.problem(),
-                                          result.solve.u,
-                                          result.solve.load_factor);
-    result.means  = scene.means().values(scene.problem(),
-                                        result.solve.u,
-                                        result.solve.load_factor);
+                                   result.solve.load_factor,
+                                   1e-6,
+                                   scene.piece());
+    const auto values = [&](const Probes<dim> &probes) {
+      return probes.values(scene.problem(),
+                           result.solve.u,
+                           result.solve.load_factor,
+                           scene.piece());
+    };
+    result.probes = values(scene.probes());
+    result.means  = values(scene.means());
+    result.largest =
+      largest_values(scene.problem(), result.solve.u, result.solve.load_factor);
+    if (scene.piece() != nullptr)
+      for (double *const value : {&result.largest.displacement,
+                                  &result.largest.gradient,
+                                  &result.largest.von_mises})
+        *value =
+          dealii::Utilities::MPI::max(*value,
+                                      scene.piece()->nodes().communicator());
     result.times.emplace_back("verification", timer.wall_time());
     judge(not_off.empty() ?
             verification_message(verification.tolerance, result) :
@@ -226,15 +248,16 @@ namespace Debond
           shortfall,
           result);
 
-    result.largest =
-      largest_values(scene.problem(), result.solve.u, result.solve.load_factor);
     const bool is_loaded = has_load(scene, result.largest.displacement);
 
     // A loop that was interrupted has the solution of the mesh before.
-    const bool is_solution =
-      result.is_success() || !shortfall.empty() ||
-      (result.solve.status == SolverStatus::interrupted &&
-       !result.levels.empty());
+    bool is_solution = result.is_success() || !shortfall.empty() ||
+                       (result.solve.status == SolverStatus::interrupted &&
+                        !result.levels.empty());
+    if (scene.piece() != nullptr)
+      is_solution =
+        dealii::Utilities::MPI::broadcast(scene.piece()->nodes().communicator(),
+                                          is_solution);
     // At rest all of u is rounding, of which there is no error.
     if (is_solution && is_loaded)
       {
@@ -318,18 +341,12 @@ namespace Debond
 
 
 
-  template decltype(error_of<2>)             error_of<2>;
-  template decltype(error_of<3>)             error_of<3>;
-  template decltype(verification_message<2>) verification_message<2>;
-  template decltype(verification_message<3>) verification_message<3>;
-  template decltype(judge<2>)                judge<2>;
-  template decltype(judge<3>)                judge<3>;
-  template decltype(estimate<2>)             estimate<2>;
-  template decltype(estimate<3>)             estimate<3>;
-  template decltype(check_result<2>)         check_result<2>;
-  template decltype(check_result<3>)         check_result<3>;
-  template decltype(make_certifier<2>)       make_certifier<2>;
-  template decltype(make_certifier<3>)       make_certifier<3>;
-  template decltype(certify_result<2>)       certify_result<2>;
-  template decltype(certify_result<3>)       certify_result<3>;
+  template decltype(error_of<2>)       error_of<2>;
+  template decltype(error_of<3>)       error_of<3>;
+  template decltype(check_result<2>)   check_result<2>;
+  template decltype(check_result<3>)   check_result<3>;
+  template decltype(make_certifier<2>) make_certifier<2>;
+  template decltype(make_certifier<3>) make_certifier<3>;
+  template decltype(certify_result<2>) certify_result<2>;
+  template decltype(certify_result<3>) certify_result<3>;
 } // namespace Debond

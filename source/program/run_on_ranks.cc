@@ -6,7 +6,6 @@
 #include <debond/base/directory_lock.h>
 #include <debond/base/memory.h>
 #include <debond/base/text.h>
-#include <debond/check/plausibility.h>
 #include <debond/mesh/box_piece.h>
 #include <debond/mesh/mesh_piece.h>
 #include <debond/output/output_files.h>
@@ -14,7 +13,6 @@
 #include <debond/output/vtu.h>
 #include <debond/program/check_result.h>
 #include <debond/program/run.h>
-#include <debond/program/session.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -70,6 +68,9 @@ namespace Debond
           throw BadInput({parameters.scene + ": " + entry + ": " + what +
                           "; run the scene on one rank"});
       };
+      const auto first = [](const auto &entries) {
+        return entries.empty() ? std::string() : entries.begin()->first;
+      };
       const SolverParameters &solver = parameters.solver;
       const auto              box =
         std::dynamic_pointer_cast<const Box<dim>>(parameters.body);
@@ -96,9 +97,7 @@ namespace Debond
              "several ranks have multigrid only");
       refuse(solver.prove, "Solver/Prove", "several ranks have no proof");
       refuse(!parameters.loads.forces.empty(),
-             parameters.loads.forces.empty() ?
-               "" :
-               "Loads/Force " + parameters.loads.forces.begin()->first,
+             "Loads/Force " + first(parameters.loads.forces),
              "several ranks spread no total force");
       refuse(!parameters.load_path.factors.empty(),
              "Load path/Factors",
@@ -111,15 +110,11 @@ namespace Debond
              "Certificate/Kind",
              "several ranks have no certificate");
       refuse(!parameters.probes.empty(),
-             parameters.probes.empty() ?
-               "" :
-               "Probes/" + parameters.probes.begin()->first,
+             "Probes/" + first(parameters.probes),
              "several ranks have no probes");
       refuse(!parameters.supports.displacements.empty(),
-             parameters.supports.displacements.empty() ?
-               "" :
-               "Boundary conditions/Displacement " +
-                 parameters.supports.displacements.begin()->first,
+             "Boundary conditions/Displacement " +
+               first(parameters.supports.displacements),
              "several ranks share no prescribed displacements");
       refuse(!parameters.supports.gap.empty() ||
                !parameters.supports.gaps.empty(),
@@ -213,46 +208,12 @@ namespace Debond
       choice, solver, scene, record.has_details() ? &out : nullptr, terminal);
     result.times.emplace_back("solve", timer.wall_time());
 
-    timer.restart();
-    result.verification = verify(scene.problem(),
-                                 scene.adhesion(),
-                                 scene.law(),
-                                 result.solve.u,
-                                 result.solve.load_factor,
-                                 1e-6,
-                                 scene.piece());
-    result.largest      = largest_values(scene.problem(), result.solve.u, 1.);
-    for (double *const value : {&result.largest.displacement,
-                                &result.largest.gradient,
-                                &result.largest.von_mises})
-      *value = dealii::Utilities::MPI::max(*value, ranks);
-    const double largest_force = scene.piece()->nodes().largest(
-      scene.problem().fields().applied_nodal_forces().begin());
-    result.means = scene.means().values(scene.problem(),
-                                        result.solve.u,
-                                        result.solve.load_factor,
-                                        scene.piece());
-    result.times.emplace_back("verification", timer.wall_time());
-    result.notes = result.solve.notes;
-    append(result.solve.minimum.notes, result.notes);
-    append(parameters.notes, result.notes);
-    append(scene.notes(), result.notes);
-    judge(verification_message(parameters.verification.tolerance, result),
-          "",
-          result);
-    if (largest_force > 0. &&
-        dealii::Utilities::MPI::broadcast(ranks, result.is_success()))
-      {
-        timer.restart();
-        estimate(scene, scene.adhesion(), result);
-        result.times.emplace_back("error estimate", timer.wall_time());
-      }
-    append(plausibility_notes(scene.body().shape(),
-                              dim,
-                              largest_force > 0.,
-                              result.largest,
-                              parameters.degree),
-           result.notes);
+    check_result(parameters.verification,
+                 parameters.notes,
+                 scene,
+                 scene.adhesion(),
+                 "",
+                 result);
 
     timer.restart();
     try

@@ -5,7 +5,7 @@
 #include <debond/elasticity/side_moments.h>
 #include <debond/elasticity/temperature_load.h>
 #include <debond/mesh/positive_part.h>
-#include <debond/optimization/global/rounded_branches.h>
+#include <debond/optimization/global/convex_envelope.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/solve/certificate.h>
 

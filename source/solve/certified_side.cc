@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/optimization/global/growth.h>
+#include <debond/optimization/interval.h>
 #include <debond/solve/certified_side.h>
 
 #include <algorithm>

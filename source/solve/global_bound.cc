@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/elasticity/trace_constant.h>
-#include <debond/optimization/global/growth.h>
+#include <debond/optimization/interval.h>
 #include <debond/solve/global_bound.h>
 #include <debond/solve/mean_problem.h>
 #include <debond/solve/side_ranges.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/optimization/global/convex_envelope.h>
 #include <debond/optimization/global/convexity_shift.h>
-#include <debond/optimization/global/rounded_branches.h>
 #include <debond/solve/mean_problem.h>
 
 #include <algorithm>

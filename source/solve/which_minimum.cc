@@ -5,7 +5,6 @@
 #include <debond/contact/boundary_graph.h>
 #include <debond/input/bad_input.h>
 #include <debond/optimization/global/branch_search.h>
-#include <debond/optimization/global/guided_search.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/global_branch.h>

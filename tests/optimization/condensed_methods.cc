@@ -8,7 +8,6 @@
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/bundle/metric_direction.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
-#include <debond/optimization/majorise/active_set_guess.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>

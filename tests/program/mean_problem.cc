@@ -6,8 +6,8 @@
 // means, ends and deviations. Lemma 4 (a) bounds a deviation from above with
 // much to spare, so that no displacement shows a wrong factor in it.
 
-#include <debond/optimization/global/growth.h>
-#include <debond/optimization/global/rounded_branches.h>
+#include <debond/optimization/global/convex_envelope.h>
+#include <debond/optimization/interval.h>
 #include <debond/solve/global_bound.h>
 #include <debond/solve/mean_problem.h>
 #include <debond/solve/scene.h>

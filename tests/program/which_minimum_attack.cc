@@ -8,7 +8,7 @@
 
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/input/parameters.h>
-#include <debond/optimization/global/guided_search.h>
+#include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve.h>

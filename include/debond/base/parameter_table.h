@@ -28,7 +28,10 @@ namespace Debond
     using Property = std::function<bool(const std::string &)>;
 
     /// Without a property any text.
-    explicit Pattern(const std::string &words, const Property &property = {});
+    explicit Pattern(const std::string &words, const Property &property = {})
+      : words(words)
+      , property(property)
+    {}
 
     bool
     match(const std::string &value) const override
@@ -37,10 +40,16 @@ namespace Debond
     }
 
     std::string
-    description(const OutputStyle style = Machine) const override;
+    description(const OutputStyle = Machine) const override
+    {
+      return words;
+    }
 
     std::unique_ptr<PatternBase>
-    clone() const override;
+    clone() const override
+    {
+      return std::make_unique<Pattern>(*this);
+    }
 
   private:
     std::string words;
@@ -54,8 +63,11 @@ namespace Debond
     bool (*const property)(double) = [](double) { return true; });
 
   /// "a number > 0".
-  Pattern
-  positive_number();
+  inline Pattern
+  positive_number()
+  {
+    return number("> 0", [](double x) { return x > 0; });
+  }
 
   /// A positive number in units of the user, such that its products with others
   /// can be computed.
@@ -168,7 +180,10 @@ namespace Debond
 
     /// The value as it was written.
     const std::string &
-    get(const std::string &path) const;
+    get(const std::string &path) const
+    {
+      return entries.at(path).value;
+    }
 
     /// Where each entry was set, "FILE:LINE"; the file if it was not.
     std::map<std::string, std::string>
@@ -221,7 +236,11 @@ namespace Debond
     static std::string
     text(const std::string &documentation,
          const Pattern     &pattern,
-         const std::string &units);
+         const std::string &units)
+    {
+      return documentation + ". Allowed: " + pattern.description() +
+             ". Units: " + units + ".";
+    }
 
     std::vector<std::string>
     known_sections() const;

@@ -2,6 +2,7 @@
 #ifndef debond_base_text_h
 #define debond_base_text_h
 
+#include <iomanip>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -48,12 +49,14 @@ namespace Debond
 
   /// A line on the standard error, printable.
   void
-  print_error(const std::string &message,
-              const std::string &program = "debond");
+  print_error(const std::string &message);
 
   /// The number with this many digits behind the point, such as "1.23e-04".
-  std::string
-  scientific(const double value, const int digits);
+  inline std::string
+  scientific(const double value, const int digits)
+  {
+    return words(std::scientific, std::setprecision(digits), value);
+  }
 
   /// For bounds: the same, but not above the number, and not below it.
   std::string
@@ -62,8 +65,11 @@ namespace Debond
   scientific_above(const double value, const int digits);
 
   /// As scientific() without an exponent.
-  std::string
-  fixed_point(const double value, const int digits);
+  inline std::string
+  fixed_point(const double value, const int digits)
+  {
+    return words(std::fixed, std::setprecision(digits), value);
+  }
 } // namespace Debond
 
 #endif

@@ -6,7 +6,7 @@
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/linear_algebra/views.h>
 #include <debond/optimization/majorise/bound_qp.h>
-#include <debond/optimization/majorise/majorant_problem.h>
+#include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
 #include <Eigen/SparseCore>

@@ -22,7 +22,10 @@ namespace Debond
 
     /// Of the scene.
     std::string
-    entry() const;
+    entry() const
+    {
+      return "Loads/" + kind + ' ' + boundary;
+    }
 
     /// Of the expression: a pressure has one.
     unsigned int
@@ -55,8 +58,12 @@ namespace Debond
   };
 
   /// An expression for each component of a vector, or nothing.
-  Pattern
-  vector_expression();
+  inline Pattern
+  vector_expression()
+  {
+    return Pattern(
+      "nothing, or an expression for each component, separated by ';'");
+  }
 
   /// The section Loads.
   void

@@ -46,7 +46,12 @@ namespace Debond
 
     /// Of a step, from 0.
     LoadFactors
-    at(const unsigned int step) const;
+    at(const unsigned int step) const
+    {
+      return {factors[step],
+              displacement_factors.empty() ? factors[step] :
+                                             displacement_factors[step]};
+    }
 
     /// Whether only prescribed displacements change on the path.
     bool

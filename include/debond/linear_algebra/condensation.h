@@ -87,7 +87,10 @@ namespace Debond
 
     /// With both factors the same.
     void
-    scale_load(const double factor);
+    scale_load(const double factor)
+    {
+      scale_load(factor, factor);
+    }
 
     /// S, symmetric, a row for each kept unknown. Valid as long as this object.
     MatrixView
@@ -95,7 +98,10 @@ namespace Debond
 
     /// g.
     const Eigen::VectorXd &
-    load() const;
+    load() const
+    {
+      return g;
+    }
 
     /// c_0 with the other part, the energy of s = 0.
     double

@@ -38,10 +38,17 @@ namespace Debond
       unsigned int branch;       ///< its number in the given list
 
       double
-      value(const double s) const;
+      value(const double s) const
+      {
+        return curvature * s * s / 2. + slope * s +
+               static_cast<double>(constant);
+      }
 
       double
-      derivative(const double s) const;
+      derivative(const double s) const
+      {
+        return curvature * s + slope;
+      }
     };
 
     /// Pieces from kink to kink; branches that are nowhere the least have
@@ -57,17 +64,26 @@ namespace Debond
                          const double stretch = 1.) const;
 
     unsigned int
-    size() const;
+    size() const
+    {
+      return static_cast<unsigned int>(pieces.size());
+    }
 
     const Piece &
-    operator[](const unsigned int piece) const;
+    operator[](const unsigned int piece) const
+    {
+      return pieces[piece];
+    }
 
     /// The piece that holds at @p s; the first one for s > 0.
     unsigned int
     index(const double s) const;
 
     double
-    value(const double s) const;
+    value(const double s) const
+    {
+      return pieces[index(s)].value(s);
+    }
 
     /// The largest value, infinite if there is none.
     double

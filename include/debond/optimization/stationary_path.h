@@ -72,7 +72,10 @@ namespace Debond
     }
 
     const Eigen::VectorXd &
-    point() const;
+    point() const
+    {
+      return s;
+    }
 
     /// Whether some s_i was at a kink between the last two points.
     bool
@@ -100,7 +103,10 @@ namespace Debond
     };
 
     bool
-    is_free(const unsigned int i) const;
+    is_free(const unsigned int i) const
+    {
+      return segments[i] % 2 == 1;
+    }
 
     const BranchMinimum::Piece &
     piece(const unsigned int i) const;
@@ -110,7 +116,10 @@ namespace Debond
 
     /// How fast s_i goes to greater segments as t rises.
     double
-    opening(const unsigned int i) const;
+    opening(const unsigned int i) const
+    {
+      return is_free(i) ? -ds(i) : segments[i] == 0 ? -dr(i) : dr(i);
+    }
 
     /// What is left of the segment of s_i on the way to greater ones or back,
     /// in terms of s_i or its force.

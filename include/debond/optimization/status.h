@@ -27,8 +27,11 @@ namespace Debond
 
   /// Whether the end is the best that the solver can do: success, or stagnated,
   /// where a verification has to decide what the point is worth.
-  bool
-  can_be_verified(const SolverStatus status);
+  inline bool
+  can_be_verified(const SolverStatus status)
+  {
+    return status == SolverStatus::success || status == SolverStatus::stagnated;
+  }
 } // namespace Debond
 
 #endif

@@ -2,6 +2,9 @@
 #ifndef debond_output_csv_table_h
 #define debond_output_csv_table_h
 
+#include <debond/base/text.h>
+
+#include <functional>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -14,44 +17,56 @@ namespace Debond
   class CsvTable
   {
   public:
-    using Row = std::vector<std::string>;
-
-    explicit CsvTable(const Row &titles);
-
-    static std::string
-    cell(const std::string &text);
-
-    static std::string
-    cell(const double number);
-
-    /// Empty without a number.
-    static std::string
-    cell(const std::optional<double> &number);
-
-    template <typename T>
-    static std::enable_if_t<std::is_integral_v<T>, std::string>
-    cell(const T count)
+    /// A column with the @p value, a member or a function, of each item; all
+    /// columns have as many.
+    template <typename Item, typename Value>
+    void
+    add(const std::string       &title,
+        const std::vector<Item> &items,
+        const Value             &value)
     {
-      return std::to_string(count);
+      rows.resize(1 + items.size());
+      rows[0].push_back(cell(title));
+      for (std::size_t i = 0; i < items.size(); ++i)
+        rows[1 + i].push_back(cell(std::invoke(value, items[i])));
     }
 
-    /// As many cells as there are titles, but for empty ones at the end.
+    /// A last row, whose last cells may be left out.
     template <typename... Cells>
     void
     add_row(const Cells &...cells)
     {
-      add_row(Row{cell(cells)...});
+      rows.push_back({cell(cells)...});
+      rows.back().resize(rows[0].size());
     }
-
-    void
-    add_row(const Row &cells);
 
     /// Throws std::runtime_error naming the file if it cannot be written.
     void
     write(const std::string &file_name) const;
 
   private:
-    std::vector<Row> rows; ///< the titles first
+    static std::string
+    cell(const std::string &text);
+
+    template <typename T>
+    static std::enable_if_t<std::is_arithmetic_v<T>, std::string>
+    cell(const T number)
+    {
+      if constexpr (std::is_integral_v<T>)
+        return std::to_string(number);
+      else
+        return shortest_text(number);
+    }
+
+    /// Empty without a value.
+    template <typename T>
+    static std::string
+    cell(const std::optional<T> &value)
+    {
+      return value ? cell(*value) : "";
+    }
+
+    std::vector<std::vector<std::string>> rows; ///< the titles first
   };
 } // namespace Debond
 

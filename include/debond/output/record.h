@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <optional>
 #include <ostream>
 #include <sstream>
 #include <string>
@@ -31,7 +32,10 @@ namespace Debond
     /// An entry of summary.json by its JSON pointer, such as
     /// "/iterations/total"; studies find it by the same one.
     void
-    add(const std::string &pointer, const Json &value);
+    add(const std::string &pointer, const Json &value)
+    {
+      json[Json::json_pointer(pointer)] = value;
+    }
 
     /// A line of the log that has no label.
     void
@@ -51,6 +55,13 @@ namespace Debond
     /// std::runtime_error naming the file if it cannot be written.
     void
     write(const std::string &file_name) const;
+
+    /// Null without a number.
+    static Json
+    json_of(const std::optional<double> &number)
+    {
+      return number ? Json(*number) : Json();
+    }
 
   private:
     const bool         details;

@@ -24,31 +24,13 @@ namespace Debond
            const Scene<dim>  &scene,
            const DofVector   &u);
 
-  /// What the verification has against the result, or against the first
-  /// step of a load path that it has something against; empty if nothing.
-  template <int dim>
-  std::string
-  verification_message(const double tolerance, const RunResult<dim> &result);
-
-  /// Success needs the stop criterion and the verification. Where rounding
-  /// kept the method from its stop criterion, the verification decides; what
-  /// the method left is said in either case.
-  template <int dim>
-  void
-  judge(const std::string &failure,
-        const std::string &shortfall,
-        RunResult<dim>    &result);
-
-  /// Estimates the error of the mesh, with bonds as the load path has left
-  /// them.
-  template <int dim>
-  void
-  estimate(const Scene<dim>            &scene,
-           const AdhesionIntegral<dim> &bonds,
-           RunResult<dim>              &result);
-
-  /// Verifies what the solver found and adds what else is to be said of it.
-  /// @p notes: on the scene; @p bonds are as the load path has left them.
+  /// Verifies what the solver found, estimates the error of the mesh and adds
+  /// what else is to be said of the result. Success needs the stop criterion
+  /// and the verification. Where rounding kept the method from its stop
+  /// criterion, the verification decides; what the method left is said in
+  /// either case. @p notes: on the scene; @p bonds are as the load path has
+  /// left them. Ranks that share the scene call it together, and the first one
+  /// has the result.
   template <int dim>
   void
   check_result(const VerificationParameters   &verification,

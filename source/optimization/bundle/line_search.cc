@@ -37,10 +37,10 @@ namespace Debond
     /// t_L and J(x_k + t_L d_k) - J(x_k) by the given rule; zero if there is
     /// no descent.
     void
-    find_descent(const LineRestriction      &line,
-                 const double                v,
-                 const LineSearchParameters &parameters,
-                 LineSearchResult           &result)
+    find_descent(const LineRestriction          &line,
+                 const double                    v,
+                 const ProximalBundleParameters &parameters,
+                 LineSearchResult               &result)
     {
       const auto descends = [&](const double t, const double change) {
         return change <= parameters.m_L * t * v;
@@ -56,7 +56,7 @@ namespace Debond
           change            = line.change(t);
         }
 
-      if (parameters.rule == DescentRule::minimum)
+      if (parameters.line_search == DescentRule::minimum)
         for (double half = line.change(0.5 * t);
              half < change && descends(0.5 * t, half) && t > smallest_step;
              half = line.change(0.5 * t))
@@ -70,7 +70,7 @@ namespace Debond
       if (t == 1.)
         return;
 
-      if (parameters.rule == DescentRule::minimum)
+      if (parameters.line_search == DescentRule::minimum)
         {
           // The parabola through t = 0, t and 2 t.
           const double curvature = (change_at_twice_t - 2. * change) / (t * t);
@@ -86,7 +86,7 @@ namespace Debond
                 }
             }
         }
-      else if (parameters.rule == DescentRule::largest)
+      else if (parameters.line_search == DescentRule::largest)
         {
           double upper = 2. * t;
           for (unsigned int i = 0; i < maximum_bisections; ++i)
@@ -108,12 +108,12 @@ namespace Debond
 
 
   LineSearchResult
-  line_search(const LineRestriction      &line,
-              const DofVector            &d,
-              const double                d_norm,
-              const double                v,
-              const LineSearchParameters &parameters,
-              DofVector                  &eta)
+  line_search(const LineRestriction          &line,
+              const DofVector                &d,
+              const double                    d_norm,
+              const double                    v,
+              const ProximalBundleParameters &parameters,
+              DofVector                      &eta)
   {
     LineSearchResult result;
     find_descent(line, v, parameters, result);

@@ -2,6 +2,7 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/optimization/bundle/bundle_qp.h>
+#include <debond/optimization/bundle/line_search.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
 
 #include <algorithm>
@@ -244,18 +245,6 @@ namespace Debond
 
 
 
-    [[noreturn]] void
-    out_of_range(const std::string &name,
-                 const double       value,
-                 const std::string &range)
-    {
-      std::ostringstream text;
-      text << name << " = " << value << " must be " << range << '.';
-      throw std::invalid_argument(text.str());
-    }
-
-
-
     std::string
     failure_message(const SolverStatus              status,
                     const double                    v,
@@ -309,37 +298,6 @@ namespace Debond
 
 
 
-  void
-  ProximalBundleParameters::validate() const
-  {
-    if (!(u > 0.) || !std::isfinite(u))
-      out_of_range("Proximal weight u_k", u, "positive");
-    if (!(gamma >= 0.) || !std::isfinite(gamma))
-      out_of_range("Distance weight gamma", gamma, "nonnegative");
-    if (!(t_bar > 0. && t_bar <= 1.))
-      out_of_range("Long step threshold t_bar", t_bar, "in (0, 1]");
-    if (!(m_L > 0. && m_L < 0.5))
-      out_of_range("Descent fraction m_L", m_L, "in (0, 1/2)");
-    if (!(m_R > m_L && m_R < 1.))
-      out_of_range("Slope fraction m_R", m_R, "in (m_L, 1)");
-    if (!(epsilon_s > 0.) || !std::isfinite(epsilon_s))
-      out_of_range("Stop tolerance epsilon_s", epsilon_s, "positive");
-    if (bundle_size < 2)
-      out_of_range("Bundle size", bundle_size, "at least 2");
-    if (maximum_iterations < 1)
-      out_of_range("Maximum iterations", maximum_iterations, "at least 1");
-  }
-
-
-
-  ProximalBundle::ProximalBundle(const ProximalBundleParameters &parameters)
-    : parameters(parameters)
-  {
-    parameters.validate();
-  }
-
-
-
   ProximalBundleResult
   ProximalBundle::minimize(const Objective   &objective,
                            const UpperBounds &bounds,
@@ -365,12 +323,7 @@ namespace Debond
       throw std::invalid_argument(
         "The start of the bundle method must satisfy the bounds.");
 
-    ProximalBundleResult       result;
-    const LineSearchParameters line_search_parameters{parameters.line_search,
-                                                      parameters.m_L,
-                                                      parameters.m_R,
-                                                      parameters.t_bar,
-                                                      parameters.gamma};
+    ProximalBundleResult result;
 
     dealii::Timer qp_timer, objective_timer, algebra_timer;
     qp_timer.stop();
@@ -441,8 +394,8 @@ namespace Debond
 
         objective_timer.start();
         const auto             line = objective.along(x, d);
-        const LineSearchResult step = line_search(
-          *line, d, d_length, result.v, line_search_parameters, eta);
+        const LineSearchResult step =
+          line_search(*line, d, d_length, result.v, parameters, eta);
         objective_timer.stop();
         if (!step.success)
           {

@@ -153,7 +153,7 @@ namespace Debond
 
 
 
-  unsigned int
+  void
   minimise_relaxation(const BoxProblem                  &problem,
                       const std::vector<ConvexEnvelope> &envelopes,
                       Eigen::VectorXd                   &s)
@@ -171,7 +171,7 @@ namespace Debond
                                        s(i) - gradient(i) / problem.A(i, i));
         // Any point has a bound.
         if (places == old_places || InterruptGuard::requested())
-          return step;
+          return;
         const Eigen::VectorXd old_s = s;
         solve_for(places, problem, envelopes, s);
         if (step < n_full_steps)
@@ -180,7 +180,6 @@ namespace Debond
         for (unsigned int k = 0; k < n_sweeps; ++k)
           sweep(problem, envelopes, s);
       }
-    return maximum_newton_steps;
   }
 
 
@@ -217,14 +216,6 @@ namespace Debond
     sum -= (n + 16.L) * std::numeric_limits<long double>::epsilon() * size;
     value = static_cast<double>(sum);
     value -= std::numeric_limits<double>::epsilon() * std::abs(value);
-  }
-
-
-
-  double
-  LowerBound::largest(const unsigned int i) const
-  {
-    return std::max(std::abs(problem.lower(i)), std::abs(problem.upper(i)));
   }
 
 

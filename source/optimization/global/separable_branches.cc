@@ -3,12 +3,6 @@
 
 namespace Debond
 {
-  SeparableBranches::SeparableBranches(const std::vector<BranchMinimum> &f)
-    : f(f)
-  {}
-
-
-
   double
   SeparableBranches::value(const VectorView &s) const
   {

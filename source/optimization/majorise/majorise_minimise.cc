@@ -29,15 +29,6 @@ namespace Debond
 
 
 
-  bool
-  MajoriseMinimise::has_converged(const MajorantProblem::State &state) const
-  {
-    return state.residual <=
-           std::max(parameters.tolerance, state.residual_rounding);
-  }
-
-
-
   MajoriseMinimiseResult
   MajoriseMinimise::minimize(MajorantProblem &problem,
                              const Monitor   &monitor) const

@@ -2,46 +2,10 @@
 #ifndef debond_optimization_bundle_line_search_h
 #define debond_optimization_bundle_line_search_h
 
-#include <debond/optimization/objective.h>
-
-#include <string>
+#include <debond/optimization/bundle/proximal_bundle.h>
 
 namespace Debond
 {
-  enum class StepKind
-  {
-    long_step,
-    short_step,
-    null_step
-  };
-
-  std::string
-  to_string(const StepKind kind);
-
-
-
-  /// Which of the steps with (14) is taken; the paper leaves it open.
-  enum class DescentRule
-  {
-    largest, ///< the largest in [0, 1], by bisection: the paper's words
-    halving, ///< the first of 1, 1/2, 1/4, ...
-    minimum  ///< on along that sequence while J falls, then a parabola
-  };
-
-
-
-  /// The constants of the line search, with the paper's symbols.
-  struct LineSearchParameters
-  {
-    DescentRule rule;
-    double      m_L;   ///< eq. (14)
-    double      m_R;   ///< eq. (15)
-    double      t_bar; ///< smallest long step
-    double      gamma; ///< weight of the distance in beta, eq. (15)
-  };
-
-
-
   struct LineSearchResult
   {
     /// False if no t_R with eq. (15) was found.
@@ -78,12 +42,12 @@ namespace Debond
    * subgradient at y_{k+1}.
    */
   LineSearchResult
-  line_search(const LineRestriction      &line,
-              const DofVector            &d,
-              const double                d_norm,
-              const double                v,
-              const LineSearchParameters &parameters,
-              DofVector                  &eta);
+  line_search(const LineRestriction          &line,
+              const DofVector                &d,
+              const double                    d_norm,
+              const double                    v,
+              const ProximalBundleParameters &parameters,
+              DofVector                      &eta);
 } // namespace Debond
 
 #endif

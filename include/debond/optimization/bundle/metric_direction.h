@@ -4,8 +4,8 @@
 
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/linear_algebra/views.h>
-#include <debond/optimization/bundle/direction_problem.h>
 #include <debond/optimization/majorise/bound_qp.h>
+#include <debond/optimization/objective.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
 namespace Debond

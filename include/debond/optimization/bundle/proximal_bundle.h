@@ -2,8 +2,6 @@
 #ifndef debond_optimization_bundle_proximal_bundle_h
 #define debond_optimization_bundle_proximal_bundle_h
 
-#include <debond/optimization/bundle/direction_problem.h>
-#include <debond/optimization/bundle/line_search.h>
 #include <debond/optimization/objective.h>
 #include <debond/optimization/status.h>
 
@@ -13,6 +11,28 @@
 
 namespace Debond
 {
+  enum class StepKind
+  {
+    long_step,
+    short_step,
+    null_step
+  };
+
+  std::string
+  to_string(const StepKind kind);
+
+
+
+  /// Which of the steps with (14) is taken; the paper leaves it open.
+  enum class DescentRule
+  {
+    largest, ///< the largest in [0, 1], by bisection: the paper's words
+    halving, ///< the first of 1, 1/2, 1/4, ...
+    minimum  ///< on along that sequence while J falls, then a parabola
+  };
+
+
+
   /// The parameters of the paper's Section 4, with its symbols.
   struct ProximalBundleParameters
   {
@@ -46,11 +66,6 @@ namespace Debond
     unsigned int bundle_size = 200;
 
     unsigned int maximum_iterations = 40000;
-
-    /// Throws std::invalid_argument naming the parameter if one is outside
-    /// its range.
-    void
-    validate() const;
   };
 
 
@@ -114,8 +129,9 @@ namespace Debond
     /// SolverStatus::interrupted.
     using Monitor = std::function<bool(const BundleIteration &)>;
 
-    /// Throws std::invalid_argument for parameters out of range.
-    explicit ProximalBundle(const ProximalBundleParameters &parameters);
+    explicit ProximalBundle(const ProximalBundleParameters &parameters)
+      : parameters(parameters)
+    {}
 
     /// Improves x. Throws std::invalid_argument if x is not in K.
     ProximalBundleResult

@@ -3,10 +3,12 @@
 #define debond_optimization_global_envelope_relaxation_h
 
 #include <debond/optimization/global/convex_envelope.h>
-#include <debond/optimization/global/growth.h>
+#include <debond/optimization/interval.h>
 
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace Debond
@@ -24,10 +26,10 @@ namespace Debond
   /**
    * Moves s towards the minimum of q with the convex envelopes of f_i in place
    * of f_i, by a Newton method for s = prox(s - D^{-1}(A s - g)), D = diag A,
-   * with sweeps over the unknowns where it cycles. Returns the number of
-   * factorisations. Whatever s is in the end, LowerBound holds there.
+   * with sweeps over the unknowns where it cycles. Whatever s is in the end,
+   * LowerBound holds there.
    */
-  unsigned int
+  void
   minimise_relaxation(const BoxProblem                  &problem,
                       const std::vector<ConvexEnvelope> &envelopes,
                       Eigen::VectorXd                   &s);
@@ -67,7 +69,10 @@ namespace Debond
     std::vector<long double> r, least;
 
     double
-    largest(const unsigned int i) const;
+    largest(const unsigned int i) const
+    {
+      return std::max(std::abs(problem.lower(i)), std::abs(problem.upper(i)));
+    }
   };
 } // namespace Debond
 

@@ -19,7 +19,9 @@ namespace Debond
   {
     std::vector<BranchMinimum> f;
 
-    explicit SeparableBranches(const std::vector<BranchMinimum> &f);
+    explicit SeparableBranches(const std::vector<BranchMinimum> &f)
+      : f(f)
+    {}
 
     double
     value(const VectorView &s) const override;

@@ -2,15 +2,70 @@
 #ifndef debond_optimization_majorise_majorise_minimise_h
 #define debond_optimization_majorise_majorise_minimise_h
 
-#include <debond/optimization/majorise/majorant_problem.h>
 #include <debond/optimization/status.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
 
 namespace Debond
 {
+  /**
+   * What majorise-minimise needs of a functional
+   *
+   *     J(x) = q(x) + Phi(s),  s <= 0,
+   *
+   * q a convex quadratic, s some components of x and Phi a
+   * PiecewiseQuadratic: the current point x, and a solver for the convex
+   * problem in which Phi is replaced by its branch at a point.
+   */
+  class MajorantProblem
+  {
+  public:
+    virtual ~MajorantProblem() = default;
+
+    struct State
+    {
+      double functional;          ///< J
+      double functional_rounding; ///< what rounding can change in J
+
+      /// Largest violation of the optimality conditions, relative to their
+      /// largest terms, and the part of it that rounding leaves.
+      double residual;
+      double residual_rounding;
+
+      unsigned int n_active; ///< components of s that are zero
+    };
+
+    /// Evaluates the current point from the original data.
+    virtual State
+    evaluate() = 0;
+
+    /// The majorant is the one that touches J at the current point from now
+    /// on. Returns false if that is known to be the one of before.
+    virtual bool
+    majorise() = 0;
+
+    struct Minimisation
+    {
+      /// success, stagnated, quadratic_program, or with the current point as
+      /// it was before comes_off (there is no minimum) or interrupted.
+      SolverStatus status;
+
+      unsigned int active_set_steps;  ///< linear systems
+      unsigned int linear_iterations; ///< for all of them, 0 if factorised
+    };
+
+    /// Moves the current point towards the minimum of the majorant until the
+    /// majorant's optimality conditions hold to @p tolerance, in the measure
+    /// of State::residual.
+    virtual Minimisation
+    minimise(const double tolerance) = 0;
+  };
+
+
+
   struct MajoriseMinimiseParameters
   {
     /// Stop if the optimality conditions hold to this part of their largest
@@ -75,7 +130,11 @@ namespace Debond
 
     /// Whether a point in this state ends the method with success.
     bool
-    has_converged(const MajorantProblem::State &state) const;
+    has_converged(const MajorantProblem::State &state) const
+    {
+      return state.residual <=
+             std::max(parameters.tolerance, state.residual_rounding);
+    }
 
   private:
     MajoriseMinimiseParameters parameters;
