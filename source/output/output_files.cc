@@ -6,7 +6,6 @@
 #include <debond/solve/displacement.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 
 namespace Debond
@@ -68,16 +67,15 @@ namespace Debond
     {
       if (!certificate || certificate->gaps.empty())
         return {};
-      std::vector<CellField>                   fields;
-      std::vector<std::array<unsigned int, 2>> components;
+      std::vector<CellField>               fields;
+      std::vector<dealii::TableIndices<2>> components;
       for (unsigned int k = 0;
            k < dealii::SymmetricTensor<2, dim>::n_independent_components;
            ++k)
         {
           const auto indices =
             dealii::SymmetricTensor<2, dim>::unrolled_to_component_indices(k);
-          components.push_back({{static_cast<unsigned int>(indices[0]),
-                                 static_cast<unsigned int>(indices[1])}});
+          components.push_back(indices);
           fields.push_back({std::string("equilibrated_stress_") +
                               "xyz"[indices[0]] + "xyz" [indices[1]],
                             {}});
@@ -88,8 +86,7 @@ namespace Debond
         {
           const auto &stress = certificate->stresses[cell->active_cell_index()];
           for (unsigned int k = 0; k < components.size(); ++k)
-            fields[k].second.push_back(
-              stress[components[k][0]][components[k][1]]);
+            fields[k].second.push_back(stress[components[k]]);
           fields.back().second.push_back(
             certificate->gaps[cell->active_cell_index()] / cell->measure());
         }

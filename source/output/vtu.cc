@@ -152,23 +152,15 @@ namespace Debond
       /// Of a node and its measure.
       std::function<double(const ContactNodeState &, double)> value;
 
+      /// As the displacement, of which edges have coefficients of degree 2.
       /// Held nodes do not move; what a clamp bears there is not the
       /// foundation's.
-      bool is_zero_where_held = false;
-
-      /// As the displacement, of which edges have coefficients of degree 2.
       bool is_displacement = false;
     };
 
     const std::vector<ContactScalar> contact_scalars = {
-      {"u_nu",
-       [](const auto &node, const double) { return node.u_nu; },
-       true,
-       true},
-      {"gap",
-       [](const auto &node, const double) { return -node.s; },
-       true,
-       true},
+      {"u_nu", [](const auto &node, const double) { return node.u_nu; }, true},
+      {"gap", [](const auto &node, const double) { return -node.s; }, true},
       {"normal_force_density",
        [](const auto &node, const double measure) {
          return node.normal_force / measure;
@@ -291,7 +283,7 @@ namespace Debond
           is_held ? nan : verification.tangential_forces[node][d] / measure);
       for (const ContactScalar &scalar : contact_scalars)
         values.push_back(is_held ?
-                           (scalar.is_zero_where_held ? 0. : nan) :
+                           (scalar.is_displacement ? 0. : nan) :
                            scalar.value(verification.nodes[node], measure));
       return values;
     };

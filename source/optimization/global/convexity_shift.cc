@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/linear_algebra/dense_cholesky.h>
+#include <debond/linear_algebra/cholesky.h>
 #include <debond/optimization/global/convexity_shift.h>
 
 #include <algorithm>

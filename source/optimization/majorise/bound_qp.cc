@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/interrupt.h>
-#include <debond/linear_algebra/dense_cholesky.h>
+#include <debond/linear_algebra/cholesky.h>
 #include <debond/optimization/majorise/bound_qp.h>
 
 #include <algorithm>
