@@ -2,14 +2,13 @@
 #include <deal.II/base/utilities.h>
 
 #include <debond/base/memory.h>
+#include <debond/base/text.h>
 
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <fstream>
-#include <iomanip>
 #include <limits>
-#include <sstream>
 
 namespace Debond
 {
@@ -79,9 +78,7 @@ namespace Debond
   std::string
   in_gib(const double bytes)
   {
-    const double       gib = bytes / (1 << 30);
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(gib < 10. ? 1 : 0) << gib << " GiB";
-    return text.str();
+    const double gib = bytes / (1 << 30);
+    return fixed_point(gib, gib < 10. ? 1 : 0) + " GiB";
   }
 } // namespace Debond

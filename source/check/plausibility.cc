@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/text.h>
 #include <debond/check/plausibility.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 namespace Debond
 {
@@ -65,26 +65,18 @@ namespace Debond
                      const unsigned int   degree)
   {
     std::vector<std::string> notes;
-    std::ostringstream       text;
-    text.precision(2);
-    const auto add_note = [&]() {
-      notes.push_back(text.str());
-      text.str("");
+    const auto               add = [&notes](const auto &...parts) {
+      notes.push_back(words(std::setprecision(2), parts...));
     };
 
     if (!has_load)
-      {
-        text << "the scene has no load";
-        add_note();
-      }
+      add("the scene has no load");
     if (largest.gradient > largest_small_gradient)
-      {
-        text << "displacement gradients up to " << largest.gradient
-             << " are beyond linear elasticity, which is for small strains and "
-                "rotations, below about "
-             << largest_small_gradient;
-        add_note();
-      }
+      add("displacement gradients up to ",
+          largest.gradient,
+          " are beyond linear elasticity, which is for small strains and "
+          "rotations, below about ",
+          largest_small_gradient);
 
     // How long and how thin a body of another shape is, is not known; quadratic
     // displacements bend.
@@ -111,18 +103,16 @@ namespace Debond
     if (slender && bending > largest_cell * thickness)
       {
         const double size = bending / thickness;
-        text << "cells of " << size << " times the body's thickness: bent, a "
-             << "strip has about "
-             << std::round(100. / (1. + locking * size * size))
-             << " % of its J, with a quarter 96 %";
-        add_note();
+        add("cells of ",
+            size,
+            " times the body's thickness: bent, a strip has about ",
+            std::round(100. / (1. + locking * size * size)),
+            " % of its J, with a quarter 96 %");
       }
     else if (longest > largest_stretch * shortest)
-      {
-        text << "cells are stretched by a factor of " << longest / shortest
-             << ", which makes them stiff where they bend";
-        add_note();
-      }
+      add("cells are stretched by a factor of ",
+          longest / shortest,
+          ", which makes them stiff where they bend");
     return notes;
   }
 

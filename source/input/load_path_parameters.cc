@@ -20,10 +20,7 @@ namespace Debond
     double
     rounded_to_decimals(const double number)
     {
-      std::ostringstream text;
-      text.precision(12);
-      text << number;
-      return std::stod(text.str());
+      return std::stod(words(std::setprecision(12), number));
     }
 
 

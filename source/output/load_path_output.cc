@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/data_out_base.h>
+#include <deal.II/base/utilities.h>
 
 #include <debond/base/atomic_file.h>
 #include <debond/output/csv_table.h>
@@ -211,10 +212,8 @@ namespace Debond
   LoadPathOutput<dim>::name_of_step(const std::string &body,
                                     const unsigned int step) const
   {
-    std::ostringstream name;
-    name << directory_of_steps << '/' << body << '-' << std::setw(5)
-         << std::setfill('0') << step << ".vtu";
-    return name.str();
+    return directory_of_steps + '/' + body + '-' +
+           dealii::Utilities::int_to_string(step, 5) + ".vtu";
   }
 
 
