@@ -34,13 +34,13 @@ namespace Debond
   Pattern
   quantity(const bool may_be_zero)
   {
-    const std::string range = "from 1e-100 to 1e100";
-    const auto is_positive = [](double x) { return x >= 1e-100 && x <= 1e100; };
-    const auto is_zero_or_positive = [](double x) {
-      return x == 0. || (x >= 1e-100 && x <= 1e100);
-    };
-    return may_be_zero ? number(range + ", or 0", is_zero_or_positive) :
-                         number(range, is_positive);
+    return may_be_zero ? number("from 1e-100 to 1e100, or 0",
+                                [](double x) {
+                                  return x == 0. || (x >= 1e-100 && x <= 1e100);
+                                }) :
+                         number("from 1e-100 to 1e100", [](double x) {
+                           return x >= 1e-100 && x <= 1e100;
+                         });
   }
 
 

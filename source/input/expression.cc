@@ -5,6 +5,8 @@
 #include <debond/base/text.h>
 #include <debond/input/expression.h>
 
+#include <boost/io/ios_state.hpp>
+
 #include <cctype>
 #include <iostream>
 #include <sstream>
@@ -15,29 +17,6 @@ namespace Debond
 {
   namespace
   {
-    /// FunctionParser reports errors on std::cerr in many lines before it
-    /// throws; this keeps them back.
-    class QuietErrors
-    {
-    public:
-      QuietErrors()
-        : buffer(std::cerr.rdbuf(nullptr))
-      {}
-
-      ~QuietErrors()
-      {
-        std::cerr.rdbuf(buffer);
-        std::cerr.clear();
-      }
-
-      QuietErrors(const QuietErrors &) = delete;
-
-    private:
-      std::streambuf *const buffer;
-    };
-
-
-
     /// Throws std::invalid_argument for what muParser takes in another sense
     /// than its author: for it the value of "a, b" is b, "=" assigns to a
     /// coordinate, and rand() has another value each time.
@@ -100,8 +79,9 @@ namespace Debond
 
     try
       {
-        const QuietErrors quiet;
-        const auto        function =
+        // FunctionParser reports errors in many lines before it throws.
+        const boost::io::ios_rdbuf_saver quiet(std::cerr, nullptr);
+        const auto                       function =
           std::make_shared<dealii::FunctionParser<dim>>(n_components);
         function->initialize(
           dealii::FunctionParser<dim>::default_variable_names(),

@@ -8,8 +8,6 @@
 #include <debond/output/vtu.h>
 
 #include <filesystem>
-#include <iomanip>
-#include <sstream>
 
 namespace Debond
 {

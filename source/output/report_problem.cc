@@ -3,6 +3,7 @@
 #include <debond/base/version.h>
 #include <debond/output/report.h>
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -44,6 +45,12 @@ namespace Debond
                        "" :
                        words(", alpha = ", material.thermal_expansion));
       };
+      const auto lines =
+        [&record](const std::string                        &label,
+                  const std::map<std::string, std::string> &texts) {
+          for (const auto &[side, text] : texts)
+            record.line(label + ' ' + side, text);
+        };
       const Material &material = problem.materials.everywhere;
       record.line("material",
                   numbers(material) +
@@ -58,20 +65,15 @@ namespace Debond
         record.line("roller", list(problem.supports.rollers));
       if (!problem.supports.symmetry_planes.empty())
         record.line("symmetry", list(problem.supports.symmetry_planes));
-      for (const auto &[side, displacement] : problem.supports.displacements)
-        record.line("displacement " + side, displacement);
+      lines("displacement", problem.supports.displacements);
       if (!problem.supports.gap.empty())
         record.line("initial gap", problem.supports.gap);
-      for (const auto &[side, gap] : problem.supports.gaps)
-        record.line("initial gap " + side, gap);
+      lines("initial gap", problem.supports.gaps);
       if (!problem.loads.body_force.empty())
         record.line("body force", problem.loads.body_force);
-      for (const auto &[side, traction] : problem.loads.tractions)
-        record.line("traction " + side, traction);
-      for (const auto &[side, pressure] : problem.loads.pressures)
-        record.line("pressure " + side, pressure);
-      for (const auto &[side, force] : problem.loads.forces)
-        record.line("force " + side, force);
+      lines("traction", problem.loads.tractions);
+      lines("pressure", problem.loads.pressures);
+      lines("force", problem.loads.forces);
       if (!problem.loads.temperature_change.empty())
         record.line("temperature change", problem.loads.temperature_change);
       record.add("/contact_nodes", n_contact_nodes);
@@ -89,8 +91,7 @@ namespace Debond
       for (const auto &[side, bonds] : problem.law.boundaries)
         record.line("bonds " + side,
                     "a = " + bonds.stiffness + ", M = " + bonds.threshold);
-      for (const auto &[side, text] : problem.tangential_displacements)
-        record.line("tangential " + side, text);
+      lines("tangential", problem.tangential_displacements);
     }
   } // namespace
 

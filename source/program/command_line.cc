@@ -179,13 +179,47 @@ namespace Debond
 
 
 
-    /// Does an action, and makes an exit code of what that throws.
-    using Guard = ExitCode(const std::function<ExitCode()> &);
+    /// Does @p action and returns its exit code. What it throws is reported on
+    /// std::cerr: each error of bad input, too little memory, and faults of the
+    /// program. Ranks agree on bad input, so the first one speaks for all; what
+    /// happens to one alone, such as a lack of memory, ends them all.
+    ExitCode
+    guard(const std::function<ExitCode()> &action)
+    {
+      const bool has_ranks = n_started_ranks() > 1;
+      ExitCode   code      = ExitCode::internal_error;
+      try
+        {
+          return action();
+        }
+      catch (const BadInput &error)
+        {
+          if (!has_ranks ||
+              dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+            for (const std::string &line : error.lines)
+              print_error(line);
+          return ExitCode::bad_input;
+        }
+      catch (const std::bad_alloc &)
+        {
+          print_error("there is not enough memory for this scene; try fewer "
+                      "cells or a smaller bundle");
+          code = ExitCode::bad_input;
+        }
+      catch (const std::exception &error)
+        {
+          std::cerr << "debond: internal error: " << error.what() << std::endl;
+        }
+      if (has_ranks)
+        MPI_Abort(MPI_COMM_WORLD, static_cast<int>(code));
+      return code;
+    }
+
+
 
     ExitCode
     execute_scenes(const std::vector<std::string> &scenes,
-                   const SceneOptions             &options,
-                   Guard                          &guard)
+                   const SceneOptions             &options)
     {
       const InterruptGuard  interrupts;
       Directories           directories;
@@ -219,7 +253,7 @@ namespace Debond
 
 
     ExitCode
-    execute(const int argc, const char *const argv[], Guard &guard)
+    execute(const int argc, const char *const argv[])
     {
       const po::options_description visible = visible_options();
       const po::variables_map       values  = parse(argc, argv, visible);
@@ -259,67 +293,7 @@ namespace Debond
         }
       if (scenes.empty())
         throw BadInput({"no scene is given; see debond --help"});
-      return execute_scenes(scenes, options, guard);
-    }
-
-
-
-    /// Does @p action and returns its exit code. What it throws is reported on
-    /// std::cerr: each error of bad input, too little memory, and faults of the
-    /// program.
-    ExitCode
-    guard_here(const std::function<ExitCode()> &action)
-    {
-      try
-        {
-          return action();
-        }
-      catch (const BadInput &error)
-        {
-          for (const std::string &line : error.lines)
-            print_error(line);
-          return ExitCode::bad_input;
-        }
-      catch (const std::bad_alloc &)
-        {
-          print_error("there is not enough memory for this scene; try fewer "
-                      "cells or a smaller bundle");
-          return ExitCode::bad_input;
-        }
-      catch (const std::exception &error)
-        {
-          std::cerr << "debond: internal error: " << error.what() << std::endl;
-          return ExitCode::internal_error;
-        }
-    }
-
-
-
-    /// Ranks agree on bad input and results, so the first one speaks for all.
-    /// What happens to one alone, such as a lack of memory, ends them all.
-    ExitCode
-    guard_on_ranks(const std::function<ExitCode()> &action)
-    {
-      const bool is_first =
-        dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
-      return guard_here([&]() {
-        try
-          {
-            return action();
-          }
-        catch (const BadInput &)
-          {
-            if (is_first)
-              throw;
-            return ExitCode::bad_input;
-          }
-        catch (...)
-          {
-            const ExitCode code = guard_here([]() -> ExitCode { throw; });
-            MPI_Abort(MPI_COMM_WORLD, static_cast<int>(code));
-            return code;
-          }
-      });
+      return execute_scenes(scenes, options);
     }
   } // namespace
 
@@ -333,13 +307,12 @@ namespace Debond
     dealii::MultithreadInfo::set_thread_limit(1);
     use_one_blas_thread_by_default();
     RunWatch watch(std::cout, static_cast<int>(ExitCode::interrupted));
-    if (n_started_ranks() == 1)
-      return guard_here([&]() { return execute(argc, argv, guard_here); });
-
-    start_mpi();
-    if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
-      std::cout.setstate(std::ios::failbit);
-    return guard_on_ranks(
-      [&]() { return execute(argc, argv, guard_on_ranks); });
+    if (n_started_ranks() > 1)
+      {
+        start_mpi();
+        if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
+          std::cout.setstate(std::ios::failbit);
+      }
+    return guard([&]() { return execute(argc, argv); });
   }
 } // namespace Debond

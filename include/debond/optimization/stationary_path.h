@@ -108,9 +108,6 @@ namespace Debond
       return segments[i] % 2 == 1;
     }
 
-    const BranchMinimum::Piece &
-    piece(const unsigned int i) const;
-
     double
     derivative(const unsigned int i, const unsigned int piece) const;
 

@@ -2,7 +2,6 @@
 #ifndef debond_output_report_h
 #define debond_output_report_h
 
-#include <debond/input/load_path_parameters.h>
 #include <debond/output/record.h>
 #include <debond/output/run_result.h>
 #include <debond/solve/method_choice.h>
@@ -27,14 +26,6 @@ namespace Debond
   report_level(const unsigned int   number,
                const AdaptiveLevel &level,
                Record              &record);
-
-  /// What became of the factors of a load path, and its curve of stationary
-  /// states.
-  template <int dim>
-  void
-  report_load_path(const LoadPathParameters &load_path,
-                   const RunResult<dim>     &result,
-                   Record                   &record);
 
   /// Status, result, that of a load path as well, and verification.
   template <int dim>
