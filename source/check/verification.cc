@@ -123,14 +123,14 @@ namespace Debond
     double sum = 0.;
     for (const auto &face : boundary.faces)
       {
-        std::array<double, dim> beyond;
+        std::array<double, dim> threshold, beyond;
         for (unsigned int k = 0; k < dim; ++k)
           {
             const BondScale bonds = adhesion.bonds_at(face, k);
             const bool      is_loose =
               bonds.energy == 0. || adhesion.least_piece_at(face, k) == last;
-            beyond[k] = -adhesion.trace_at(face, k, s) -
-                        (is_loose ? 0. : law.bond_threshold() * bonds.stretch);
+            threshold[k] = is_loose ? 0. : law.bond_threshold() * bonds.stretch;
+            beyond[k]    = -adhesion.trace_at(face, k, s) - threshold[k];
           }
         if (boundary.degree == 2)
           {
@@ -139,9 +139,6 @@ namespace Debond
             for (double &opening : coefficients)
               opening *= -1.;
             // The threshold is linear between the vertices.
-            std::array<double, dim> threshold;
-            for (unsigned int k = 0; k < dim; ++k)
-              threshold[k] = -adhesion.trace_at(face, k, s) - beyond[k];
             for (unsigned int k = 0; k < dim; ++k)
               coefficients[k] -= threshold[k];
             for (unsigned int e = 0; e < n_simplex_edges(dim); ++e)

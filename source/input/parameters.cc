@@ -216,17 +216,18 @@ namespace Debond
                  const BodyParameters                     &body,
                  const std::map<std::string, std::string> &parts)
     {
-      std::set<std::string> used = p.clamped_boundaries;
-      for (const auto &[name, unused] : p.law.boundaries)
-        used.insert(name);
-      for (const auto &[name, unused] : p.supports.gaps)
-        used.insert(name);
-      for (const auto &[name, unused] : p.tangential_displacements)
-        used.insert(name);
+      std::set<std::string> used      = p.clamped_boundaries;
+      const auto            use_names = [&used](const auto &texts) {
+        for (const auto &[name, unused] : texts)
+          used.insert(name);
+      };
+      use_names(p.law.boundaries);
+      use_names(p.supports.gaps);
+      use_names(p.tangential_displacements);
+      use_names(p.supports.displacements);
+      use_names(p.materials.of_regions());
       used.insert(p.contact_boundaries.begin(), p.contact_boundaries.end());
       for (const std::string &name : p.supports.all_rollers())
-        used.insert(name);
-      for (const auto &[name, unused] : p.supports.displacements)
         used.insert(name);
       for (const SurfaceLoad &load : p.loads.on_boundaries())
         used.insert(load.boundary);
@@ -236,8 +237,6 @@ namespace Debond
           used.insert(dealii::Utilities::trim(text.substr(space)));
       for (const auto &[unused, text] : parts)
         used.insert(dealii::Utilities::trim(text.substr(0, text.find(':'))));
-      for (const auto &[name, unused] : p.materials.of_regions())
-        used.insert(name);
 
       std::vector<std::string> names;
       const auto               add = [&](const std::set<std::string> &known) {

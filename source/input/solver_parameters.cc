@@ -12,14 +12,6 @@ namespace Debond
 {
   namespace
   {
-    bool
-    is_not_negative(const double x)
-    {
-      return x >= 0.;
-    }
-
-
-
     const std::string end_of_iterations =
       "Iterations after which the method gives up; the program then returns 3";
 
@@ -39,7 +31,7 @@ namespace Debond
       table.bind(
         section + "Distance weight",
         bundle.gamma,
-        number(">= 0", is_not_negative),
+        number(">= 0", [](double x) { return x >= 0.; }),
         "gamma, the weight of the distance in the subgradient locality measure",
         "energy per squared length");
       table.bind(section + "Long step threshold",
@@ -103,7 +95,7 @@ namespace Debond
       table.bind(
         section + "Distance weight",
         bundle.gamma,
-        number(">= 0", is_not_negative),
+        number(">= 0", [](double x) { return x >= 0.; }),
         "gamma, the weight of the distance, measured in the energy norm, in the subgradient locality measure");
       table.bind(section + "Bundle size",
                  bundle.bundle_size,

@@ -469,25 +469,17 @@ namespace Debond
         Eigen::VectorXd    column(n);
         for (unsigned int k = 0; k < n; ++k)
           column(k) = h(cuts[k], j) + kappa;
-        const bool in_set = cuts.size() > n; // kept from an earlier round
-        if (factor.append(column, h(j, j) + kappa, QPTolerance::independence) >
-            QPTolerance::independence)
-          {
-            if (!in_set)
-              {
-                cuts.push_back(j);
-                lambda.conservativeResize(n + 1);
-                lambda(n) = 0.;
-              }
-            return true;
-          }
-
-        if (!in_set)
+        // Unless it is in the set from an earlier round.
+        if (cuts.size() == n)
           {
             cuts.push_back(j);
             lambda.conservativeResize(n + 1);
             lambda(n) = 0.;
           }
+        if (factor.append(column, h(j, j) + kappa, QPTolerance::independence) >
+            QPTolerance::independence)
+          return true;
+
         factor.solve_in_place(column);
         DualPoint direction{Eigen::VectorXd(n + 1),
                             Eigen::VectorXd::Zero(mu.size())};

@@ -433,18 +433,9 @@ namespace Debond
           bundle.add(eta, step.alpha, (step.t_R - step.t_L) * d_length);
         algebra_timer.stop();
 
-        switch (step.kind)
-          {
-            case StepKind::long_step:
-              ++result.long_steps;
-              break;
-            case StepKind::short_step:
-              ++result.short_steps;
-              break;
-            case StepKind::null_step:
-              ++result.null_steps;
-              break;
-          }
+        result.long_steps += step.kind == StepKind::long_step;
+        result.short_steps += step.kind == StepKind::short_step;
+        result.null_steps += step.kind == StepKind::null_step;
         iteration.functional = result.functional;
         result.history.push_back(iteration);
         if (monitor && !monitor(iteration))
