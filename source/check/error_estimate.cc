@@ -476,10 +476,27 @@ namespace Debond
           (here.lambda + 2. * here.mu) * (a + b);
         if (degree == 2)
           {
+            // Linear on the face: r times the measure, without the jumps of the
+            // pressure, and these, at its vertices.
             std::array<dealii::Tensor<1, dim>, dim> r;
             std::array<double, dim>                 jumps = {};
-            find_linear_jump(
-              cell, face, neighbor, other, is_one_material, r, jumps);
+            const LinearStress &from = linear_stresses[face.cell];
+            const LinearStress &to   = linear_stresses[other];
+            for (unsigned int v = 0; v < dim; ++v)
+              {
+                const unsigned int index = cell->vertex_index(face.in_cell[v]);
+                unsigned int       w     = 0;
+                while (neighbor->vertex_index(w) != index)
+                  ++w;
+                r[v] =
+                  (to.stresses[w] - from.stresses[face.in_cell[v]]) * face.area;
+                if (is_one_material)
+                  {
+                    jumps[v] =
+                      from.pressures[face.in_cell[v]] - to.pressures[w];
+                    r[v] -= jumps[v] * face.area;
+                  }
+              }
             energy = fall(mean_square(jumps) * face.area.norm_square(),
                           pressure_stiffness) +
                      fall(mean_square(r), stiffness);
@@ -503,37 +520,6 @@ namespace Debond
           }
         parts[face.cell] += 0.5 * energy;
         parts[other] += 0.5 * energy;
-      }
-
-      /// Of degree 2, where tractions are linear on the face: @p r times the
-      /// measure, without the jumps of the pressure, and these, at its
-      /// vertices.
-      template <typename CellIterator, typename OtherIterator>
-      void
-      find_linear_jump(const CellIterator                      &cell,
-                       const Face                              &face,
-                       const OtherIterator                     &neighbor,
-                       const unsigned int                       other,
-                       const bool                               is_one_material,
-                       std::array<dealii::Tensor<1, dim>, dim> &r,
-                       std::array<double, dim>                 &jumps) const
-      {
-        const LinearStress &from = linear_stresses[face.cell];
-        const LinearStress &to   = linear_stresses[other];
-        for (unsigned int v = 0; v < dim; ++v)
-          {
-            const unsigned int index = cell->vertex_index(face.in_cell[v]);
-            unsigned int       w     = 0;
-            while (neighbor->vertex_index(w) != index)
-              ++w;
-            r[v] =
-              (to.stresses[w] - from.stresses[face.in_cell[v]]) * face.area;
-            if (is_one_material)
-              {
-                jumps[v] = from.pressures[face.in_cell[v]] - to.pressures[w];
-                r[v] -= jumps[v] * face.area;
-              }
-          }
       }
 
       template <typename CellIterator>
