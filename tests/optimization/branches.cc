@@ -359,13 +359,13 @@ namespace
 
         parameters.maximum_nodes = 1;
         const auto stopped =
-          BranchAndBound(parameters).minimize(p.S, p.g, p.phi, Vector::Zero(n));
+          branch_and_bound(parameters, p.S, p.g, p.phi, Vector::Zero(n));
         interrupted += stopped.status == ProofStatus::node_limit;
         above += stopped.lower > minimum + rounding;
         // Half of the unknowns at least, with each relaxation.
         parameters.only_while_halving = true;
         const auto left =
-          BranchAndBound(parameters).minimize(p.S, p.g, p.phi, Vector::Zero(n));
+          branch_and_bound(parameters, p.S, p.g, p.phi, Vector::Zero(n));
         above += left.lower > minimum + rounding;
         wrong += left.status == ProofStatus::proved &&
                  std::abs(left.upper - minimum) > tolerance;
