@@ -148,15 +148,6 @@ namespace Debond
 
   template <int dim>
   unsigned int
-  AdhesionIntegral<dim>::least_piece(const unsigned int node) const
-  {
-    return least_of_nodes.empty() ? 0 : least_of_nodes[node];
-  }
-
-
-
-  template <int dim>
-  unsigned int
   AdhesionIntegral<dim>::least_piece_at(
     const typename ContactBoundary<dim>::Face &face,
     const unsigned int                         vertex) const
@@ -199,15 +190,6 @@ namespace Debond
       }
     return least_of_points[(&face - boundary.faces.data()) * points.size() +
                            nearest];
-  }
-
-
-
-  template <int dim>
-  bool
-  AdhesionIntegral<dim>::has_broken_points() const
-  {
-    return !least_of_points.empty();
   }
 
 
@@ -278,19 +260,6 @@ namespace Debond
 
 
   template <int dim>
-  double
-  AdhesionIntegral<dim>::trace_at(
-    const typename ContactBoundary<dim>::Face &face,
-    const unsigned int                         vertex,
-    const VectorView                          &s) const
-  {
-    return face.is_held(vertex) ? held_trace(face, vertex) :
-                                  s(face.nodes[vertex]);
-  }
-
-
-
-  template <int dim>
   BondScale
   AdhesionIntegral<dim>::bonds_at(
     const typename ContactBoundary<dim>::Face &face,
@@ -349,15 +318,6 @@ namespace Debond
 
 
   template <int dim>
-  double
-  AdhesionIntegral<dim>::value(const VectorView &s) const
-  {
-    return energy(s) - phi_at_zero;
-  }
-
-
-
-  template <int dim>
   Eigen::VectorXd
   AdhesionIntegral<dim>::subgradient(const VectorView &s) const
   {
@@ -397,17 +357,6 @@ namespace Debond
     Eigen::SparseMatrix<double> result(s.size(), s.size());
     result.setFromTriplets(entries.begin(), entries.end());
     return result;
-  }
-
-
-
-  template <int dim>
-  std::vector<Interval>
-  AdhesionIntegral<dim>::force_intervals(const VectorView &s,
-                                         const double      delta) const
-  {
-    return force_intervals(s,
-                           std::vector<double>(boundary.nodes.size(), delta));
   }
 
 
@@ -622,24 +571,6 @@ namespace Debond
     return bonds.energy / bonds.stretch *
            law.derivative(trace(face, barycentric, s) / bonds.stretch,
                           least_piece_at(face, barycentric));
-  }
-
-
-
-  template <int dim>
-  bool
-  AdhesionIntegral<dim>::has_field() const
-  {
-    return field != nullptr;
-  }
-
-
-
-  template <int dim>
-  BondScale
-  AdhesionIntegral<dim>::bonds_at(const unsigned int node) const
-  {
-    return field == nullptr ? BondScale() : bonds_of_nodes[node];
   }
 
 

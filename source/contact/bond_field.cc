@@ -35,20 +35,6 @@ namespace Debond
 
 
   template <int dim>
-  BondField<dim>::BondField(
-    const double                                       a,
-    const double                                       M,
-    const Bonds                                       &others,
-    const std::map<dealii::types::boundary_id, Bonds> &boundaries)
-    : a(a)
-    , M(M)
-    , others(others)
-    , boundaries(boundaries)
-  {}
-
-
-
-  template <int dim>
   BondScale
   BondField<dim>::at(const dealii::Point<dim>        &point,
                      const dealii::types::boundary_id id) const

@@ -19,28 +19,10 @@ namespace Debond
 
 
   template <int dim>
-  const ContactBoundary<dim> &
-  ContactSpace<dim>::boundary() const
-  {
-    return nodes_and_faces;
-  }
-
-
-
-  template <int dim>
   unsigned int
   ContactSpace<dim>::size() const
   {
     return static_cast<unsigned int>(normal_dofs.size());
-  }
-
-
-
-  template <int dim>
-  const std::vector<dealii::types::global_dof_index> &
-  ContactSpace<dim>::normals() const
-  {
-    return normal_dofs;
   }
 
 
@@ -63,16 +45,6 @@ namespace Debond
   {
     for (unsigned int i = 0; i < size(); ++i)
       u(normal_dofs[i]) += s(i);
-  }
-
-
-
-  template <int dim>
-  UpperBounds
-  ContactSpace<dim>::bounds() const
-  {
-    return {{normal_dofs.begin(), normal_dofs.end()},
-            std::vector<double>(size(), 0.)};
   }
 
 

@@ -149,24 +149,6 @@ namespace Debond
 
 
 
-  template <int dim>
-  bool
-  ContactQuadrature<dim>::is_nodal() const
-  {
-    return nodal;
-  }
-
-
-
-  template <int dim>
-  const std::vector<typename ContactQuadrature<dim>::QuadraturePoint> &
-  ContactQuadrature<dim>::points() const
-  {
-    return on_face;
-  }
-
-
-
   template class ContactQuadrature<2>;
   template class ContactQuadrature<3>;
 } // namespace Debond

@@ -86,24 +86,6 @@ namespace Debond
 
 
 
-  MultigridCorrection::MultigridCorrection(
-    const Multigrid                                    &cycle,
-    const std::vector<dealii::types::global_dof_index> &contact_normals)
-    : multigrid(cycle)
-    , normals(contact_normals)
-  {}
-
-
-
-  void
-  MultigridCorrection::prepare(const Eigen::SparseMatrix<double> &,
-                               const ActiveSet &held)
-  {
-    active = held;
-  }
-
-
-
   DofVector
   MultigridCorrection::solve(const DofVector &r) const
   {
@@ -148,24 +130,6 @@ namespace Debond
     DofVector result(r.size());
     elastic_levels.cycle().vmult(result, r);
     return result;
-  }
-
-
-
-  template <int dim>
-  const ElasticLevels<dim> &
-  LevelCorrection<dim>::levels() const
-  {
-    return elastic_levels;
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  LevelCorrection<dim>::level() const
-  {
-    return l;
   }
 
 

@@ -124,14 +124,6 @@ namespace Debond
 
 
   double
-  DisplacementProblem::product(const DofVector &a, const DofVector &b) const
-  {
-    return a * b;
-  }
-
-
-
-  double
   DisplacementProblem::norm(const DofVector &v) const
   {
     return std::sqrt(product(v, v));

@@ -325,24 +325,6 @@ namespace Debond
 
 
   template <int dim>
-  bool
-  ElasticLevels<dim>::is_shared(const unsigned int l) const
-  {
-    return l < levels.size() && !levels[l].nodes->is_whole();
-  }
-
-
-
-  template <int dim>
-  bool
-  ElasticLevels<dim>::is_root() const
-  {
-    return !root || root->is_root();
-  }
-
-
-
-  template <int dim>
   unsigned int
   ElasticLevels<dim>::n_levels() const
   {
@@ -353,63 +335,9 @@ namespace Debond
 
   template <int dim>
   unsigned int
-  ElasticLevels<dim>::n_shared_levels() const
-  {
-    return truncated_cycle->n_shared_levels();
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  ElasticLevels<dim>::n_whole_unknowns(const unsigned int l) const
-  {
-    return levels[l].n_whole_unknowns;
-  }
-
-
-
-  template <int dim>
-  unsigned int
   ElasticLevels<dim>::n_unknowns(const unsigned int l) const
   {
     return static_cast<unsigned int>(load(l).size());
-  }
-
-
-
-  template <int dim>
-  TruncatedCycle<dim> &
-  ElasticLevels<dim>::cycle()
-  {
-    return *truncated_cycle;
-  }
-
-
-
-  template <int dim>
-  const std::vector<unsigned int> &
-  ElasticLevels<dim>::normals(const unsigned int l) const
-  {
-    return levels[l].normals;
-  }
-
-
-
-  template <int dim>
-  const Eigen::SparseMatrix<double> &
-  ElasticLevels<dim>::trace_prolongation(const unsigned int l) const
-  {
-    return levels[l].trace_prolongation;
-  }
-
-
-
-  template <int dim>
-  const DofVector &
-  ElasticLevels<dim>::load(const unsigned int l) const
-  {
-    return l == 0 && !root ? problem.load() : levels[l].load;
   }
 
 
@@ -449,26 +377,6 @@ namespace Debond
     for (unsigned int i = 0; i < s.size(); ++i)
       s(i) = v(levels[l].normals[i]);
     return s;
-  }
-
-
-
-  template <int dim>
-  double
-  ElasticLevels<dim>::product(const unsigned int l,
-                              const DofVector   &a,
-                              const DofVector   &b) const
-  {
-    return levels[l].nodes->product(a.begin(), b.begin());
-  }
-
-
-
-  template <int dim>
-  void
-  ElasticLevels<dim>::update_ghosts(const unsigned int l, DofVector &v) const
-  {
-    levels[l].nodes->update_ghosts(v.begin());
   }
 
 
@@ -552,15 +460,6 @@ namespace Debond
       return problem.matrix().diag_element(i);
     const BlockMatrix<dim, double> &A = truncated_cycle->matrix(l);
     return A.values[A.find(i / dim, i / dim) * dim * dim + i % dim * (dim + 1)];
-  }
-
-
-
-  template <int dim>
-  const std::vector<dealii::Point<dim>> &
-  ElasticLevels<dim>::vertices(const unsigned int l) const
-  {
-    return levels[l].vertices;
   }
 
 

@@ -135,38 +135,11 @@ namespace Debond
 
 
   template <int dim>
-  const ElasticUnknowns<dim> &
-  ElasticProblem<dim>::unknowns() const
-  {
-    return elastic_unknowns;
-  }
-
-
-
-  template <int dim>
-  const std::vector<std::string> &
-  ElasticProblem<dim>::load_notes() const
-  {
-    return notes;
-  }
-
-
-
-  template <int dim>
   const ElasticFields<dim> &
   ElasticProblem<dim>::fields() const
   {
     Assert(elastic_fields, dealii::ExcInvalidState());
     return *elastic_fields;
-  }
-
-
-
-  template <int dim>
-  const dealii::SparseMatrix<double> &
-  ElasticProblem<dim>::matrix() const
-  {
-    return system_matrix;
   }
 
 
@@ -182,42 +155,6 @@ namespace Debond
         distributed_matrix->reinit(system_matrix, /*drop_tolerance=*/0.);
       }
     return *distributed_matrix;
-  }
-
-
-
-  template <int dim>
-  double
-  ElasticProblem<dim>::diagonal_entry(const unsigned int i) const
-  {
-    return system_matrix.diag_element(i);
-  }
-
-
-
-  template <int dim>
-  const DofVector &
-  ElasticProblem<dim>::load() const
-  {
-    return system_load;
-  }
-
-
-
-  template <int dim>
-  const DofVector &
-  ElasticProblem<dim>::constant_load() const
-  {
-    return load_without_factor;
-  }
-
-
-
-  template <int dim>
-  const DofVector &
-  ElasticProblem<dim>::displacement_load() const
-  {
-    return load_of_displacements;
   }
 
 

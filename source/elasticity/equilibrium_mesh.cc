@@ -444,53 +444,6 @@ namespace Debond
 
 
   template <int dim>
-  double
-  EquilibriumMesh<dim>::thermal_stress(const Cell &cell) const
-  {
-    return thermal_stresses.empty() ?
-             0. :
-             thermal_stresses[cell->active_cell_index()];
-  }
-
-
-
-  template <int dim>
-  const std::vector<typename EquilibriumMesh<dim>::Place> &
-  EquilibriumMesh<dim>::places() const
-  {
-    return all_places;
-  }
-
-
-
-  template <int dim>
-  const std::vector<typename EquilibriumMesh<dim>::Side> &
-  EquilibriumMesh<dim>::sides() const
-  {
-    return all_sides;
-  }
-
-
-
-  template <int dim>
-  const std::vector<typename EquilibriumMesh<dim>::ContactSide> &
-  EquilibriumMesh<dim>::contact_sides() const
-  {
-    return sides_in_contact;
-  }
-
-
-
-  template <int dim>
-  const dealii::Triangulation<dim> &
-  EquilibriumMesh<dim>::triangulation() const
-  {
-    return mesh;
-  }
-
-
-
-  template <int dim>
   std::vector<unsigned int>
   EquilibriumMesh<dim>::unknowns_of(const Place &place) const
   {
@@ -504,46 +457,10 @@ namespace Debond
 
 
   template <int dim>
-  void
-  EquilibriumMesh<dim>::fix(const unsigned int unknown)
-  {
-    fixed[unknown] = 1;
-  }
-
-
-
-  template <int dim>
-  bool
-  EquilibriumMesh<dim>::is_fixed(const unsigned int unknown) const
-  {
-    return fixed[unknown] != 0;
-  }
-
-
-
-  template <int dim>
   unsigned int
   EquilibriumMesh<dim>::n_free_unknowns() const
   {
     return static_cast<unsigned int>(std::count(fixed.begin(), fixed.end(), 0));
-  }
-
-
-
-  template <int dim>
-  const Eigen::VectorXd &
-  EquilibriumMesh<dim>::loads_on_sides() const
-  {
-    return loads;
-  }
-
-
-
-  template <int dim>
-  bool
-  EquilibriumMesh<dim>::loads_are_exact() const
-  {
-    return exact_loads;
   }
 
 

@@ -139,60 +139,6 @@ namespace Debond
 
 
   template <int dim>
-  const std::vector<EquilibriumElement<dim>> &
-  EquilibriumProblem<dim>::elements() const
-  {
-    return all_elements;
-  }
-
-
-
-  template <int dim>
-  const std::vector<typename EquilibriumProblem<dim>::ContactSide> &
-  EquilibriumProblem<dim>::contact_sides() const
-  {
-    return mesh.contact_sides();
-  }
-
-
-
-  template <int dim>
-  const std::vector<dealii::Point<dim>> &
-  EquilibriumProblem<dim>::vertices() const
-  {
-    return mesh.triangulation().get_vertices();
-  }
-
-
-
-  template <int dim>
-  void
-  EquilibriumProblem<dim>::fix(const unsigned int unknown)
-  {
-    mesh.fix(unknown);
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  EquilibriumProblem<dim>::n_unknowns() const
-  {
-    return mesh.n_free_unknowns();
-  }
-
-
-
-  template <int dim>
-  bool
-  EquilibriumProblem<dim>::loads_are_exact() const
-  {
-    return mesh.loads_are_exact();
-  }
-
-
-
-  template <int dim>
   template <typename Add>
   void
   EquilibriumProblem<dim>::for_each_coefficient(const Place &place,

@@ -50,15 +50,6 @@ namespace Debond
 
 
   template <int dim>
-  const Material &
-  ElasticFields<dim>::material(const Cell &cell) const
-  {
-    return materials(cell->material_id());
-  }
-
-
-
-  template <int dim>
   DofVector
   ElasticFields<dim>::applied_nodal_forces(const LoadFactors factors) const
   {
@@ -152,15 +143,6 @@ namespace Debond
 
 
   template <int dim>
-  const dealii::SymmetricTensor<4, dim> &
-  ElasticFields<dim>::elasticity_tensor(const Cell &cell) const
-  {
-    return stiffness(cell->material_id());
-  }
-
-
-
-  template <int dim>
   double
   ElasticFields<dim>::thermal_stress(const Cell               &cell,
                                      const dealii::Point<dim> &unit_point) const
@@ -185,15 +167,6 @@ namespace Debond
              (1. - (dim + 1) * small) *
              thermal_stresses[(dim + 1) * cell->active_cell_index() + q];
     return sum;
-  }
-
-
-
-  template <int dim>
-  const ElasticUnknowns<dim> &
-  ElasticFields<dim>::unknowns() const
-  {
-    return elastic_unknowns;
   }
 
 
@@ -341,24 +314,6 @@ namespace Debond
     cell->get_dof_indices(cell_dofs);
     for (unsigned int i = 0; i < cell_dofs.size(); ++i)
       cell_values[i] = cartesian_displacement(cell_dofs[i]);
-  }
-
-
-
-  template <int dim>
-  const dealii::FEValues<dim> &
-  CellStresses<dim>::values() const
-  {
-    return fe_values;
-  }
-
-
-
-  template <int dim>
-  const std::vector<dealii::types::global_dof_index> &
-  CellStresses<dim>::dofs() const
-  {
-    return cell_dofs;
   }
 
 

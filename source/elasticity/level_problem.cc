@@ -27,15 +27,6 @@ namespace Debond
 
   template <int dim>
   void
-  LevelProblem<dim>::multiply(DofVector &dst, const DofVector &src) const
-  {
-    levels.vmult(l, dst, src);
-  }
-
-
-
-  template <int dim>
-  void
   LevelProblem<dim>::add_contact_columns(const Eigen::VectorXd &factors,
                                          DofVector             &v) const
   {
@@ -44,24 +35,6 @@ namespace Debond
           factors(i) != 0.)
         levels.add_column(l, this->normals[i], factors(i), v);
     levels.update_ghosts(l, v);
-  }
-
-
-
-  template <int dim>
-  Eigen::VectorXd
-  LevelProblem<dim>::trace(const DofVector &v) const
-  {
-    return levels.trace(l, v);
-  }
-
-
-
-  template <int dim>
-  double
-  LevelProblem<dim>::product(const DofVector &a, const DofVector &b) const
-  {
-    return levels.product(l, a, b);
   }
 
 

@@ -47,14 +47,6 @@ namespace Debond
 
 
 
-  double
-  Material::shear_modulus() const
-  {
-    return young_modulus / (2. * (1. + poisson_ratio));
-  }
-
-
-
   template <int dim>
   double
   Material::thermal_stress() const

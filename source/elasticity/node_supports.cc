@@ -73,15 +73,6 @@ namespace Debond
 
 
   template <int dim>
-  NodeSupports<dim>::NodeSupports(const unsigned int n_nodes,
-                                  const unsigned int n_prescribed)
-    : frame_of_node(n_nodes, dealii::numbers::invalid_unsigned_int)
-    , prescribed(n_prescribed)
-  {}
-
-
-
-  template <int dim>
   void
   NodeSupports<dim>::clamp(const std::vector<BoundaryFace<dim>> &faces,
                            const BoundaryConditions             &conditions)
@@ -362,33 +353,6 @@ namespace Debond
 
 
   template <int dim>
-  const dealii::AffineConstraints<double> &
-  NodeSupports<dim>::constraints() const
-  {
-    return fixed;
-  }
-
-
-
-  template <int dim>
-  const DofVector &
-  NodeSupports<dim>::displacements() const
-  {
-    return prescribed;
-  }
-
-
-
-  template <int dim>
-  const std::vector<DisplacementFrame<dim>> &
-  NodeSupports<dim>::frames() const
-  {
-    return node_frames;
-  }
-
-
-
-  template <int dim>
   const DisplacementFrame<dim> *
   NodeSupports<dim>::frame(const unsigned int index) const
   {
@@ -396,24 +360,6 @@ namespace Debond
     return number == dealii::numbers::invalid_unsigned_int ?
              nullptr :
              &node_frames[number];
-  }
-
-
-
-  template <int dim>
-  const std::vector<std::string> &
-  NodeSupports<dim>::names() const
-  {
-    return support_names;
-  }
-
-
-
-  template <int dim>
-  const std::vector<SupportedDof> &
-  NodeSupports<dim>::supported() const
-  {
-    return supported_dofs;
   }
 
 

@@ -278,60 +278,6 @@ namespace Debond
 
 
   template <int dim>
-  const BodyPiece<dim> &
-  ProblemPiece<dim>::body() const
-  {
-    return piece;
-  }
-
-
-
-  template <int dim>
-  const SharedNodes &
-  ProblemPiece<dim>::nodes() const
-  {
-    return shared_nodes;
-  }
-
-
-
-  template <int dim>
-  const ContactBoundary<dim> &
-  ProblemPiece<dim>::boundary() const
-  {
-    return contact_boundary;
-  }
-
-
-
-  template <int dim>
-  const std::vector<unsigned int> &
-  ProblemPiece<dim>::normals() const
-  {
-    return local_normals;
-  }
-
-
-
-  template <int dim>
-  const std::vector<unsigned int> &
-  ProblemPiece<dim>::normal_numbers() const
-  {
-    return numbers_of_normals;
-  }
-
-
-
-  template <int dim>
-  Eigen::VectorXd
-  ProblemPiece<dim>::trace(const DofVector &v) const
-  {
-    return (*shared_trace)(v);
-  }
-
-
-
-  template <int dim>
   template <typename Key>
   typename ProblemPiece<dim>::Gathering
   ProblemPiece<dim>::make_gathering(const std::vector<Key> &own_keys) const

@@ -99,60 +99,6 @@ namespace Debond
 
 
   template <int dim>
-  const dealii::DoFHandler<dim> &
-  ElasticUnknowns<dim>::dof_handler() const
-  {
-    return dofs;
-  }
-
-
-
-  template <int dim>
-  const dealii::Mapping<dim> &
-  ElasticUnknowns<dim>::mapping() const
-  {
-    return mapping_p1;
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  ElasticUnknowns<dim>::degree() const
-  {
-    return fe.degree;
-  }
-
-
-
-  template <int dim>
-  const ContactSpace<dim> &
-  ElasticUnknowns<dim>::contact() const
-  {
-    return contact_space;
-  }
-
-
-
-  template <int dim>
-  const std::vector<DisplacementFrame<dim>> &
-  ElasticUnknowns<dim>::frames() const
-  {
-    return node_supports.frames();
-  }
-
-
-
-  template <int dim>
-  const EdgeCoefficients<dim> &
-  ElasticUnknowns<dim>::edges() const
-  {
-    return contact_edges;
-  }
-
-
-
-  template <int dim>
   void
   ElasticUnknowns<dim>::to_unknowns(
     const std::vector<dealii::types::global_dof_index> &cell_dofs,
@@ -212,60 +158,6 @@ namespace Debond
 
 
   template <int dim>
-  const std::vector<std::string> &
-  ElasticUnknowns<dim>::support_names() const
-  {
-    return node_supports.names();
-  }
-
-
-
-  template <int dim>
-  const FreeRigidMotions<dim> &
-  ElasticUnknowns<dim>::held_by_contact() const
-  {
-    return free_motions;
-  }
-
-
-
-  template <int dim>
-  const std::vector<SupportedDof> &
-  ElasticUnknowns<dim>::supported() const
-  {
-    return node_supports.supported();
-  }
-
-
-
-  template <int dim>
-  bool
-  ElasticUnknowns<dim>::has_lifting() const
-  {
-    return has_prescribed_displacements() || has_gap();
-  }
-
-
-
-  template <int dim>
-  bool
-  ElasticUnknowns<dim>::has_prescribed_displacements() const
-  {
-    return node_supports.displacements().size() > 0;
-  }
-
-
-
-  template <int dim>
-  bool
-  ElasticUnknowns<dim>::has_gap() const
-  {
-    return gap.size() > 0;
-  }
-
-
-
-  template <int dim>
   DofVector
   ElasticUnknowns<dim>::lifting(const LoadFactors factors) const
   {
@@ -275,43 +167,6 @@ namespace Debond
     if (has_gap())
       G += gap;
     return G;
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  ElasticUnknowns<dim>::n_dofs() const
-  {
-    return dofs.n_dofs();
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  ElasticUnknowns<dim>::n_free_dofs() const
-  {
-    return n_dofs() - constraints().n_constraints();
-  }
-
-
-
-  template <int dim>
-  bool
-  ElasticUnknowns<dim>::is_constrained(
-    const dealii::types::global_dof_index dof) const
-  {
-    return constraints().is_constrained(dof);
-  }
-
-
-
-  template <int dim>
-  const dealii::AffineConstraints<double> &
-  ElasticUnknowns<dim>::constraints() const
-  {
-    return node_supports.constraints();
   }
 
 

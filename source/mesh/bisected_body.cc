@@ -38,42 +38,6 @@ namespace Debond
 
 
   template <int dim>
-  std::shared_ptr<const BisectedBody<dim>>
-  BisectedBody<dim>::refined(const std::vector<unsigned int> &times) const
-  {
-    return std::shared_ptr<const BisectedBody>(new BisectedBody(*this, times));
-  }
-
-
-
-  template <int dim>
-  std::set<std::string>
-  BisectedBody<dim>::whole_boundaries() const
-  {
-    return whole->boundaries();
-  }
-
-
-
-  template <int dim>
-  std::set<std::string>
-  BisectedBody<dim>::whole_regions() const
-  {
-    return whole->regions();
-  }
-
-
-
-  template <int dim>
-  double
-  BisectedBody<dim>::n_cells() const
-  {
-    return bisection.n_cells();
-  }
-
-
-
-  template <int dim>
   double
   BisectedBody<dim>::n_vertices() const
   {
@@ -102,15 +66,6 @@ namespace Debond
   {
     bisection.make_mesh(mesh);
     return names;
-  }
-
-
-
-  template <int dim>
-  std::unique_ptr<Body<dim>>
-  BisectedBody<dim>::coarser_whole() const
-  {
-    return nullptr;
   }
 
 

@@ -371,24 +371,6 @@ namespace Debond
 
 
   template <int dim>
-  const std::vector<dealii::Point<dim>> &
-  Bisection<dim>::vertices() const
-  {
-    return points;
-  }
-
-
-
-  template <int dim>
-  const std::vector<unsigned int> &
-  Bisection<dim>::ancestors() const
-  {
-    return whole_cells;
-  }
-
-
-
-  template <int dim>
   void
   Bisection<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
   {

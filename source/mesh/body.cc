@@ -25,14 +25,6 @@ namespace Debond
 
 
 
-  bool
-  BodyDescription::has_coarse_levels() const
-  {
-    return false;
-  }
-
-
-
   template <int dim>
   std::set<std::string>
   Body<dim>::boundaries() const
@@ -147,25 +139,6 @@ namespace Debond
         result.push_back(value);
       }
     return result;
-  }
-
-
-
-  template <int dim>
-  std::vector<CoarseLevel<dim>>
-  Body<dim>::coarse_levels(const dealii::Triangulation<dim> &,
-                           const std::vector<unsigned int> &) const
-  {
-    return {};
-  }
-
-
-
-  template <int dim>
-  std::vector<unsigned int>
-  Body<dim>::slabs(const dealii::Triangulation<dim> &mesh) const
-  {
-    return std::vector<unsigned int>(mesh.n_vertices(), 0);
   }
 
 

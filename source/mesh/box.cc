@@ -140,13 +140,6 @@ namespace Debond
 
 
   template <int dim>
-  Box<dim>::Box(const BoxParameters &parameters)
-    : parameters(parameters)
-  {}
-
-
-
-  template <int dim>
   std::set<std::string>
   Box<dim>::whole_boundaries() const
   {
@@ -154,15 +147,6 @@ namespace Debond
     for (const auto &[side, unused] : box_sides<dim>())
       names.insert(side);
     return names;
-  }
-
-
-
-  template <int dim>
-  std::set<std::string>
-  Box<dim>::whole_regions() const
-  {
-    return {};
   }
 
 
@@ -329,15 +313,6 @@ namespace Debond
       result.push_back(
         std::min(lattice.coordinates(vertex)[0] / 2, parameters.cells[0] - 1));
     return result;
-  }
-
-
-
-  template <int dim>
-  bool
-  Box<dim>::has_coarse_levels() const
-  {
-    return !coarse_boxes().empty();
   }
 
 

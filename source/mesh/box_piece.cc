@@ -199,15 +199,6 @@ namespace Debond
 
 
   template <int dim>
-  std::vector<unsigned int>
-  BoxPiece<dim>::slabs(const dealii::Triangulation<dim> &mesh) const
-  {
-    return box->slabs(mesh);
-  }
-
-
-
-  template <int dim>
   std::map<dealii::types::boundary_id, unsigned int>
   BoxPiece<dim>::n_faces() const
   {
@@ -249,15 +240,6 @@ namespace Debond
     const std::size_t  cell  = active_cell / (dim == 2 ? 4 : 24);
     const std::size_t  place = begin + cell % width;
     return {{place, cell / width * this->n_slabs() + place}};
-  }
-
-
-
-  template <int dim>
-  std::size_t
-  BoxPiece<dim>::cell_number(const unsigned int active_cell) const
-  {
-    return place_and_number(active_cell)[1];
   }
 
 

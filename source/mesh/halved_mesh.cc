@@ -268,37 +268,10 @@ namespace Debond
 
   template <int dim>
   unsigned int
-  HalvedMesh<dim>::n_slabs() const
-  {
-    return n_of_slabs;
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  HalvedMesh<dim>::slab_of_unit(const unsigned int unit) const
-  {
-    return slabs_of_units[unit];
-  }
-
-
-
-  template <int dim>
-  unsigned int
   HalvedMesh<dim>::owner(const unsigned int slab) const
   {
     return static_cast<unsigned int>(((std::size_t(slab) + 1) * n_ranks - 1) /
                                      n_of_slabs);
-  }
-
-
-
-  template <int dim>
-  bool
-  HalvedMesh<dim>::is_own(const unsigned int slab) const
-  {
-    return first <= slab && slab < end;
   }
 
 

@@ -347,14 +347,6 @@ namespace Debond
 
 
 
-  double
-  Certificate::width() const
-  {
-    return upper == lower ? 0. : (upper - lower) / std::abs(upper);
-  }
-
-
-
   void
   Certificate::include(const double functional)
   {
@@ -423,15 +415,6 @@ namespace Debond
           side_constants(equilibrium,
                          scene->materials(),
                          scene->conditions().tangential_displacement_fixed);
-  }
-
-
-
-  template <int dim>
-  bool
-  Certifier<dim>::is_for_finer_meshes() const
-  {
-    return !trace_constants.empty() && equilibrium.loads_are_exact();
   }
 
 

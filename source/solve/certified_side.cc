@@ -59,14 +59,6 @@ namespace Debond
 
 
 
-  Interval
-  CertifiedSide::linear() const
-  {
-    return hull(at_ends[0], at_ends[1]);
-  }
-
-
-
   CertifiedSide
   known_between(const std::array<dealii::Point<2>, 2> &ends,
                 const std::vector<CertifiedSide>      &sides)

@@ -74,14 +74,6 @@ namespace Debond
 
 
 
-  Progress::Progress(std::ostream &stream, const bool is_terminal)
-    : out(stream)
-    , terminal(is_terminal)
-    , last_print_seconds(-std::numeric_limits<double>::infinity())
-  {}
-
-
-
   void
   Progress::report(const BundleIteration &iteration)
   {

@@ -47,7 +47,10 @@ namespace Debond
     /// The piece of the law that the bonds of a node have not left for good, of
     /// all points of its faces where points are not nodes.
     unsigned int
-    least_piece(const unsigned int node) const;
+    least_piece(const unsigned int node) const
+    {
+      return least_of_nodes.empty() ? 0 : least_of_nodes[node];
+    }
 
     /// The same of the bonds at a point of one of the boundary's faces: those
     /// of the point of the rule that is next to it.
@@ -57,7 +60,10 @@ namespace Debond
 
     /// Whether points that are not nodes have bonds that have broken for good.
     bool
-    has_broken_points() const;
+    has_broken_points() const
+    {
+      return !least_of_points.empty();
+    }
 
     /// The length (area) of the points of the rule whose bonds are on the last
     /// piece of the law and have a gap.
@@ -86,7 +92,11 @@ namespace Debond
     double
     trace_at(const typename ContactBoundary<dim>::Face &face,
              const unsigned int                         vertex,
-             const VectorView                          &s) const;
+             const VectorView                          &s) const
+    {
+      return face.is_held(vertex) ? held_trace(face, vertex) :
+                                    s(face.nodes[vertex]);
+    }
 
     BondScale
     bonds_at(const typename ContactBoundary<dim>::Face &face,
@@ -102,7 +112,10 @@ namespace Debond
 
     /// Phi(s) - Phi(0); Phi(0) = 0 if nothing is prescribed and bonds return.
     double
-    value(const VectorView &s) const override;
+    value(const VectorView &s) const override
+    {
+      return energy(s) - phi_at_zero;
+    }
 
     /// Phi(0) for @p load_factor times the whole load.
     double
@@ -122,7 +135,11 @@ namespace Debond
     /// Goldstein intervals of j_1 over s +- delta. With delta = 0 this is
     /// the Clarke interval of Phi.
     std::vector<Interval>
-    force_intervals(const VectorView &s, const double delta) const;
+    force_intervals(const VectorView &s, const double delta) const
+    {
+      return force_intervals(s,
+                             std::vector<double>(boundary.nodes.size(), delta));
+    }
 
     /// The same with a radius of its own for each node, delta[i] for the
     /// force on node i.
@@ -155,12 +172,18 @@ namespace Debond
 
     /// Whether bonds are not the same everywhere.
     bool
-    has_field() const;
+    has_field() const
+    {
+      return field != nullptr;
+    }
 
     /// The bonds at a node. Where boundaries with bonds of their own meet they
     /// have the mean stiffness and fracture energy.
     BondScale
-    bonds_at(const unsigned int node) const;
+    bonds_at(const unsigned int node) const
+    {
+      return field == nullptr ? BondScale() : bonds_of_nodes[node];
+    }
 
   private:
     using Trace = typename ContactQuadrature<dim>::Trace;

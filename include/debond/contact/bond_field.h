@@ -62,7 +62,12 @@ namespace Debond
     BondField(const double                                       a,
               const double                                       M,
               const Bonds                                       &others,
-              const std::map<dealii::types::boundary_id, Bonds> &boundaries);
+              const std::map<dealii::types::boundary_id, Bonds> &boundaries)
+      : a(a)
+      , M(M)
+      , others(others)
+      , boundaries(boundaries)
+    {}
 
     /// At a point of the boundary @p id. Throws BondFieldError with the place
     /// if the stiffness is negative or not finite, or the threshold of bonds

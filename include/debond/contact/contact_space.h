@@ -32,7 +32,10 @@ namespace Debond
                  const std::vector<dealii::types::global_dof_index> &normals);
 
     const ContactBoundary<dim> &
-    boundary() const;
+    boundary() const
+    {
+      return nodes_and_faces;
+    }
 
     /// The number of nodes.
     unsigned int
@@ -40,7 +43,10 @@ namespace Debond
 
     /// The degrees of freedom of s.
     const std::vector<dealii::types::global_dof_index> &
-    normals() const;
+    normals() const
+    {
+      return normal_dofs;
+    }
 
     /// s = N'u.
     Eigen::VectorXd
@@ -52,7 +58,11 @@ namespace Debond
 
     /// The unilateral constraint s <= 0 as bounds on degrees of freedom.
     UpperBounds
-    bounds() const;
+    bounds() const
+    {
+      return {{normal_dofs.begin(), normal_dofs.end()},
+              std::vector<double>(size(), 0.)};
+    }
 
     /// Whether u satisfies them.
     bool

@@ -57,10 +57,16 @@ namespace Debond
 
     /// Whether all points are vertices.
     bool
-    is_nodal() const;
+    is_nodal() const
+    {
+      return nodal;
+    }
 
     const std::vector<QuadraturePoint> &
-    points() const;
+    points() const
+    {
+      return on_face;
+    }
 
   private:
     bool                         nodal;

@@ -66,12 +66,17 @@ namespace Debond
     /// Keeps a reference to the cycle. @p normals are the degrees of freedom of
     /// the contact nodes.
     MultigridCorrection(
-      const Multigrid                                    &multigrid,
-      const std::vector<dealii::types::global_dof_index> &normals);
+      const Multigrid                                    &cycle,
+      const std::vector<dealii::types::global_dof_index> &contact_normals)
+      : multigrid(cycle)
+      , normals(contact_normals)
+    {}
 
     void
-    prepare(const Eigen::SparseMatrix<double> &E,
-            const ActiveSet                   &held) override;
+    prepare(const Eigen::SparseMatrix<double> &, const ActiveSet &held) override
+    {
+      active = held;
+    }
 
     DofVector
     solve(const DofVector &r) const override;
@@ -101,10 +106,16 @@ namespace Debond
     solve(const DofVector &r) const override;
 
     const ElasticLevels<dim> &
-    levels() const;
+    levels() const
+    {
+      return elastic_levels;
+    }
 
     unsigned int
-    level() const;
+    level() const
+    {
+      return l;
+    }
 
   private:
     ElasticLevels<dim> &elastic_levels;

@@ -66,7 +66,10 @@ namespace Debond
     trace(const DofVector &v) const;
 
     virtual double
-    product(const DofVector &a, const DofVector &b) const;
+    product(const DofVector &a, const DofVector &b) const
+    {
+      return a * b;
+    }
 
     /// The unknowns s, dealii::numbers::invalid_unsigned_int for those that
     /// other ranks have.

@@ -48,7 +48,10 @@ namespace Debond
 
     /// Whether the process has the levels that are not shared.
     bool
-    is_root() const;
+    is_root() const
+    {
+      return !root || root->is_root();
+    }
 
     /// Those that the process has.
     unsigned int
@@ -56,7 +59,10 @@ namespace Debond
 
     /// Zero on one process that does not share the problem.
     unsigned int
-    n_shared_levels() const;
+    n_shared_levels() const
+    {
+      return truncated_cycle->n_shared_levels();
+    }
 
     /// Those that the process has.
     unsigned int
@@ -64,22 +70,37 @@ namespace Debond
 
     /// Of the whole level.
     unsigned int
-    n_whole_unknowns(const unsigned int l) const;
+    n_whole_unknowns(const unsigned int l) const
+    {
+      return levels[l].n_whole_unknowns;
+    }
 
     TruncatedCycle<dim> &
-    cycle();
+    cycle()
+    {
+      return *truncated_cycle;
+    }
 
     /// The unknowns s_l, dealii::numbers::invalid_unsigned_int for those that
     /// other ranks have.
     const std::vector<unsigned int> &
-    normals(const unsigned int l) const;
+    normals(const unsigned int l) const
+    {
+      return levels[l].normals;
+    }
 
     /// P_l.
     const Eigen::SparseMatrix<double> &
-    trace_prolongation(const unsigned int l) const;
+    trace_prolongation(const unsigned int l) const
+    {
+      return levels[l].trace_prolongation;
+    }
 
     const DofVector &
-    load(const unsigned int l) const;
+    load(const unsigned int l) const
+    {
+      return l == 0 && !root ? problem.load() : levels[l].load;
+    }
 
     /// dst = A_l src.
     void
@@ -91,7 +112,10 @@ namespace Debond
 
     /// <a, b>.
     double
-    product(const unsigned int l, const DofVector &a, const DofVector &b) const;
+    product(const unsigned int l, const DofVector &a, const DofVector &b) const
+    {
+      return levels[l].nodes->product(a.begin(), b.begin());
+    }
 
     /// The rows and columns s_l of A_l; the column j has the row's entries.
     Eigen::SparseMatrix<double>
@@ -99,7 +123,10 @@ namespace Debond
 
     /// Makes the entries that other ranks have the same as there.
     void
-    update_ghosts(const unsigned int l, DofVector &v) const;
+    update_ghosts(const unsigned int l, DofVector &v) const
+    {
+      levels[l].nodes->update_ghosts(v.begin());
+    }
 
     /// v += factor times the column of A_l.
     void
@@ -113,7 +140,10 @@ namespace Debond
 
     /// The vertices of the mesh of a level l > 0.
     const std::vector<dealii::Point<dim>> &
-    vertices(const unsigned int l) const;
+    vertices(const unsigned int l) const
+    {
+      return levels[l].vertices;
+    }
 
     /// The unknowns of the level l > 0 for the displacements at its vertices.
     DofVector
@@ -162,7 +192,10 @@ namespace Debond
                     const unsigned int               n_columns) const;
 
     bool
-    is_shared(const unsigned int l) const;
+    is_shared(const unsigned int l) const
+    {
+      return l < levels.size() && !levels[l].nodes->is_whole();
+    }
 
     /// Calls @p visit with column and entry of a row of A_l.
     template <typename Visitor>

@@ -46,11 +46,17 @@ namespace Debond
              const Loads<dim>         &dead_loads = {});
 
     const ElasticUnknowns<dim> &
-    unknowns() const;
+    unknowns() const
+    {
+      return elastic_unknowns;
+    }
 
     /// What load_vector() says of loads that jump, at the last assemble().
     const std::vector<std::string> &
-    load_notes() const;
+    load_notes() const
+    {
+      return notes;
+    }
 
     /// Of the last assemble().
     const ElasticFields<dim> &
@@ -58,7 +64,10 @@ namespace Debond
 
     /// A.
     const dealii::SparseMatrix<double> &
-    matrix() const;
+    matrix() const
+    {
+      return system_matrix;
+    }
 
     /// A as Trilinos' multigrid reads it, made when it is asked for first.
     /// Needs MPI.
@@ -67,22 +76,34 @@ namespace Debond
 
     /// Of A.
     double
-    diagonal_entry(const unsigned int i) const;
+    diagonal_entry(const unsigned int i) const
+    {
+      return system_matrix.diag_element(i);
+    }
 
     /// f - A G, what is applied together with what the lifting makes of it, at
     /// the free degrees of freedom.
     const DofVector &
-    load() const;
+    load() const
+    {
+      return system_load;
+    }
 
     /// The part of load() that has no factor, from the gap and dead loads;
     /// empty if there is none.
     const DofVector &
-    constant_load() const;
+    constant_load() const
+    {
+      return load_without_factor;
+    }
 
     /// The part of load() that grows with prescribed displacements; empty if
     /// there are none.
     const DofVector &
-    displacement_load() const;
+    displacement_load() const
+    {
+      return load_of_displacements;
+    }
 
     /// For @p factors times what is applied and prescribed.
     DofVector

@@ -78,13 +78,22 @@ namespace Debond
 
     /// With C made c times as stiff these are c K, F and constant / c.
     const Eigen::MatrixXd &
-    K() const;
+    K() const
+    {
+      return shape->K;
+    }
 
     Eigen::VectorXd
-    F() const;
+    F() const
+    {
+      return shape->F * load;
+    }
 
     double
-    constant() const;
+    constant() const
+    {
+      return load.dot(shape->constant * load);
+    }
 
     /// The stress that is reached for @p displacements l, with C made @p weight
     /// times as stiff: a LinearStress for each side, of the simplex above it

@@ -128,19 +128,36 @@ namespace Debond
                     const std::vector<double>        &thermal_stresses);
 
     const dealii::Triangulation<dim> &
-    triangulation() const;
+    triangulation() const
+    {
+      return mesh;
+    }
 
     const std::vector<Place> &
-    places() const;
+    places() const
+    {
+      return all_places;
+    }
 
     const std::vector<Side> &
-    sides() const;
+    sides() const
+    {
+      return all_sides;
+    }
 
     const std::vector<ContactSide> &
-    contact_sides() const;
+    contact_sides() const
+    {
+      return sides_in_contact;
+    }
 
     double
-    thermal_stress(const Cell &cell) const;
+    thermal_stress(const Cell &cell) const
+    {
+      return thermal_stresses.empty() ?
+               0. :
+               thermal_stresses[cell->active_cell_index()];
+    }
 
     /// Of its sides, one after the other.
     std::vector<unsigned int>
@@ -148,10 +165,16 @@ namespace Debond
 
     /// Fixes an unknown.
     void
-    fix(const unsigned int unknown);
+    fix(const unsigned int unknown)
+    {
+      fixed[unknown] = 1;
+    }
 
     bool
-    is_fixed(const unsigned int unknown) const;
+    is_fixed(const unsigned int unknown) const
+    {
+      return fixed[unknown] != 0;
+    }
 
     unsigned int
     n_free_unknowns() const;
@@ -159,12 +182,18 @@ namespace Debond
     /// The work-conjugates of all unknowns, those of a side after those of the
     /// one before.
     const Eigen::VectorXd &
-    loads_on_sides() const;
+    loads_on_sides() const
+    {
+      return loads;
+    }
 
     /// Whether tractions are linear on each side, and body forces and
     /// temperatures constant on each element, to rounding.
     bool
-    loads_are_exact() const;
+    loads_are_exact() const
+    {
+      return exact_loads;
+    }
 
     const std::vector<LoadRest> &
     load_rests() const

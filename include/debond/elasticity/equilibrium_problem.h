@@ -35,26 +35,44 @@ namespace Debond
                        const std::vector<double>        &thermal_stresses = {});
 
     const std::vector<EquilibriumElement<dim>> &
-    elements() const;
+    elements() const
+    {
+      return all_elements;
+    }
 
     const std::vector<ContactSide> &
-    contact_sides() const;
+    contact_sides() const
+    {
+      return mesh.contact_sides();
+    }
 
     /// Of the mesh.
     const std::vector<dealii::Point<dim>> &
-    vertices() const;
+    vertices() const
+    {
+      return mesh.triangulation().get_vertices();
+    }
 
     /// Fixes an unknown, before anything is condensed.
     void
-    fix(const unsigned int unknown);
+    fix(const unsigned int unknown)
+    {
+      mesh.fix(unknown);
+    }
 
     /// Unknowns that are not fixed.
     unsigned int
-    n_unknowns() const;
+    n_unknowns() const
+    {
+      return mesh.n_free_unknowns();
+    }
 
     /// See EquilibriumMesh.
     bool
-    loads_are_exact() const;
+    loads_are_exact() const
+    {
+      return mesh.loads_are_exact();
+    }
 
     /// The problem condensed onto the first unknowns of the contact sides in
     /// their order, the means in 2D, then the second ones (and the third ones):

@@ -38,7 +38,10 @@ namespace Debond
                   const DofVector            &dead_forces      = {});
 
     const Material &
-    material(const Cell &cell) const;
+    material(const Cell &cell) const
+    {
+      return materials(cell->material_id());
+    }
 
     /// The Cartesian nodal forces of all loads, at every degree of freedom, the
     /// constrained ones included.
@@ -70,7 +73,10 @@ namespace Debond
     residual_rounding(const DofVector &u, const LoadFactors factors = 1.) const;
 
     const dealii::SymmetricTensor<4, dim> &
-    elasticity_tensor(const Cell &cell) const;
+    elasticity_tensor(const Cell &cell) const
+    {
+      return stiffness(cell->material_id());
+    }
 
     /// The pressure at a point of the reference cell that the whole change of
     /// temperature makes; linear in each cell of degree 2, else constant.
@@ -79,7 +85,10 @@ namespace Debond
                    const dealii::Point<dim> &unit_point) const;
 
     const ElasticUnknowns<dim> &
-    unknowns() const;
+    unknowns() const
+    {
+      return elastic_unknowns;
+    }
 
     /**
      * 1/2 <A u, u> - <f, u>, f with @p factors, from the strains of the cells,
@@ -174,11 +183,17 @@ namespace Debond
 
     /// Values, gradients, points and weights in the cell.
     const dealii::FEValues<dim> &
-    values() const;
+    values() const
+    {
+      return fe_values;
+    }
 
     /// Of the cell.
     const std::vector<dealii::types::global_dof_index> &
-    dofs() const;
+    dofs() const
+    {
+      return cell_dofs;
+    }
 
     dealii::Tensor<1, dim>
     displacement(const unsigned int q) const;

@@ -26,17 +26,26 @@ namespace Debond
 
   private:
     void
-    multiply(DofVector &dst, const DofVector &src) const override;
+    multiply(DofVector &dst, const DofVector &src) const override
+    {
+      levels.vmult(l, dst, src);
+    }
 
     void
     add_contact_columns(const Eigen::VectorXd &factors,
                         DofVector             &v) const override;
 
     Eigen::VectorXd
-    trace(const DofVector &v) const override;
+    trace(const DofVector &v) const override
+    {
+      return levels.trace(l, v);
+    }
 
     double
-    product(const DofVector &a, const DofVector &b) const override;
+    product(const DofVector &a, const DofVector &b) const override
+    {
+      return levels.product(l, a, b);
+    }
 
     const ElasticLevels<dim> &levels;
     const unsigned int        l;

@@ -33,7 +33,10 @@ namespace Debond
 
     /// Lame's mu.
     double
-    shear_modulus() const;
+    shear_modulus() const
+    {
+      return young_modulus / (2. * (1. + poisson_ratio));
+    }
 
     /// The stress that a temperature change of one gives a body that cannot
     /// move is minus this number times the identity: (3 lambda + 2 mu) alpha

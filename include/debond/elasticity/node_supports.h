@@ -88,7 +88,10 @@ namespace Debond
 
     /// @p n_prescribed: the number of degrees of freedom if displacements that
     /// are not zero may be prescribed, and else 0.
-    NodeSupports(const unsigned int n_nodes, const unsigned int n_prescribed);
+    NodeSupports(const unsigned int n_nodes, const unsigned int n_prescribed)
+      : frame_of_node(n_nodes, dealii::numbers::invalid_unsigned_int)
+      , prescribed(n_prescribed)
+    {}
 
     /// Clamps the nodes of these faces.
     void
@@ -130,14 +133,23 @@ namespace Debond
     finish();
 
     const dealii::AffineConstraints<double> &
-    constraints() const;
+    constraints() const
+    {
+      return fixed;
+    }
 
     /// The prescribed displacements for the whole load; empty if they are zero.
     const DofVector &
-    displacements() const;
+    displacements() const
+    {
+      return prescribed;
+    }
 
     const std::vector<DisplacementFrame<dim>> &
-    frames() const;
+    frames() const
+    {
+      return node_frames;
+    }
 
     /// Null where the unknowns are Cartesian.
     const DisplacementFrame<dim> *
@@ -145,10 +157,16 @@ namespace Debond
 
     /// The pieces of the boundary that support the body.
     const std::vector<std::string> &
-    names() const;
+    names() const
+    {
+      return support_names;
+    }
 
     const std::vector<SupportedDof> &
-    supported() const;
+    supported() const
+    {
+      return supported_dofs;
+    }
 
   private:
     using Row = typename PrescribedNode<dim>::Row;

@@ -52,27 +52,45 @@ namespace Debond
     ProblemPiece(const ProblemPiece &) = delete;
 
     const BodyPiece<dim> &
-    body() const;
+    body() const
+    {
+      return piece;
+    }
 
     const SharedNodes &
-    nodes() const;
+    nodes() const
+    {
+      return shared_nodes;
+    }
 
     /// Of the whole body, as on one rank.
     const ContactBoundary<dim> &
-    boundary() const;
+    boundary() const
+    {
+      return contact_boundary;
+    }
 
     /// The rank's unknowns of the contact nodes,
     /// dealii::numbers::invalid_unsigned_int for those that it does not have.
     const std::vector<unsigned int> &
-    normals() const;
+    normals() const
+    {
+      return local_normals;
+    }
 
     /// The same in the whole.
     const std::vector<unsigned int> &
-    normal_numbers() const;
+    normal_numbers() const
+    {
+      return numbers_of_normals;
+    }
 
     /// The entries of all contact nodes, on all ranks.
     Eigen::VectorXd
-    trace(const DofVector &v) const;
+    trace(const DofVector &v) const
+    {
+      return (*shared_trace)(v);
+    }
 
     /// The entries of all unknowns in the order of their numbers, on the root;
     /// empty elsewhere.

@@ -69,26 +69,44 @@ namespace Debond
     ElasticUnknowns(const ElasticUnknowns &) = delete;
 
     const dealii::DoFHandler<dim> &
-    dof_handler() const;
+    dof_handler() const
+    {
+      return dofs;
+    }
 
     const dealii::Mapping<dim> &
-    mapping() const;
+    mapping() const
+    {
+      return mapping_p1;
+    }
 
     /// Of the displacement's polynomials.
     unsigned int
-    degree() const;
+    degree() const
+    {
+      return fe.degree;
+    }
 
     const ContactSpace<dim> &
-    contact() const;
+    contact() const
+    {
+      return contact_space;
+    }
 
     /// Of all vertices whose unknowns are not Cartesian: those on the contact
     /// boundary that are not clamped, and those on inclined rollers.
     const std::vector<DisplacementFrame<dim>> &
-    frames() const;
+    frames() const
+    {
+      return node_supports.frames();
+    }
 
     /// The edges whose unknowns are coefficients.
     const EdgeCoefficients<dim> &
-    edges() const;
+    edges() const
+    {
+      return contact_edges;
+    }
 
     /// Takes the matrix of a cell, for the Cartesian values at its nodes, to
     /// the unknowns.
@@ -101,42 +119,72 @@ namespace Debond
     positions() const;
 
     unsigned int
-    n_dofs() const;
+    n_dofs() const
+    {
+      return dofs.n_dofs();
+    }
 
     /// Unknowns of the discrete problem.
     unsigned int
-    n_free_dofs() const;
+    n_free_dofs() const
+    {
+      return n_dofs() - constraints().n_constraints();
+    }
 
     /// Whether a degree of freedom is prescribed (by a support or tangential).
     bool
-    is_constrained(const dealii::types::global_dof_index dof) const;
+    is_constrained(const dealii::types::global_dof_index dof) const
+    {
+      return constraints().is_constrained(dof);
+    }
 
     /// The fixed degrees of freedom.
     const dealii::AffineConstraints<double> &
-    constraints() const;
+    constraints() const
+    {
+      return node_supports.constraints();
+    }
 
     /// The pieces of the boundary that support the body, by name.
     const std::vector<std::string> &
-    support_names() const;
+    support_names() const
+    {
+      return node_supports.names();
+    }
 
     /// The free rigid motions: what holds them, if anything does, are bonds
     /// and the foundation. A is singular if there are any.
     const FreeRigidMotions<dim> &
-    held_by_contact() const;
+    held_by_contact() const
+    {
+      return free_motions;
+    }
 
     const std::vector<SupportedDof> &
-    supported() const;
+    supported() const
+    {
+      return node_supports.supported();
+    }
 
     /// Whether G is not zero.
     bool
-    has_lifting() const;
+    has_lifting() const
+    {
+      return has_prescribed_displacements() || has_gap();
+    }
 
     bool
-    has_prescribed_displacements() const;
+    has_prescribed_displacements() const
+    {
+      return node_supports.displacements().size() > 0;
+    }
 
     /// Whether a part of G does not grow with the load.
     bool
-    has_gap() const;
+    has_gap() const
+    {
+      return gap.size() > 0;
+    }
 
     /// G, with @p factors times the prescribed displacements and the gap.
     DofVector

@@ -23,7 +23,11 @@ namespace Debond
     /// With each cell cut at least @p times as often, in the order of the
     /// active cells.
     std::shared_ptr<const BisectedBody>
-    refined(const std::vector<unsigned int> &times) const;
+    refined(const std::vector<unsigned int> &times) const
+    {
+      return std::shared_ptr<const BisectedBody>(
+        new BisectedBody(*this, times));
+    }
 
     /// The same P1 function on this mesh, from the values at the vertices of
     /// the mesh that this one is refined() from.
@@ -42,13 +46,22 @@ namespace Debond
     }
 
     std::set<std::string>
-    whole_boundaries() const override;
+    whole_boundaries() const override
+    {
+      return whole->boundaries();
+    }
 
     std::set<std::string>
-    whole_regions() const override;
+    whole_regions() const override
+    {
+      return whole->regions();
+    }
 
     double
-    n_cells() const override;
+    n_cells() const override
+    {
+      return bisection.n_cells();
+    }
 
     double
     n_vertices() const override;
@@ -63,7 +76,10 @@ namespace Debond
 
     /// None: a solution goes from mesh to mesh by extend().
     std::unique_ptr<Body<dim>>
-    coarser_whole() const override;
+    coarser_whole() const override
+    {
+      return nullptr;
+    }
 
   private:
     BisectedBody(const BisectedBody              &coarse,

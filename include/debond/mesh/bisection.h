@@ -53,11 +53,17 @@ namespace Debond
 
     /// Those before a refinement keep their numbers.
     const std::vector<dealii::Point<dim>> &
-    vertices() const;
+    vertices() const
+    {
+      return points;
+    }
 
     /// Of each cell the one before the last refine() that it is a part of.
     const std::vector<unsigned int> &
-    ancestors() const;
+    ancestors() const
+    {
+      return whole_cells;
+    }
 
     /// Adds to the values at the vertices of this mesh some refinements ago
     /// those of the same P1 function at the vertices that came since.

@@ -122,7 +122,10 @@ namespace Debond
 
     /// Whether Body::coarse_levels() has any.
     virtual bool
-    has_coarse_levels() const;
+    has_coarse_levels() const
+    {
+      return false;
+    }
   };
 
 
@@ -180,14 +183,20 @@ namespace Debond
     /// to the vertices of @p mesh, which is the one of make_mesh(), in the
     /// order @p vertices. Empty if there are none.
     virtual std::vector<CoarseLevel<dim>>
-    coarse_levels(const dealii::Triangulation<dim> &mesh,
-                  const std::vector<unsigned int>  &vertices) const;
+    coarse_levels(const dealii::Triangulation<dim> &,
+                  const std::vector<unsigned int> &) const
+    {
+      return {};
+    }
 
     /// For each of the mesh's vertices the slab of the body that it lies in:
     /// sums are made slab by slab, so that they do not depend on where slabs
     /// are. One for all if there is no other.
     virtual std::vector<unsigned int>
-    slabs(const dealii::Triangulation<dim> &mesh) const;
+    slabs(const dealii::Triangulation<dim> &mesh) const
+    {
+      return std::vector<unsigned int>(mesh.n_vertices(), 0);
+    }
 
   private:
     /// The same of the body without its parts.

@@ -26,40 +26,70 @@ namespace Debond
   {
   public:
     std::set<std::string>
-    whole_boundaries() const override;
+    whole_boundaries() const override
+    {
+      return whole->boundaries();
+    }
 
     std::set<std::string>
-    whole_regions() const override;
+    whole_regions() const override
+    {
+      return whole->regions();
+    }
 
     double
-    n_cells() const override;
+    n_cells() const override
+    {
+      return whole->n_cells();
+    }
 
     double
-    n_vertices() const override;
+    n_vertices() const override
+    {
+      return whole->n_vertices();
+    }
 
     BodyShape
-    shape() const override;
+    shape() const override
+    {
+      return whole->shape();
+    }
 
     bool
-    has_coarse_levels() const override;
+    has_coarse_levels() const override
+    {
+      return whole->has_coarse_levels();
+    }
 
     std::unique_ptr<Body<dim>>
-    coarser_whole() const override;
+    coarser_whole() const override
+    {
+      return whole->coarser();
+    }
 
     std::vector<dealii::Tensor<1, dim>>
     interpolate(const dealii::Triangulation<dim>          &mesh,
                 const std::vector<dealii::Tensor<1, dim>> &values,
-                const std::vector<dealii::Point<dim>> &points) const override;
+                const std::vector<dealii::Point<dim>> &points) const override
+    {
+      return whole->interpolate(mesh, values, points);
+    }
 
     /// Of the whole boundary, by ids.
     virtual std::map<dealii::types::boundary_id, unsigned int>
     n_faces() const = 0;
 
     unsigned int
-    n_slabs() const;
+    n_slabs() const
+    {
+      return n_of_slabs;
+    }
 
     bool
-    owns_slab(const unsigned int slab) const;
+    owns_slab(const unsigned int slab) const
+    {
+      return first <= slab && slab < end;
+    }
 
     /// For each vertex of make_mesh() its number in the whole mesh.
     virtual std::vector<unsigned int>

@@ -43,14 +43,19 @@ namespace Debond
   class Box : public Body<dim>
   {
   public:
-    explicit Box(const BoxParameters &parameters);
+    explicit Box(const BoxParameters &parameters)
+      : parameters(parameters)
+    {}
 
     std::set<std::string>
     whole_boundaries() const override;
 
     /// None.
     std::set<std::string>
-    whole_regions() const override;
+    whole_regions() const override
+    {
+      return {};
+    }
 
     double
     n_cells() const override;
@@ -62,7 +67,10 @@ namespace Debond
     shape() const override;
 
     bool
-    has_coarse_levels() const override;
+    has_coarse_levels() const override
+    {
+      return !coarse_boxes().empty();
+    }
 
     PieceNames
     make_whole_mesh(dealii::Triangulation<dim> &mesh) const override;

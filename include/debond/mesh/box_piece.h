@@ -30,7 +30,10 @@ namespace Debond
     make_whole_mesh(dealii::Triangulation<dim> &mesh) const override;
 
     std::vector<unsigned int>
-    slabs(const dealii::Triangulation<dim> &mesh) const override;
+    slabs(const dealii::Triangulation<dim> &mesh) const override
+    {
+      return box->slabs(mesh);
+    }
 
     std::map<dealii::types::boundary_id, unsigned int>
     n_faces() const override;
@@ -39,7 +42,10 @@ namespace Debond
     numbers(const dealii::Triangulation<dim> &mesh) const override;
 
     std::size_t
-    cell_number(const unsigned int active_cell) const override;
+    cell_number(const unsigned int active_cell) const override
+    {
+      return place_and_number(active_cell)[1];
+    }
 
     bool
     owns_cell(const unsigned int active_cell) const override;

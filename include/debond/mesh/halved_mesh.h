@@ -50,10 +50,16 @@ namespace Debond
     n_units() const;
 
     unsigned int
-    n_slabs() const;
+    n_slabs() const
+    {
+      return n_of_slabs;
+    }
 
     unsigned int
-    slab_of_unit(const unsigned int unit) const;
+    slab_of_unit(const unsigned int unit) const
+    {
+      return slabs_of_units[unit];
+    }
 
     /// The rank that has a slab.
     unsigned int
@@ -124,7 +130,10 @@ namespace Debond
     around_own(const unsigned int level, const unsigned int n_layers) const;
 
     bool
-    is_own(const unsigned int slab) const;
+    is_own(const unsigned int slab) const
+    {
+      return first <= slab && slab < end;
+    }
 
     std::unique_ptr<SourceMesh<dim>> source;
     const unsigned int               unit_level, finest_level;

@@ -81,7 +81,10 @@ namespace Debond
 
     /// (upper - lower) / |upper|
     double
-    width() const;
+    width() const
+    {
+      return upper == lower ? 0. : (upper - lower) / std::abs(upper);
+    }
 
     /// Makes the interval so wide that it has J of the result in it, which
     /// quadrature of j_1 may have moved out: then the width says how far that J
@@ -122,7 +125,10 @@ namespace Debond
 
     /// Whether certify() takes displacements of finer meshes as well.
     bool
-    is_for_finer_meshes() const;
+    is_for_finer_meshes() const
+    {
+      return !trace_constants.empty() && equilibrium.loads_are_exact();
+    }
 
     /// Of the displacement @p u of @p solved, which is the scene, or the same
     /// on a finer mesh. @p proof: limits of branch and bound. @p earlier: of

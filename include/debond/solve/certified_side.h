@@ -38,7 +38,10 @@ namespace Debond
 
     /// Contains p at each point.
     Interval
-    linear() const;
+    linear() const
+    {
+      return hull(at_ends[0], at_ends[1]);
+    }
   };
 
 

@@ -19,7 +19,11 @@ namespace Debond
   {
   public:
     /// Keeps a reference to the stream.
-    Progress(std::ostream &stream, const bool is_terminal);
+    Progress(std::ostream &stream, const bool is_terminal)
+      : out(stream)
+      , terminal(is_terminal)
+      , last_print_seconds(-std::numeric_limits<double>::infinity())
+    {}
 
     /// Iteration, J, v_k, bundle size and step kind.
     void

@@ -39,73 +39,131 @@ namespace Debond
     /// error of one is thrown by all. There are no probes.
     Scene(const ProblemParameters              &given,
           std::shared_ptr<const BodyPiece<dim>> piece,
-          const MPI_Comm                        ranks);
+          const MPI_Comm                        ranks)
+      : Scene(given, piece, "", piece.get(), ranks)
+    {}
 
     Scene(const Scene &) = delete;
 
     /// What it was made of, on whatever mesh.
     const ProblemParameters &
-    parameters() const;
+    parameters() const
+    {
+      return given;
+    }
 
     const Body<dim> &
-    body() const;
+    body() const
+    {
+      return *elastic_body;
+    }
 
     /// What ranks share; null if this is the whole scene.
     const ProblemPiece<dim> *
-    piece() const;
+    piece() const
+    {
+      return problem_piece.get();
+    }
 
     /// The boundary and the normal displacements of the whole scene.
     const ContactBoundary<dim> &
-    contact_boundary() const;
+    contact_boundary() const
+    {
+      return problem_piece ? problem_piece->boundary() :
+                             elastic_problem->unknowns().contact().boundary();
+    }
 
     Eigen::VectorXd
-    contact_trace(const DofVector &u) const;
+    contact_trace(const DofVector &u) const
+    {
+      return problem_piece ? problem_piece->trace(u) :
+                             elastic_problem->unknowns().contact().trace(u);
+    }
 
     const ElasticProblem<dim> &
-    problem() const;
+    problem() const
+    {
+      return *elastic_problem;
+    }
 
     /// What acts on which boundaries and regions of the mesh.
     const BoundaryConditions &
-    conditions() const;
+    conditions() const
+    {
+      return boundary_conditions;
+    }
 
     const Supports<dim> &
-    supports() const;
+    supports() const
+    {
+      return body_supports;
+    }
 
     const ByRegion<Material> &
-    materials() const;
+    materials() const
+    {
+      return body_materials;
+    }
 
     const Loads<dim> &
-    loads() const;
+    loads() const
+    {
+      return body_loads;
+    }
 
     /// Those that do not grow with the load factor.
     const Loads<dim> &
-    dead_loads() const;
+    dead_loads() const
+    {
+      return body_dead_loads;
+    }
 
     const AdhesiveLaw &
-    law() const;
+    law() const
+    {
+      return *adhesive_law;
+    }
 
     const AdhesionIntegral<dim> &
-    adhesion() const;
+    adhesion() const
+    {
+      return *adhesion_integral;
+    }
 
     /// J, on vectors of problem().unknowns().n_dofs() entries.
     const Objective &
-    functional() const;
+    functional() const
+    {
+      return *energy;
+    }
 
     /// The first iterate for methods on all degrees of freedom.
     const DofVector &
-    start() const;
+    start() const
+    {
+      return first_iterate;
+    }
 
     /// What the scene wants to know by name.
     const Probes<dim> &
-    probes() const;
+    probes() const
+    {
+      return named_probes;
+    }
 
     /// The means of the displacement over all pieces with a name.
     const Probes<dim> &
-    means() const;
+    means() const
+    {
+      return piece_means;
+    }
 
     /// What the user should know of the body's pieces.
     const std::vector<std::string> &
-    notes() const;
+    notes() const
+    {
+      return body_notes;
+    }
 
     /// Triangles or tetrahedra, and free unknowns, of the whole scene.
     unsigned int
@@ -116,11 +174,17 @@ namespace Debond
 
     /// Wall seconds that the constructor took for the mesh.
     double
-    mesh_seconds() const;
+    mesh_seconds() const
+    {
+      return seconds_for_mesh;
+    }
 
     /// Wall seconds that the constructor took for the rest.
     double
-    assembly_seconds() const;
+    assembly_seconds() const
+    {
+      return seconds_for_assembly;
+    }
 
   private:
     Scene(const ProblemParameters         &given,
