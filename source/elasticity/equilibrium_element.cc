@@ -510,6 +510,33 @@ namespace Debond
 
 
   template <int dim>
+  const Eigen::MatrixXd &
+  EquilibriumElement<dim>::K() const
+  {
+    return shape->K;
+  }
+
+
+
+  template <int dim>
+  Eigen::VectorXd
+  EquilibriumElement<dim>::F() const
+  {
+    return shape->F * load;
+  }
+
+
+
+  template <int dim>
+  double
+  EquilibriumElement<dim>::constant() const
+  {
+    return load.dot(shape->constant * load);
+  }
+
+
+
+  template <int dim>
   Eigen::VectorXd
   EquilibriumElement<dim>::stress(const Eigen::VectorXd &displacements,
                                   const double           weight) const

@@ -78,22 +78,13 @@ namespace Debond
 
     /// With C made c times as stiff these are c K, F and constant / c.
     const Eigen::MatrixXd &
-    K() const
-    {
-      return shape->K;
-    }
+    K() const;
 
     Eigen::VectorXd
-    F() const
-    {
-      return shape->F * load;
-    }
+    F() const;
 
     double
-    constant() const
-    {
-      return load.dot(shape->constant * load);
-    }
+    constant() const;
 
     /// The stress that is reached for @p displacements l, with C made @p weight
     /// times as stiff: a LinearStress for each side, of the simplex above it
