@@ -246,8 +246,8 @@ namespace Debond
       }
     catch (const std::runtime_error &)
       {
-        // It is semidefinite for any body.
-        throw EquilibriumError(
+        // It is semidefinite for any body. No fault of the scene's.
+        throw std::runtime_error(
           "to rounding the matrix of the equilibrated stresses is not positive "
           "definite; try cells that are less flat, a Poisson ratio farther from "
           "its limit, or parts that differ less in stiffness");

@@ -10,6 +10,7 @@
 #include <debond/contact/bernstein.h>
 #include <debond/output/vtu.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -95,6 +96,45 @@ namespace Debond
 
 
 
+    template <int dim>
+    class BodyOut : public dealii::DataOut<dim>
+    {
+    public:
+      /// Writes a file of cells one part after the other: patches of a million
+      /// cells take a GiB.
+      void
+      write_in_parts(std::ostream                                       &file,
+                     const std::vector<typename BodyOut::cell_iterator> &cells,
+                     const unsigned int                                  degree)
+      {
+        constexpr std::size_t        cells_of_part = 1 << 16;
+        const dealii::MappingFE<dim> mapping(dealii::FE_SimplexP<dim>(1));
+        dealii::DataOutBase::write_vtu_header(file, vtk_flags());
+        for (std::size_t first = 0; first < cells.size();
+             first += cells_of_part)
+          {
+            std::size_t       next = first;
+            const std::size_t end =
+              std::min(first + cells_of_part, cells.size());
+            this->set_cell_selection(
+              [&](const auto &) { return cells[next = first]; },
+              [&](const auto &mesh, const auto &) {
+                return ++next < end ? cells[next] : mesh.end();
+              });
+            this->build_patches(mapping, degree);
+            dealii::DataOutBase::write_vtu_main(
+              this->get_patches(),
+              this->get_dataset_names(),
+              this->get_nonscalar_data_ranges(),
+              vtk_flags(),
+              file);
+          }
+        dealii::DataOutBase::write_vtu_footer(file);
+      }
+    };
+
+
+
     /// Writes the cells of the body, of @p piece its own ones; returns the file
     /// that joins those of @p pieces, if there are any.
     template <int dim>
@@ -112,7 +152,7 @@ namespace Debond
       const DofVector displacement =
         problem.unknowns().cartesian_displacement(u, factors);
 
-      dealii::DataOut<dim> out;
+      BodyOut<dim> out;
       out.set_flags(vtk_flags());
       out.attach_dof_handler(problem.unknowns().dof_handler());
       out.add_data_vector(
@@ -127,15 +167,17 @@ namespace Debond
         out.add_data_vector(numbers,
                             name,
                             dealii::DataOut<dim>::type_cell_data);
-      if (piece != nullptr)
-        out.set_cell_selection([piece](const auto &cell) {
-          return cell->is_active() &&
-                 piece->body().owns_cell(cell->active_cell_index());
-        });
-      out.build_patches(dealii::MappingFE<dim>(dealii::FE_SimplexP<dim>(1)),
-                        problem.unknowns().degree());
-      write_atomically(file_name,
-                       [&out](std::ostream &file) { out.write_vtu(file); });
+      std::vector<typename BodyOut<dim>::cell_iterator> cells;
+      for (const auto &cell : problem.unknowns()
+                                .dof_handler()
+                                .get_triangulation()
+                                .active_cell_iterators())
+        if (piece == nullptr ||
+            piece->body().owns_cell(cell->active_cell_index()))
+          cells.push_back(cell);
+      write_atomically(file_name, [&](std::ostream &file) {
+        out.write_in_parts(file, cells, problem.unknowns().degree());
+      });
       std::ostringstream joined;
       if (!pieces.empty())
         out.write_pvtu_record(joined, pieces);
