@@ -5,6 +5,8 @@ import argparse
 import glob
 import os
 import sys
+import tempfile
+import xml.etree.ElementTree as xml
 
 import meshio
 import numpy
@@ -26,11 +28,24 @@ STATES = {"contact": "tab:blue", "bonded": "tab:green", "kink": "tab:olive",
           "broken": "tab:red", "free": "tab:gray", "held": "k"}
 
 
+def read(file):
+    """One mesh for each part of a file: of several meshio takes the last."""
+    tree = xml.parse(file)
+    (grid,) = tree.getroot().findall("UnstructuredGrid")
+    pieces, meshes = grid.findall("Piece"), []
+    for piece in pieces:
+        grid[:] = [piece]
+        with tempfile.NamedTemporaryFile(suffix=".vtu") as part:
+            tree.write(part.name)
+            meshes.append(meshio.read(part.name))
+    return meshes
+
+
 class Grid:
     """The cells of .vtu files by their corners, with their fields."""
 
     def __init__(self, files):
-        self.meshes = [meshio.read(file) for file in files]
+        self.meshes = [mesh for file in files for mesh in read(file)]
         self.points = numpy.concatenate([m.points for m in self.meshes])
         cells, n = [], 0
         for mesh in self.meshes:

@@ -107,7 +107,7 @@ namespace Debond
                      const std::vector<typename BodyOut::cell_iterator> &cells,
                      const unsigned int                                  degree)
       {
-        constexpr std::size_t        cells_of_part = 1 << 16;
+        constexpr std::size_t        cells_of_part = 1 << 18;
         const dealii::MappingFE<dim> mapping(dealii::FE_SimplexP<dim>(1));
         dealii::DataOutBase::write_vtu_header(file, vtk_flags());
         for (std::size_t first = 0; first < cells.size();

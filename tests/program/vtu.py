@@ -14,14 +14,20 @@ class Piece:
     def __init__(self, path):
         root = xml.parse(path).getroot()
         assert root.get("compressor") == "vtkZLibDataCompressor"
-        piece = root.find(".//Piece")
-        self.n_points = int(piece.get("NumberOfPoints"))
-        self.n_cells = int(piece.get("NumberOfCells"))
-        self.points = self.numbers(piece.find("Points/DataArray"))
-        self.cells, self.at_points = (
-            {array.get("Name"): self.numbers(array)
-             for array in piece.find(kind).iter("DataArray")}
-            for kind in ("Cells", "PointData"))
+        self.n_points = self.n_cells = 0
+        self.points, self.cells, self.at_points = (), {}, {}
+        for piece in root.iter("Piece"):  # large bodies have several
+            firsts = {"connectivity": self.n_points,
+                      "offsets": len(self.cells.get("connectivity", ()))}
+            self.n_points += int(piece.get("NumberOfPoints"))
+            self.n_cells += int(piece.get("NumberOfCells"))
+            self.points += self.numbers(piece.find("Points/DataArray"))
+            for kind, lists in (("Cells", self.cells), ("PointData", self.at_points)):
+                for array in piece.find(kind).iter("DataArray"):
+                    name = array.get("Name")
+                    first = firsts.get(name, 0)
+                    lists[name] = lists.get(name, ()) + tuple(
+                        first + number for number in self.numbers(array))
         n = self.cells["offsets"][0]
         assert self.cells["offsets"] == tuple(
             n * (cell + 1) for cell in range(self.n_cells))
