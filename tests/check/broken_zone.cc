@@ -2,7 +2,7 @@
 // The part of a face that is open and not bonded against sampling it, and bonds
 // that do not heal.
 
-#include <debond/check/verification.h>
+#include <debond/check/broken_zone.h>
 #include <debond/contact/laws/winkler.h>
 
 #include <array>

@@ -7,7 +7,7 @@
 
 #include <deal.II/base/numbers.h>
 
-#include <debond/check/verification.h>
+#include <debond/check/broken_zone.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/contact/boundary_graph.h>
 #include <debond/contact/exact_energy.h>

@@ -15,19 +15,6 @@
 
 namespace Debond
 {
-  /// The length (in 3D the area) of the contact boundary that is open and not
-  /// bonded: where s falls below the last kink of the law, or below 0 where
-  /// there are no bonds or bonds are broken for good, the difference being
-  /// linear on each face. So a crack in 2D ends between two nodes.
-  template <int dim>
-  double
-  broken_zone(const ContactBoundary<dim>  &boundary,
-              const AdhesiveLaw           &law,
-              const AdhesionIntegral<dim> &adhesion,
-              const VectorView            &s);
-
-
-
   /// What the bonds and the foundation do at a contact node, by its number in
   /// files. Branches of a law that have other names than these have the numbers
   /// that follow.

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_check_broken_zone_h
+#define debond_check_broken_zone_h
+
+#include <debond/contact/adhesion_integral.h>
+
+namespace Debond
+{
+  /// The length (in 3D the area) of the contact boundary that is open and not
+  /// bonded: where s falls below the last kink of the law, or below 0 where
+  /// there are no bonds or bonds are broken for good, the difference being
+  /// linear on each face. So a crack in 2D ends between two nodes.
+  template <int dim>
+  double
+  broken_zone(const ContactBoundary<dim>  &boundary,
+              const AdhesiveLaw           &law,
+              const AdhesionIntegral<dim> &adhesion,
+              const VectorView            &s);
+} // namespace Debond
+
+#endif
