@@ -294,13 +294,14 @@ namespace Debond
     result.parts["multigrid setup"] = timer.wall_time();
 
     timer.restart();
-    result.u                       = !choice.has_levels ?
-                                       start_without_levels(parameters, scene, guard, watch, result) :
-                                     scene.piece() == nullptr ?
-                                       start_from_levels(
-                   choice, parameters, scene, *levels, guard, watch, result) :
-                                       start_from_root(
-                   choice, parameters, scene, *levels, guard, watch, result);
+    if (!choice.has_levels)
+      result.u = start_without_levels(parameters, scene, guard, watch, result);
+    else if (scene.piece() == nullptr)
+      result.u = start_from_levels(
+        choice, parameters, scene, *levels, guard, watch, result);
+    else
+      result.u = start_from_root(
+        choice, parameters, scene, *levels, guard, watch, result);
     result.parts["coarser meshes"] = timer.wall_time();
     if (!watch.may_go_on())
       {
