@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/atomic_file.h>
+#include <debond/base/processes.h>
+#include <debond/base/ranks.h>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -39,6 +41,18 @@ namespace Debond
   void
   write_atomically(const std::string                         &file_name,
                    const std::function<void(std::ostream &)> &write)
+  {
+    on_all_ranks(MPI_COMM_WORLD, [&]() {
+      if (is_first_rank())
+        write_own_file(file_name, write);
+    });
+  }
+
+
+
+  void
+  write_own_file(const std::string                         &file_name,
+                 const std::function<void(std::ostream &)> &write)
   {
     const std::string partial = file_name + ".partial";
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/processes.h>
 #include <debond/base/interrupt.h>
 
 #include <atomic>
@@ -8,6 +9,7 @@ namespace Debond
   namespace
   {
     std::atomic<bool> signal_arrived(false);
+    std::atomic<bool> is_known(false); ///< to all ranks
 
     unsigned int n_guards = 0;
 
@@ -43,6 +45,23 @@ namespace Debond
     sigaction(SIGINT, &previous_int, nullptr);
     sigaction(SIGTERM, &previous_term, nullptr);
     signal_arrived = false;
+    is_known       = false;
+  }
+
+
+
+  bool
+  InterruptGuard::arrived()
+  {
+    return signal_arrived;
+  }
+
+
+
+  bool
+  InterruptGuard::noticed()
+  {
+    return n_started_ranks() == 1 ? signal_arrived : is_known;
   }
 
 
@@ -50,6 +69,7 @@ namespace Debond
   bool
   InterruptGuard::requested()
   {
-    return signal_arrived;
+    is_known = any_rank(signal_arrived);
+    return is_known;
   }
 } // namespace Debond

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
+#include <debond/base/processes.h>
 #include <debond/base/memory.h>
 #include <debond/base/text.h>
 
@@ -60,7 +61,7 @@ namespace Debond
   memory_left(const double limit)
   {
     if (limit > 0.)
-      return std::max(0., limit - used_memory());
+      return least_of_ranks(std::max(0., limit - used_memory()));
     double left = 1024. * read_limit("/proc/meminfo", "MemAvailable:");
     // Containers, by the two versions of control groups.
     for (const char *file : {"/sys/fs/cgroup/memory.max",
@@ -70,7 +71,7 @@ namespace Debond
     if (getrlimit(RLIMIT_AS, &address_space) == 0 &&
         address_space.rlim_cur != RLIM_INFINITY)
       left = std::min(left, static_cast<double>(address_space.rlim_cur));
-    return left;
+    return least_of_ranks(left);
   }
 
 

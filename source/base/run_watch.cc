@@ -89,7 +89,7 @@ namespace Debond
         break;
       }
 
-    if (!guard.requested())
+    if (!guard.arrived())
       return;
     const std::string stage =
       watched.innermost != nullptr ? " (" + watched.innermost->name + ")" : "";

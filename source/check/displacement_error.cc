@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
+#include <debond/base/ranks.h>
 #include <debond/check/displacement_error.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <cmath>
 #include <limits>
@@ -114,8 +116,9 @@ namespace Debond
       squares.energy += weight * (strain * (stiffness * strain));
     };
 
-    for (const auto &cell :
-         problem.unknowns().dof_handler().active_cell_iterators())
+    const MPI_Comm ranks = problem.unknowns().communicator();
+    on_all_ranks(ranks, [&]() {
+    for (const auto &cell : owned_cells(problem.unknowns().dof_handler()))
       {
         cell_stresses.reinit(cell);
         stiffness =
@@ -136,6 +139,11 @@ namespace Debond
                 errors);
           }
       }
+    });
+    for (Squares *const squares : {&errors, &norms})
+      for (double *const sum :
+           {&squares->value, &squares->gradient, &squares->energy})
+        *sum = dealii::Utilities::MPI::sum(*sum, ranks);
 
     return {relative_norm(errors.value, norms.value),
             relative_norm(errors.gradient, norms.gradient),

@@ -3,17 +3,17 @@
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <debond/base/ranks.h>
 #include <debond/base/text.h>
 #include <debond/check/error_estimate.h>
 #include <debond/contact/field_value.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
-#include <set>
-#include <stdexcept>
+#include <unordered_map>
 
 namespace Debond
 {
@@ -164,8 +164,7 @@ namespace Debond
                 const Loads<dim>            &loads,
                 const DofVector             &u,
                 const LoadFactors            factors,
-                const Loads<dim>            *dead_loads,
-                const ProblemPiece<dim>     *piece)
+                const Loads<dim>            *dead_loads)
         : degree(problem.unknowns().degree())
         , adhesion(adhesion)
         , boundary(problem.unknowns().contact().boundary())
@@ -177,8 +176,7 @@ namespace Debond
         , load_factor(factors.loads)
         , has_volume_loads(loads.body_force || loads.temperature_change ||
                            (dead_loads != nullptr && dead_loads->body_force))
-        , largest_s((piece == nullptr ? s : piece->trace(u))
-                      .template lpNorm<Eigen::Infinity>())
+        , largest_s(s.template lpNorm<Eigen::Infinity>())
         , fe(1)
         , barycentric(problem.unknowns().mapping(),
                       fe,
@@ -198,12 +196,14 @@ namespace Debond
         const auto        &dofs = problem.unknowns().dof_handler();
         const unsigned int n    = dofs.get_triangulation().n_active_cells();
         cells.reserve(n);
-        stress_energies.reserve(n);
         if (degree == 2)
           linear_stresses.reserve(n);
         if (has_volume_loads)
           volume_loads.reserve(n);
         parts.assign(n, 0.);
+        for (unsigned int f = static_cast<unsigned int>(boundary.faces.size());
+             f-- > 0;)
+          first_contact_face[boundary.faces[f].cell] = f;
         CellStresses<dim> stresses(fields,
                                    displacement,
                                    factors,
@@ -219,10 +219,18 @@ namespace Debond
             Vertices vertices;
             for (unsigned int v = 0; v <= dim; ++v)
               vertices[v] = cell->vertex(v);
-            add_cell(vertices, fields.material(cell), stresses);
+            add_cell(vertices,
+                     fields.material(cell),
+                     stresses,
+                     cell->is_locally_owned());
+            // Of cells of other ranks not all faces are here.
+            unsigned int n_contact_faces = 0;
             for (unsigned int f = 0; f <= dim; ++f)
               if (cell->neighbor_index(f) < 0)
-                add_boundary_face(cell, f, vertices);
+                {
+                  if (cell->is_locally_owned())
+                    add_boundary_face(cell, f, vertices, n_contact_faces);
+                }
               else if (const auto neighbor = cell->neighbor(f);
                        neighbor->active_cell_index() <
                        cell->active_cell_index())
@@ -233,8 +241,8 @@ namespace Debond
       /// What J would fall, of each cell.
       std::vector<double> parts;
 
-      /// Those of an elastic body with these stresses.
-      std::vector<double> stress_energies;
+      /// That of an elastic body with these stresses, of own cells.
+      double stress_energy = 0.;
 
       /// What the constant was not measured for.
       bool is_nearly_incompressible = false;
@@ -293,7 +301,8 @@ namespace Debond
       void
       add_cell(const Vertices          &vertices,
                const Material          &material,
-               const CellStresses<dim> &stresses)
+               const CellStresses<dim> &stresses,
+               const bool               is_own)
       {
         const double mu     = material.shear_modulus();
         const double lambda = material.template lame_lambda<dim>();
@@ -316,9 +325,10 @@ namespace Debond
             parts[cells.size()] =
               fall_inside<dim>(barycentric, volume, load.force, here.mu);
           }
-        stress_energies.push_back(
-          0.5 * (1. / (2. * mu)) * volume *
-          (here.stress * here.stress - here.part_of_lambda * trace * trace));
+        if (is_own)
+          stress_energy +=
+            0.5 * (1. / (2. * mu)) * volume *
+            (here.stress * here.stress - here.part_of_lambda * trace * trace);
         is_nearly_incompressible =
           is_nearly_incompressible || lambda > largest_calibrated_lambda * mu;
         has_stretched_cells =
@@ -526,13 +536,16 @@ namespace Debond
       void
       add_boundary_face(const CellIterator &cell,
                         const unsigned int  f,
-                        const Vertices     &vertices)
+                        const Vertices     &vertices,
+                        unsigned int       &n_contact_faces)
       {
         const auto id         = cell->face(f)->boundary_id();
         const bool is_contact = conditions.contact.count(id) > 0;
-        // They are numbered in this order.
-        const unsigned int contact_face = n_contact_faces;
-        n_contact_faces += is_contact;
+        // Those of a cell follow each other.
+        const unsigned int contact_face =
+          is_contact ? first_contact_face.at(cell->id().get_coarse_cell_id()) +
+                         n_contact_faces++ :
+                       0;
         if (conditions.clamped.count(id) > 0)
           return;
 
@@ -646,28 +659,27 @@ namespace Debond
       std::vector<CellStress>   cells;
       std::vector<LinearStress> linear_stresses; ///< of degree 2
       std::vector<VolumeLoad>   volume_loads;    ///< if there are any
-      unsigned int              n_contact_faces = 0;
+
+      /// Of each cell that has any.
+      std::unordered_map<dealii::types::coarse_cell_id, unsigned int>
+        first_contact_face;
     };
 
 
 
     template <int dim>
     std::string
-    outside_calibration(const Residuals<dim>    &residuals,
-                        const ProblemPiece<dim> *piece)
+    outside_calibration(const Residuals<dim> &residuals, const MPI_Comm ranks)
     {
-      std::set<std::string> reasons;
-      if (residuals.is_nearly_incompressible)
-        reasons.insert("nearly incompressible materials");
-      if (residuals.has_stretched_cells)
-        reasons.insert("cells that are stretched");
-      if (piece != nullptr)
-        for (const std::vector<std::string> &of_rank :
-             dealii::Utilities::MPI::all_gather(
-               piece->nodes().communicator(),
-               std::vector<std::string>(reasons.begin(), reasons.end())))
-          reasons.insert(of_rank.begin(), of_rank.end());
-      return join({reasons.begin(), reasons.end()}, " and ");
+      const auto is_anywhere = [ranks](const bool is_here) {
+        return dealii::Utilities::MPI::max(is_here ? 1 : 0, ranks) == 1;
+      };
+      std::vector<std::string> reasons;
+      if (is_anywhere(residuals.has_stretched_cells))
+        reasons.emplace_back("cells that are stretched");
+      if (is_anywhere(residuals.is_nearly_incompressible))
+        reasons.emplace_back("nearly incompressible materials");
+      return join(reasons, " and ");
     }
   } // namespace
 
@@ -683,50 +695,34 @@ namespace Debond
                  const DofVector             &u,
                  const double                 functional,
                  const LoadFactors            factors,
-                 const Loads<dim>            *dead_loads,
-                 const ProblemPiece<dim>     *piece)
+                 const Loads<dim>            *dead_loads)
   {
+    const auto    &dofs  = problem.unknowns().dof_handler();
+    const MPI_Comm ranks = problem.unknowns().communicator();
     std::optional<Residuals<dim>> residuals;
-    std::string                   error;
-    try
-      {
-        residuals.emplace(problem,
-                          adhesion,
-                          conditions,
-                          supports,
-                          loads,
-                          u,
-                          factors,
-                          dead_loads,
-                          piece);
-      }
-    catch (const std::invalid_argument &exception)
-      {
-        if (piece == nullptr)
-          throw;
-        error = exception.what();
-      }
-    if (piece != nullptr)
-      for (const std::string &of_rank :
-           dealii::Utilities::MPI::all_gather(piece->nodes().communicator(),
-                                              error))
-        if (!of_rank.empty())
-          throw std::invalid_argument(of_rank);
+    on_all_ranks(ranks, [&]() {
+      residuals.emplace(problem,
+                        adhesion,
+                        conditions,
+                        supports,
+                        loads,
+                        u,
+                        factors,
+                        dead_loads);
+    });
 
-    const double constant = calibration<dim>(problem.unknowns().degree());
-    const auto   sum      = [piece](const std::vector<double> &v) {
-      const auto add = [](const std::vector<double> &numbers) {
-        return std::accumulate(numbers.begin(), numbers.end(), 0.);
-      };
-      return piece == nullptr ? add(v) : add(piece->gather_cells(v));
-    };
+    const double  constant = calibration<dim>(problem.unknowns().degree());
     ErrorEstimate result;
     result.cells = std::move(residuals->parts);
     for (double &part : result.cells)
       part *= constant;
-    result.functional          = sum(result.cells);
-    result.outside_calibration = outside_calibration(*residuals, piece);
-    const double stress_energy = sum(residuals->stress_energies);
+    double sum = 0.;
+    for (const auto &cell : owned_cells(dofs))
+      sum += result.cells[cell->active_cell_index()];
+    result.functional          = dealii::Utilities::MPI::sum(sum, ranks);
+    result.outside_calibration = outside_calibration(*residuals, ranks);
+    const double stress_energy =
+      dealii::Utilities::MPI::sum(residuals->stress_energy, ranks);
     result.is_of_J =
       std::abs(functional) >= least_part_of_energy * stress_energy;
     result.scale = result.is_of_J ? std::abs(functional) : stress_energy;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/text.h>
 #include <debond/check/plausibility.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,14 +26,16 @@ namespace Debond
         largest.displacement = std::max(largest.displacement, at_node.norm());
       }
     CellStresses<dim> means(problem.fields(), displacement, factors);
-    for (const auto &cell :
-         problem.unknowns().dof_handler().active_cell_iterators())
+    for (const auto &cell : owned_cells(problem.unknowns().dof_handler()))
       {
         means.reinit(cell);
         largest.gradient = std::max(largest.gradient, means.gradient(0).norm());
         largest.von_mises =
           std::max(largest.von_mises, von_mises(means.solid_stress(0)));
       }
+    const MPI_Comm ranks = problem.unknowns().communicator();
+    largest.gradient     = dealii::Utilities::MPI::max(largest.gradient, ranks);
+    largest.von_mises = dealii::Utilities::MPI::max(largest.von_mises, ranks);
     return largest;
   }
 

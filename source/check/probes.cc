@@ -2,7 +2,9 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <debond/base/ranks.h>
 #include <debond/check/probes.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <algorithm>
 #include <limits>
@@ -31,7 +33,7 @@ namespace Debond
       double                least = -std::numeric_limits<double>::max();
       typename dealii::DoFHandler<dim>::active_cell_iterator inside;
       dealii::Point<dim>                                     unit_point;
-      for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
+      for (const auto &cell : owned_cells(unknowns.dof_handler()))
         {
           fe_values.reinit(cell);
           const dealii::Point<dim> point(
@@ -51,16 +53,43 @@ namespace Debond
               unit_point = point;
             }
         }
+      // The first of the ranks that have found it deepest has the point.
+      const MPI_Comm     ranks = unknowns.communicator();
+      const unsigned int rank  = rank_of_this(ranks);
+      const double       deepest = dealii::Utilities::MPI::max(least, ranks);
+      const unsigned int first   = dealii::Utilities::MPI::min(
+        least == deepest ? rank : dealii::numbers::invalid_unsigned_int, ranks);
       constexpr double rounding = 1e-8;
-      if (least < -rounding)
+      if (deepest < -rounding)
         throw ProbeError(probe.name, "the point is not in the body");
 
-      std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
-      inside->get_dof_indices(dofs);
       Weights weights;
-      for (unsigned int i = 0; i < dofs.size(); i += dim)
-        weights[dofs[i]] += fe.shape_value(i, unit_point);
-      return weights;
+      if (rank == first)
+        {
+          std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
+          inside->get_dof_indices(dofs);
+          for (unsigned int i = 0; i < dofs.size(); i += dim)
+            weights[dofs[i]] += fe.shape_value(i, unit_point);
+        }
+      return number_of_ranks(ranks) == 1 ?
+               weights :
+               dealii::Utilities::MPI::broadcast(ranks, weights, first);
+    }
+
+
+
+    /// Those of all ranks together.
+    Weights
+    sum(const Weights &own, const MPI_Comm ranks)
+    {
+      if (number_of_ranks(ranks) == 1)
+        return own;
+      Weights result;
+      for (const Weights &of_rank :
+           dealii::Utilities::MPI::all_gather(ranks, own))
+        for (const auto &[dof, weight] : of_rank)
+          result[dof] += weight;
+      return result;
     }
 
 
@@ -100,8 +129,7 @@ namespace Debond
                                               fe,
                                               dealii::QGaussSimplex<dim - 1>(2),
                                               flags);
-          for (const auto &cell :
-               unknowns.dof_handler().active_cell_iterators())
+          for (const auto &cell : owned_cells(unknowns.dof_handler()))
             for (const unsigned int f : cell->face_indices())
               if (cell->face(f)->at_boundary() &&
                   boundary->second.count(cell->face(f)->boundary_id()) > 0)
@@ -116,14 +144,14 @@ namespace Debond
                     },
                     weights);
                 }
-          return weights;
+          return sum(weights, unknowns.communicator());
         }
       const auto           &ids = pieces.regions.at(piece);
       dealii::FEValues<dim> fe_values(unknowns.mapping(),
                                       fe,
                                       dealii::QGaussSimplex<dim>(2),
                                       flags);
-      for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
+      for (const auto &cell : owned_cells(unknowns.dof_handler()))
         if (ids.count(cell->material_id()) > 0)
           {
             fe_values.reinit(cell);
@@ -134,7 +162,7 @@ namespace Debond
               [](const unsigned int) { return true; },
               weights);
           }
-      return weights;
+      return sum(weights, unknowns.communicator());
     }
   } // namespace
 
@@ -163,42 +191,26 @@ namespace Debond
   ProbeValues<dim>
   Probes<dim>::values(const ElasticProblem<dim> &problem,
                       const DofVector           &u,
-                      const LoadFactors          factors,
-                      const ProblemPiece<dim>   *piece) const
+                      const LoadFactors          factors) const
   {
-    const auto whole = [piece](const DofVector &v) {
-      return piece == nullptr ? v : piece->gather(v);
-    };
     const DofVector displacement =
-      whole(problem.unknowns().cartesian_displacement(u, factors));
+      problem.unknowns().cartesian_displacement(u, factors);
     DofVector forces;
     if (std::any_of(sums.begin(), sums.end(), [](const Sum &sum) {
           return sum.of_forces;
         }))
-      forces = whole(problem.unknowns().cartesian_forces(
-        problem.fields().residual(u, factors)));
+      forces = problem.unknowns().cartesian_forces(
+        problem.fields().residual(u, factors));
 
     ProbeValues<dim> result;
     for (const Sum &sum : sums)
       {
-        auto weights = sum.weights;
-        if (piece != nullptr)
-          {
-            DofVector of_unknowns(problem.unknowns().n_dofs());
-            for (const auto &[dof, weight] : weights)
-              of_unknowns(dof) = weight;
-            of_unknowns = whole(of_unknowns);
-            weights.clear();
-            for (unsigned int dof = 0; dof < of_unknowns.size(); dof += dim)
-              if (of_unknowns(dof) != 0.)
-                weights.emplace_back(dof, of_unknowns(dof));
-          }
         double total = sum.of_forces ? 1. : 0.;
         if (!sum.of_forces)
-          for (const auto &[unused, weight] : weights)
+          for (const auto &[unused, weight] : sum.weights)
             total += weight;
         dealii::Tensor<1, dim> value;
-        for (const auto &[dof, weight] : weights)
+        for (const auto &[dof, weight] : sum.weights)
           for (unsigned int d = 0; d < dim; ++d)
             value[d] +=
               weight / total *

@@ -324,8 +324,7 @@ namespace Debond
     template <int dim>
     LargestResiduals
     largest_residuals(const ElasticProblem<dim> &problem,
-                      const DofVector           &residual,
-                      const ProblemPiece<dim>   *piece)
+                      const DofVector           &residual)
     {
       std::vector<bool> supported(problem.unknowns().n_dofs(), false);
       for (const auto normal : problem.unknowns().contact().normals())
@@ -334,18 +333,12 @@ namespace Debond
       LargestResiduals result;
       for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
         {
-          if (piece != nullptr && !piece->nodes().is_own(i / dim))
-            continue;
           double &largest =
             supported[i] || problem.unknowns().is_constrained(i) ?
               result.supported :
               result.free;
           largest = std::max(largest, std::abs(residual(i)));
         }
-      if (piece != nullptr)
-        for (double *const largest : {&result.free, &result.supported})
-          *largest = dealii::Utilities::MPI::max(*largest,
-                                                 piece->nodes().communicator());
       return result;
     }
 
@@ -379,13 +372,8 @@ namespace Debond
                           const LoadFactors          factors,
                           const double               smallest_force,
                           const DofVector           &rounding,
-                          const ProblemPiece<dim>   *piece,
                           Verification<dim>         &result)
     {
-      // Of all unknowns, on the first of several ranks.
-      const auto whole = [piece](const DofVector &v) {
-        return piece == nullptr ? v : piece->gather(v);
-      };
       const auto       &normals = problem.unknowns().contact().normals();
       std::vector<bool> is_normal(problem.unknowns().n_dofs(), false);
       for (const auto normal : normals)
@@ -408,7 +396,7 @@ namespace Debond
 
       const auto resultant = [&](const DofVector &forces) {
         const DofVector cartesian =
-          whole(problem.unknowns().cartesian_forces(forces));
+          problem.unknowns().cartesian_forces(forces);
         dealii::Tensor<1, dim> sum;
         for (unsigned int i = 0; i < cartesian.size(); ++i)
           sum[i % dim] += cartesian(i);
@@ -416,21 +404,15 @@ namespace Debond
       };
 
       const DofVector applied =
-        whole(problem.fields().applied_nodal_forces(factors));
+        problem.fields().applied_nodal_forces(factors);
       for (unsigned int i = 0; i < applied.size(); ++i)
         result.applied_force[i % dim] += applied(i);
       result.clamped_reaction = resultant(clamped);
       result.contact_reaction = resultant(contact);
 
-      // A rank has not all supports.
       const std::vector<std::string> &names = unknowns.support_names();
-      std::set<std::string>           all_names(names.begin(), names.end());
-      if (piece != nullptr)
-        for (const auto &of_rank :
-             dealii::Utilities::MPI::all_gather(piece->nodes().communicator(),
-                                                names))
-          all_names.insert(of_rank.begin(), of_rank.end());
-      for (const std::string &name : all_names)
+      for (const std::string &name :
+           std::set<std::string>(names.begin(), names.end()))
         {
           DofVector of_support(unknowns.n_dofs());
           for (const auto &[dof, support] : unknowns.supported())
@@ -453,27 +435,20 @@ namespace Debond
       for (const auto normal : normals)
         tangential(normal) = 0.;
       result.tangential_reaction = resultant(tangential);
-      tangential = whole(problem.unknowns().cartesian_forces(tangential));
       result.tangential_forces =
-        piece == nullptr ?
-          at_contact_nodes<dim>(tangential, normals) :
-          at_contact_nodes<dim>(tangential, piece->normal_numbers());
+        at_contact_nodes<dim>(problem.unknowns().cartesian_forces(tangential),
+                              normals);
 
       // Resultants can vanish where forces do not.
       DofVector supports = clamped;
       supports += contact;
-      supports = whole(supports);
-      const double scale =
-        supports.size() == 0 ? 0. : supports.l1_norm() + applied.l1_norm();
+      const double scale = supports.l1_norm() + applied.l1_norm();
       const double imbalance = (result.applied_force + result.clamped_reaction +
                                 result.contact_reaction)
                                  .norm();
       // The rounding of a sum is that of all its terms.
-      const DofVector of_all = whole(rounding);
-      const double    resolved =
-        of_all.size() == 0 ?
-             smallest_force :
-             std::max(smallest_force, digits_above_rounding * of_all.l1_norm());
+      const double resolved =
+        std::max(smallest_force, digits_above_rounding * rounding.l1_norm());
       result.force_imbalance =
         imbalance > 0. ? imbalance / std::max(scale, resolved) : 0.;
     }
@@ -488,36 +463,22 @@ namespace Debond
          const AdhesiveLaw           &law,
          const DofVector             &u,
          const LoadFactors            factors,
-         const double                 tolerance,
-         const ProblemPiece<dim>     *piece)
+         const double                 tolerance)
   {
-    const bool is_finite =
-      piece == nullptr ?
-        std::all_of(u.begin(),
-                    u.end(),
-                    [](const double x) { return std::isfinite(x); }) :
-        std::isfinite(piece->nodes().product(u.begin(), u.begin()));
-    if (!is_finite)
+    if (!std::all_of(u.begin(), u.end(), [](const double x) {
+          return std::isfinite(x);
+        }))
       throw std::invalid_argument(
         "The displacement is not finite and cannot be verified: the data of "
         "the "
         "scene are too large or too small for double precision.");
 
-    const ContactBoundary<dim> &boundary =
-      piece == nullptr ? problem.unknowns().contact().boundary() :
-                         piece->boundary();
-    const auto trace = [&](const DofVector &v) {
-      return piece == nullptr ? problem.unknowns().contact().trace(v) :
-                                piece->trace(v);
-    };
-    const auto largest_entry = [&](const DofVector &v) {
-      return piece == nullptr ? v.linfty_norm() :
-                                piece->nodes().largest(v.begin());
-    };
+    const ContactSpace<dim>    &contact  = problem.unknowns().contact();
+    const ContactBoundary<dim> &boundary = contact.boundary();
     const DofVector residual = problem.fields().residual(u, factors);
 
-    const Eigen::VectorXd       s               = trace(u);
-    const Eigen::VectorXd       normal_residual = trace(residual);
+    const Eigen::VectorXd       s               = contact.trace(u);
+    const Eigen::VectorXd       normal_residual = contact.trace(residual);
     const std::vector<Interval> forces = adhesion.force_intervals(s, 0.);
 
     Verification<dim> result;
@@ -544,18 +505,19 @@ namespace Debond
     DofVector displacement = u;
     if (problem.unknowns().has_lifting())
       displacement += problem.unknowns().lifting(factors);
-    const double           largest_displacement = largest_entry(displacement);
+    const double           largest_displacement = displacement.linfty_norm();
     const LargestResiduals largest =
-      largest_residuals(problem, residual, piece);
+      largest_residuals(problem, residual);
     DofVector    rounding = problem.fields().residual_rounding(u, factors);
     const double largest_load =
-      largest_entry(problem.fields().applied_nodal_forces(factors));
+      problem.fields().applied_nodal_forces(factors).linfty_norm();
     const double largest_force = std::max(largest_load, largest.supported);
     // Of w, where the body stays far from the foundation.
     const double rounding_of_gaps =
       problem.unknowns().has_gap() ?
-        largest_entry(
-          problem.fields().residual_rounding(DofVector(u.size()), factors)) :
+        problem.fields()
+          .residual_rounding(DofVector(u.size()), factors)
+          .linfty_norm() :
         0.;
     // A body at rest, or off, has no other forces.
     if (largest_force_rounding * largest_force < rounding_of_gaps)
@@ -567,7 +529,7 @@ namespace Debond
                                                     adhesion,
                                                     boundary,
                                                     result.nodes,
-                                                    trace(rounding),
+                                                    contact.trace(rounding),
                                                     resolved_above_gaps,
                                                     largest.supported,
                                                     largest_displacement);
@@ -590,7 +552,7 @@ namespace Debond
       }
 
     const double resolved =
-      std::max(digits_above_rounding * largest_entry(rounding),
+      std::max(digits_above_rounding * rounding.linfty_norm(),
                resolved_above_gaps);
     result.equilibrium_residual =
       largest.free > 0. ?
@@ -602,22 +564,17 @@ namespace Debond
                           factors,
                           resolved,
                           rounding,
-                          piece,
                           result);
 
     result.force_rounding =
       largest_load > 0. ?
-        std::max(largest_entry(rounding), rounding_of_gaps) / largest_force :
+        std::max(rounding.linfty_norm(), rounding_of_gaps) / largest_force :
         0.;
 
     displacement = problem.unknowns().cartesian_displacement(u, factors);
     problem.unknowns().edges().to_coefficients(displacement);
     result.displacements =
-      piece == nullptr ?
-        at_contact_nodes<dim>(displacement,
-                              problem.unknowns().contact().normals()) :
-        at_contact_nodes<dim>(piece->gather(displacement),
-                              piece->normal_numbers());
+      at_contact_nodes<dim>(displacement, contact.normals());
     return result;
   }
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/vector_memory.h>
 
 #include <debond/contact/functional.h>
@@ -9,8 +7,8 @@ namespace Debond
 {
   /// J along x + t d: a parabola with precomputed coefficients plus the
   /// adhesion of the contact trace.
-  template <int dim, typename MatrixType>
-  class Functional<dim, MatrixType>::Line : public LineRestriction
+  template <int dim>
+  class Functional<dim>::Line : public LineRestriction
   {
   public:
     Line(const Functional &functional, const DofVector &x, const DofVector &d)
@@ -22,10 +20,10 @@ namespace Debond
       , adhesion_at_x(functional.adhesion.value(s))
     {
       gradient->reinit(x, true);
-      functional.A.vmult(*gradient, x);
+      functional.multiply(*gradient, x);
       *gradient -= functional.f;
       A_d->reinit(d, true);
-      functional.A.vmult(*A_d, d);
+      functional.multiply(*A_d, d);
       slope     = *gradient * d;
       curvature = *A_d * d;
     }
@@ -69,12 +67,12 @@ namespace Debond
 
 
 
-  template <int dim, typename MatrixType>
-  Functional<dim, MatrixType>::Functional(const MatrixType            &A,
-                                          const DofVector             &f,
-                                          const ContactSpace<dim>     &contact,
-                                          const AdhesionIntegral<dim> &adhesion)
-    : A(A)
+  template <int dim>
+  Functional<dim>::Functional(const Product               &multiply,
+                              const DofVector             &f,
+                              const ContactSpace<dim>     &contact,
+                              const AdhesionIntegral<dim> &adhesion)
+    : multiply(multiply)
     , f(f)
     , contact(contact)
     , adhesion(adhesion)
@@ -82,32 +80,32 @@ namespace Debond
 
 
 
-  template <int dim, typename MatrixType>
+  template <int dim>
   double
-  Functional<dim, MatrixType>::value(const DofVector &v) const
+  Functional<dim>::value(const DofVector &v) const
   {
     DofVector A_v(v);
-    A.vmult(A_v, v);
+    multiply(A_v, v);
     return 0.5 * (A_v * v) - f * v + adhesion.value(contact.trace(v));
   }
 
 
 
-  template <int dim, typename MatrixType>
+  template <int dim>
   void
-  Functional<dim, MatrixType>::subgradient(const DofVector &v,
+  Functional<dim>::subgradient(const DofVector &v,
                                            DofVector       &eta) const
   {
-    A.vmult(eta, v);
+    multiply(eta, v);
     eta -= f;
     contact.add_normal(adhesion.subgradient(contact.trace(v)), eta);
   }
 
 
 
-  template <int dim, typename MatrixType>
+  template <int dim>
   std::unique_ptr<LineRestriction>
-  Functional<dim, MatrixType>::along(const DofVector &x,
+  Functional<dim>::along(const DofVector &x,
                                      const DofVector &d) const
   {
     return std::make_unique<Line>(*this, x, d);
@@ -115,8 +113,6 @@ namespace Debond
 
 
 
-  template class Functional<2, dealii::SparseMatrix<double>>;
-  template class Functional<3, dealii::SparseMatrix<double>>;
-  template class Functional<2, dealii::FullMatrix<double>>;
-  template class Functional<3, dealii::FullMatrix<double>>;
+  template class Functional<2>;
+  template class Functional<3>;
 } // namespace Debond

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_fe.h>
 
-#include <debond/elasticity/boundary_face.h>
+#include <boost/serialization/array.hpp>
 
+#include <debond/base/ranks.h>
+#include <debond/elasticity/boundary_face.h>
+#include <debond/mesh/owned_cells.h>
+
+#include <algorithm>
 #include <stdexcept>
 
 namespace Debond
@@ -14,8 +20,7 @@ namespace Debond
   std::vector<BoundaryFace<dim>>
   boundary_faces(const dealii::DoFHandler<dim>              &dofs,
                  const std::set<dealii::types::boundary_id> &boundaries,
-                 const BoundaryNames                        &names,
-                 const bool                                  is_piece)
+                 const BoundaryNames                        &names)
   {
     const dealii::MappingFE<dim> mapping(dealii::FE_SimplexP<dim>(1));
     const auto                  &fe = dofs.get_fe();
@@ -28,7 +33,7 @@ namespace Debond
 
     std::vector<BoundaryFace<dim>>       faces;
     std::set<dealii::types::boundary_id> missing = boundaries;
-    for (const auto &cell : dofs.active_cell_iterators())
+    for (const auto &cell : owned_cells(dofs))
       for (const unsigned int f : cell->face_indices())
         if (cell->face(f)->at_boundary() &&
             boundaries.count(cell->face(f)->boundary_id()) > 0)
@@ -36,6 +41,7 @@ namespace Debond
             fe_values.reinit(cell, f);
             cell->get_dof_indices(cell_dofs);
             BoundaryFace<dim> face;
+            face.cell    = cell->id().get_coarse_cell_id();
             face.id      = cell->face(f)->boundary_id();
             face.n_nodes = fe.n_dofs_per_face(f) / dim;
             face.measure = fe_values.JxW(0);
@@ -50,10 +56,26 @@ namespace Debond
                 for (unsigned int d = 0; d < dim; ++d)
                   face.dofs[n][d] = cell_dofs[i] + d;
               }
-            missing.erase(face.id);
             faces.push_back(face);
           }
-    if (!missing.empty() && !is_piece)
+    // Ranks number the cells of their meshes as they like, but their ids are
+    // the places in the whole mesh.
+    if (const MPI_Comm ranks = dofs.get_communicator();
+        number_of_ranks(ranks) > 1)
+      {
+        const auto all = dealii::Utilities::MPI::all_gather(ranks, faces);
+        faces.clear();
+        for (const auto &of_rank : all)
+          faces.insert(faces.end(), of_rank.begin(), of_rank.end());
+        std::stable_sort(faces.begin(),
+                         faces.end(),
+                         [](const auto &a, const auto &b) {
+                           return a.cell < b.cell;
+                         });
+      }
+    for (const BoundaryFace<dim> &face : faces)
+      missing.erase(face.id);
+    if (!missing.empty())
       throw std::invalid_argument(
         "Boundary conditions: " + boundary_name(names, *missing.begin()) +
         " is clamped or a contact boundary, but the mesh has no such "

@@ -271,6 +271,7 @@ namespace Debond
             face.normal  = faces[f].normal;
             face.measure = faces[f].measure;
             face.id      = faces[f].id;
+            face.cell    = faces[f].cell;
             for (unsigned int v = 0; v < faces[f].n_nodes; ++v)
               {
                 unsigned int &face_node =

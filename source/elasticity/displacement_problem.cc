@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_control.h>
-#include <deal.II/lac/vector_memory.templates.h>
+
+#include <boost/serialization/utility.hpp>
 
 #include <debond/elasticity/displacement_problem.h>
 #include <debond/linear_algebra/stagnation.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+#include <unordered_map>
+#include <utility>
 
 namespace Debond
 {
@@ -24,109 +26,122 @@ namespace Debond
 
 
 
-  class DisplacementProblem::Vector : public DofVector
-  {
-  public:
-    Vector() = default;
-
-    Vector(const DisplacementProblem &displacement_problem,
-           const DofVector           &values)
-      : DofVector(values)
-      , problem(&displacement_problem)
-    {}
-
-    void
-    reinit(const Vector &other, const bool omit_zeroing = false)
-    {
-      DofVector::reinit(other, omit_zeroing);
-      problem = other.problem;
-    }
-
-    double
-    operator*(const Vector &other) const
-    {
-      return problem->product(*this, other);
-    }
-
-    double
-    l2_norm() const
-    {
-      return problem->norm(*this);
-    }
-
-    double
-    add_and_dot(const double factor, const Vector &added, const Vector &other)
-    {
-      add(factor, added);
-      return *this * other;
-    }
-
-  private:
-    const DisplacementProblem *problem = nullptr;
-  };
-
-
-
-  struct DisplacementProblem::LinearOperator
-  {
-    std::function<void(DofVector &, const DofVector &)> product;
-
-    void
-    vmult(Vector &dst, const Vector &src) const
-    {
-      product(dst, src);
-    }
-  };
-
-
-
-  DisplacementProblem::DisplacementProblem(
-    const DofVector                 &load,
-    const PiecewiseQuadratic        &nonsmooth,
-    const std::vector<unsigned int> &contact_normals,
-    CorrectionSolver                &multigrid_cycle,
-    DofVector                       &start,
-    const std::function<bool()>     &go_on)
-    : normals(contact_normals)
-    , f(load)
-    , phi(nonsmooth)
-    , cycle(multigrid_cycle)
-    , u(start)
-    , may_go_on(go_on ? go_on : []() { return true; })
-    , active(contact_normals.size())
-  {
-    for (unsigned int i = 0; i < normals.size(); ++i)
-      active[i] = normals[i] != dealii::numbers::invalid_unsigned_int &&
-                  u(normals[i]) == 0.;
-  }
-
-
-
   Eigen::VectorXd
-  DisplacementProblem::trace(const DofVector &v) const
+  ContactUnknowns::trace(const DistributedVector &v) const
   {
-    Eigen::VectorXd s(normals.size());
+    Eigen::VectorXd s = Eigen::VectorXd::Zero(normals.size());
     for (unsigned int i = 0; i < normals.size(); ++i)
-      s(i) = v(normals[i]);
+      if (own.is_element(normals[i]))
+        s(i) = v(normals[i]);
+    dealii::Utilities::MPI::sum(
+      dealii::ArrayView<const double>(s.data(), s.size()),
+      ranks,
+      dealii::ArrayView<double>(s.data(), s.size()));
     return s;
   }
 
 
 
   void
-  DisplacementProblem::add_normal(const VectorView &s, DofVector &v) const
+  ContactUnknowns::add(const VectorView &s, DistributedVector &v) const
   {
     for (unsigned int i = 0; i < normals.size(); ++i)
-      if (normals[i] != dealii::numbers::invalid_unsigned_int)
+      if (own.is_element(normals[i]))
         v(normals[i]) += s(i);
   }
 
 
 
-  double
-  DisplacementProblem::norm(const DofVector &v) const
+  void
+  ContactUnknowns::set(const VectorView &s, DistributedVector &v) const
   {
-    return std::sqrt(product(v, v));
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      if (own.is_element(normals[i]))
+        v(normals[i]) = s(i);
+  }
+
+
+
+  void
+  ContactUnknowns::set_zero(const ActiveSet &held, DistributedVector &v) const
+  {
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      if (held[i] != 0 && own.is_element(normals[i]))
+        v(normals[i]) = 0.;
+  }
+
+
+
+  Eigen::SparseMatrix<double>
+  ContactUnknowns::block_of(
+    const dealii::TrilinosWrappers::SparseMatrix &A) const
+  {
+    std::unordered_map<dealii::types::global_dof_index, unsigned int> nodes;
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      nodes[normals[i]] = i;
+    using Place = std::pair<unsigned int, unsigned int>;
+    std::vector<std::pair<Place, double>> entries;
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      if (own.is_element(normals[i]))
+        for (auto entry = A.begin(normals[i]); entry != A.end(normals[i]);
+             ++entry)
+          if (const auto node = nodes.find(entry->column());
+              node != nodes.end())
+            entries.emplace_back(Place(i, node->second), entry->value());
+    std::vector<Eigen::Triplet<double>> all;
+    for (const auto &of_rank :
+         dealii::Utilities::MPI::all_gather(ranks, entries))
+      for (const auto &[place, value] : of_rank)
+        all.emplace_back(place.first, place.second, value);
+    Eigen::SparseMatrix<double> block(normals.size(), normals.size());
+    block.setFromTriplets(all.begin(), all.end());
+    return block;
+  }
+
+
+
+  void
+  ContactUnknowns::truncate(const Eigen::SparseMatrix<double> &E,
+                            const ActiveSet                   &held,
+                            TruncatedMultigrid                &cycle) const
+  {
+    std::vector<TruncatedMultigrid::Entry> entries;
+    std::vector<unsigned int>              held_unknowns;
+    for (int j = 0; j < E.outerSize(); ++j)
+      for (Eigen::SparseMatrix<double>::InnerIterator entry(E, j); entry;
+           ++entry)
+        if (own.is_element(normals[entry.row()]))
+          entries.push_back({normals[entry.row()], normals[j], entry.value()});
+    for (unsigned int i = 0; i < normals.size(); ++i)
+      if (held[i] != 0 && own.is_element(normals[i]))
+        held_unknowns.push_back(normals[i]);
+    cycle.truncate(entries, held_unknowns);
+  }
+
+
+
+  DisplacementProblem::DisplacementProblem(
+    const dealii::TrilinosWrappers::SparseMatrix &matrix,
+    const DistributedVector                      &load,
+    const PiecewiseQuadratic                     &nonsmooth,
+    const ContactUnknowns                        &contact_unknowns,
+    TruncatedMultigrid                           &multigrid_cycle,
+    DistributedVector                            &start)
+    : A(matrix)
+    , f(load)
+    , phi(nonsmooth)
+    , contact(contact_unknowns)
+    , cycle(multigrid_cycle)
+    , u(start)
+    , diagonal(u)
+    , contact_block(contact.block_of(A))
+    , active(contact.size())
+  {
+    for (const auto i : u.locally_owned_elements())
+      diagonal(i) = A.diag_element(i);
+    const Eigen::VectorXd s = contact.trace(u);
+    for (unsigned int i = 0; i < active.size(); ++i)
+      active[i] = s(i) == 0.;
   }
 
 
@@ -134,42 +149,38 @@ namespace Debond
   MajorantProblem::State
   DisplacementProblem::evaluate()
   {
-    DofVector internal(u.size());
-    multiply(internal, u);
-    const Eigen::VectorXd s  = trace(u);
+    Vector internal(u);
+    A.vmult(internal, u);
+    const Eigen::VectorXd s  = contact.trace(u);
     const Eigen::VectorXd xi = phi.subgradient(s);
 
-    State        state;
-    const double energy   = 0.5 * product(internal, u);
-    const double work     = product(f, u);
-    const double adhesion = phi.value(s);
-    state.functional      = energy - work + adhesion;
+    State state;
+    state.functional = 0.5 * (internal * u) - f * u + phi.value(s);
 
     // The terms of a row of A u are as large as diagonal times displacement,
     // and cancel.
-    DofVector terms = diagonal;
+    Vector terms = diagonal;
     terms.scale(u);
-    force_rounding = 4. * std::numeric_limits<double>::epsilon() * norm(terms);
-    state.functional_rounding = force_rounding * norm(u);
+    force_rounding =
+      4. * std::numeric_limits<double>::epsilon() * terms.l2_norm();
+    state.functional_rounding = force_rounding * u.l2_norm();
 
-    DofVector violation = f;
+    Vector violation = f;
     violation -= internal;
-    largest_force  = std::max({norm(f), norm(internal), xi.norm()});
-    state.n_active = 0;
-    for (unsigned int i = 0; i < normals.size(); ++i)
-      {
-        if (s(i) == 0.)
+    largest_force = std::max({f.l2_norm(), internal.l2_norm(), xi.norm()});
+    // On a node in contact only a force that pulls violates the law.
+    Eigen::VectorXd       change  = -xi;
+    const Eigen::VectorXd force_s = contact.trace(violation) - xi;
+    state.n_active                = 0;
+    for (unsigned int i = 0; i < s.size(); ++i)
+      if (s(i) == 0.)
+        {
           ++state.n_active;
-        if (normals[i] == dealii::numbers::invalid_unsigned_int)
-          continue;
-        // On a node in contact only a force that pulls violates the law.
-        double &force = violation(normals[i]);
-        force -= xi(i);
-        if (s(i) == 0.)
-          force = std::min(force, 0.);
-      }
+          change(i) -= std::max(force_s(i), 0.);
+        }
+    contact.add(change, violation);
     const double scale      = largest_force == 0. ? 1. : 1. / largest_force;
-    state.residual          = scale * norm(violation);
+    state.residual          = scale * violation.l2_norm();
     state.residual_rounding = scale * force_rounding;
     return state;
   }
@@ -180,7 +191,7 @@ namespace Debond
   DisplacementProblem::majorise()
   {
     // Phi <= Phi(s_k) + xi'(s - s_k) + 1/2 (s - s_k)'E (s - s_k).
-    const Eigen::VectorXd             s            = trace(u);
+    const Eigen::VectorXd             s            = contact.trace(u);
     const Eigen::SparseMatrix<double> previous_E   = E;
     const Eigen::VectorXd             previous_b_c = b_c;
     E                                              = phi.curvature(s);
@@ -196,101 +207,74 @@ namespace Debond
 
 
   void
-  DisplacementProblem::majorant_force(DofVector &force) const
+  DisplacementProblem::majorant_force(Vector &force) const
   {
-    multiply(force, u);
+    A.vmult(force, u);
     force.sadd(-1., 1., f);
-    const Eigen::VectorXd E_s = E * trace(u);
-    add_normal(b_c - E_s, force);
+    const Eigen::VectorXd E_s = E * contact.trace(u);
+    contact.add(b_c - E_s, force);
   }
 
 
 
   void
-  DisplacementProblem::multiply_majorant(DofVector       &dst,
-                                         const DofVector &src) const
-  {
-    multiply(dst, src);
-    add_normal(E * trace(src), dst);
-    restrict_to_free(dst);
-  }
-
-
-
-  void
-  DisplacementProblem::restrict_to_free(DofVector &v) const
-  {
-    for (unsigned int i = 0; i < normals.size(); ++i)
-      if (active[i] != 0 && normals[i] != dealii::numbers::invalid_unsigned_int)
-        v(normals[i]) = 0.;
-  }
-
-
-
-  void
-  DisplacementProblem::smooth_contact(DofVector &force)
+  DisplacementProblem::smooth_contact(Vector &force)
   {
     // Each rank goes through all nodes, and then adds what that does to its
     // unknowns.
     using Entry                   = Eigen::SparseMatrix<double>::InnerIterator;
-    Eigen::VectorXd       s       = trace(u);
+    Eigen::VectorXd       s       = contact.trace(u);
     const Eigen::VectorXd old_s   = s;
-    Eigen::VectorXd       force_s = trace(force);
-    for (unsigned int i = 0; i < normals.size(); ++i)
+    Eigen::VectorXd       force_s = contact.trace(force);
+    for (unsigned int i = 0; i < s.size(); ++i)
       {
-        const double stiffness = contact_rows.coeff(i, i) + E.coeff(i, i);
+        const double stiffness = contact_block.coeff(i, i) + E.coeff(i, i);
         s(i)                   = std::min(0., s(i) + force_s(i) / stiffness);
         if (s(i) == old_s(i))
           continue;
-        for (Entry entry(contact_rows, i); entry; ++entry)
+        for (Entry entry(contact_block, i); entry; ++entry)
           force_s(entry.row()) += (old_s(i) - s(i)) * entry.value();
         for (Entry entry(E, i); entry; ++entry)
           force_s(entry.row()) += (old_s(i) - s(i)) * entry.value();
       }
-    for (unsigned int i = 0; i < normals.size(); ++i)
-      if (normals[i] != dealii::numbers::invalid_unsigned_int)
-        u(normals[i]) = s(i);
-    add_normal(E * (old_s - s), force);
-    add_contact_columns(old_s - s, force);
+    contact.set(s, u);
+    Vector step(u), image(u);
+    step = 0.;
+    contact.set(s - old_s, step);
+    A.vmult(image, step);
+    force -= image;
+    const Eigen::VectorXd of_bonds = E * (old_s - s);
+    contact.add(of_bonds, force);
   }
 
 
 
   bool
-  DisplacementProblem::solve_majorant(const DofVector &force,
-                                      const double     tolerance,
-                                      DofVector       &correction,
-                                      unsigned int    &n_iterations) const
+  DisplacementProblem::solve_majorant(const Vector &force,
+                                      const double  tolerance,
+                                      Vector       &correction,
+                                      unsigned int &n_iterations) const
   {
-    Vector                x(*this, DofVector(u.size()));
-    const Vector          b(*this, force);
-    dealii::SolverControl control(maximum_linear_iterations, tolerance);
-    dealii::PrimitiveVectorMemory<Vector> memory;
-    dealii::SolverCG<Vector>              cg(control, memory);
-    Stagnation                            stagnation;
-    cg.connect([this, &stagnation](const unsigned int,
-                                   const double value,
-                                   const Vector &) {
-      return may_go_on() && !stagnation.is_reached(value) ?
-               dealii::SolverControl::success :
-               dealii::SolverControl::failure;
-    });
-    const LinearOperator majorant = {
-      [this](DofVector &dst, const DofVector &src) {
-        multiply_majorant(dst, src);
-      }};
-    const LinearOperator preconditioner = {
-      [this](DofVector &dst, const DofVector &src) { dst = cycle.solve(src); }};
+    dealii::SolverControl    control(maximum_linear_iterations, tolerance);
+    dealii::SolverCG<Vector> cg(control);
+    Stagnation               stagnation;
+    cg.connect(
+      [this, &stagnation](const unsigned int, const double value, const auto &) {
+        return may_go_on() && !stagnation.is_reached(value) ?
+                 dealii::SolverControl::success :
+                 dealii::SolverControl::failure;
+      });
+    correction     = 0.;
     bool is_solved = true;
     try
       {
-        cg.solve(majorant, x, b, preconditioner);
-        correction = static_cast<const DofVector &>(x);
+        cg.solve(cycle.matrix(), correction, force, cycle);
       }
     catch (const dealii::SolverControl::NoConvergence &)
       {
         is_solved = false;
       }
+    contact.set_zero(active, correction);
     n_iterations += control.last_step();
     return is_solved;
   }
@@ -301,10 +285,9 @@ namespace Debond
   DisplacementProblem::minimise(const double tolerance)
   {
     const double required   = tolerance * largest_force;
-    const auto   previous_u = u;
+    const Vector previous_u = u;
     Minimisation result     = {SolverStatus::quadratic_program, 0, 0};
-    DofVector    force(u.size()), free_force(u.size()), correction(u.size()),
-      image(u.size());
+    Vector       force(u), free_force(u), correction(u), image(u);
     const auto interrupted = [&]() {
       result.status = SolverStatus::interrupted;
       u             = previous_u;
@@ -318,13 +301,13 @@ namespace Debond
           return interrupted();
         ++result.active_set_steps;
         smooth_contact(force);
-        const Eigen::VectorXd s       = trace(u);
-        const Eigen::VectorXd force_s = trace(force);
-        for (unsigned int i = 0; i < normals.size(); ++i)
+        const Eigen::VectorXd s       = contact.trace(u);
+        const Eigen::VectorXd force_s = contact.trace(force);
+        for (unsigned int i = 0; i < s.size(); ++i)
           active[i] = s(i) == 0. && force_s(i) >= 0.;
         free_force = force;
-        restrict_to_free(free_force);
-        const double residual = norm(free_force);
+        contact.set_zero(active, free_force);
+        const double residual = free_force.l2_norm();
         if (residual <= required)
           {
             result.status = SolverStatus::success;
@@ -335,7 +318,7 @@ namespace Debond
                                 curvature_norm(cycle_E - E) != 0.;
         if (is_changed)
           {
-            cycle.prepare(E, active);
+            contact.truncate(E, active, cycle);
             cycle_E      = E;
             cycle_active = active;
             is_prepared  = true;
@@ -343,7 +326,7 @@ namespace Debond
         const bool is_solved =
           solve_majorant(free_force,
                          std::max(0.9 * required,
-                                  is_changed && !normals.empty() ?
+                                  is_changed && s.size() > 0 ?
                                     linear_reduction * residual :
                                     0.),
                          correction,
@@ -355,20 +338,18 @@ namespace Debond
           return result;
 
         // Onto s <= 0, and then as far as the majorant falls.
-        double          longest = std::numeric_limits<double>::infinity();
-        Eigen::VectorXd c       = trace(correction);
-        for (unsigned int i = 0; i < normals.size(); ++i)
-          {
-            c(i) = std::min(c(i), -s(i));
-            if (c(i) > 0.)
-              longest = std::min(longest, -s(i) / c(i));
-            if (normals[i] != dealii::numbers::invalid_unsigned_int)
-              correction(normals[i]) = c(i);
-          }
-        multiply(image, correction);
-        add_normal(E * c, image);
-        const double slope     = product(force, correction);
-        const double curvature = product(image, correction);
+        double                longest = std::numeric_limits<double>::infinity();
+        const Eigen::VectorXd c       = contact.trace(correction);
+        const Eigen::VectorXd allowed = c.cwiseMin(-s);
+        for (unsigned int i = 0; i < s.size(); ++i)
+          if (allowed(i) > 0.)
+            longest = std::min(longest, -s(i) / allowed(i));
+        contact.set(allowed, correction);
+        A.vmult(image, correction);
+        const Eigen::VectorXd of_bonds = E * allowed;
+        contact.add(of_bonds, image);
+        const double slope     = force * correction;
+        const double curvature = image * correction;
         if (!(slope > 0.) || !(curvature > 0.))
           {
             result.status = SolverStatus::stagnated;
@@ -377,9 +358,7 @@ namespace Debond
         const double step = std::min(longest, slope / curvature);
         u.add(step, correction);
         force.add(-step, image);
-        for (const unsigned int normal : normals)
-          if (normal != dealii::numbers::invalid_unsigned_int)
-            u(normal) = std::min(u(normal), 0.);
+        contact.set(contact.trace(u).cwiseMin(0.), u);
       }
     return result;
   }

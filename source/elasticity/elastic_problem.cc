@@ -1,29 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/full_matrix.h>
 
+#include <debond/base/ranks.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/temperature_load.h>
 
-#include <array>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace Debond
 {
-  template <int dim>
-  ElasticProblem<dim>::ElasticProblem(
-    const dealii::Triangulation<dim> &triangulation,
-    const BoundaryConditions         &conditions,
-    const Supports<dim>              &supports,
-    const unsigned int                degree,
-    const std::vector<unsigned int>  &node_order)
-    : elastic_unknowns(triangulation, conditions, supports, degree, node_order)
-  {}
-
-
-
   template <int dim>
   void
   ElasticProblem<dim>::assemble(const ByRegion<Material> &materials,
@@ -38,15 +28,22 @@ namespace Debond
       material.validate<dim>();
       return true;
     });
-    const std::vector<double> pressures =
-      thermal_stresses(dofs, materials, loads);
     notes.clear();
-    DofVector applied_forces = load_vector(dofs, loads, &notes);
-    add_thermal_forces(dofs, pressures, applied_forces);
-    DofVector dead_forces;
-    if (dead_loads.body_force || !dead_loads.tractions.empty())
-      {
+    const MPI_Comm      ranks = elastic_unknowns.communicator();
+    std::vector<double> pressures;
+    DofVector           applied_forces, dead_forces;
+    on_all_ranks(ranks, [&]() {
+      pressures      = thermal_stresses(dofs, materials, loads);
+      applied_forces = load_vector(dofs, loads, &notes);
+      add_thermal_forces(dofs, pressures, applied_forces);
+      if (dead_loads.body_force || !dead_loads.tractions.empty())
         dead_forces = load_vector(dofs, dead_loads, &notes);
+    });
+    notes = union_of_ranks(notes, ranks);
+    add_over_ranks(applied_forces, ranks);
+    if (dead_forces.size() > 0)
+      {
+        add_over_ranks(dead_forces, ranks);
         applied_forces += dead_forces;
       }
     elastic_fields = std::make_unique<ElasticFields<dim>>(
@@ -75,11 +72,18 @@ namespace Debond
       system_load = elastic_unknowns.in_frames(applied_forces);
     constraints.set_zero(system_load);
 
-    dealii::DynamicSparsityPattern pattern(dofs.n_dofs());
-    dealii::DoFTools::make_sparsity_pattern(dofs,
-                                            pattern,
-                                            constraints,
-                                            /*keep_constrained_dofs=*/false);
+    // Cells of other ranks around the own ones make own rows complete.
+    dealii::DynamicSparsityPattern pattern(dofs.n_dofs(),
+                                           dofs.n_dofs(),
+                                           dofs.locally_owned_dofs());
+    std::vector<dealii::types::global_dof_index> cell_dofs(
+      dofs.get_fe().dofs_per_cell);
+    for (const auto &cell : dofs.active_cell_iterators())
+      {
+        cell->get_dof_indices(cell_dofs);
+        constraints.add_entries_local_to_global(
+          cell_dofs, pattern, /*keep_constrained_entries=*/false);
+      }
     system_matrix.clear();
     distributed_matrix.reset();
     sparsity.copy_from(pattern);
@@ -108,6 +112,10 @@ namespace Debond
     std::vector<dealii::types::global_dof_index> cell_dofs(n);
     std::vector<dealii::SymmetricTensor<2, dim>> strains(n);
 
+    const dealii::IndexSet                      &own = dofs.locally_owned_dofs();
+    std::vector<unsigned int>                    order(n);
+    std::vector<dealii::types::global_dof_index> columns;
+    std::vector<double>                          values;
     for (const auto &cell : dofs.active_cell_iterators())
       {
         fe_values.reinit(cell);
@@ -127,9 +135,53 @@ namespace Debond
               }
           }
         elastic_unknowns.to_unknowns(cell_dofs, cell_matrix);
-        elastic_unknowns.constraints().distribute_local_to_global(
-          cell_matrix, cell_dofs, system_matrix);
+
+        // As AffineConstraints does it, but for rows of other ranks.
+        std::iota(order.begin(), order.end(), 0U);
+        std::sort(order.begin(),
+                  order.end(),
+                  [&](const unsigned int a, const unsigned int b) {
+                    return cell_dofs[a] < cell_dofs[b];
+                  });
+        columns.clear();
+        for (const unsigned int j : order)
+          if (!elastic_unknowns.is_constrained(cell_dofs[j]))
+            columns.push_back(cell_dofs[j]);
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const auto row = cell_dofs[i];
+            if (!own.is_element(row))
+              continue;
+            if (elastic_unknowns.is_constrained(row))
+              {
+                system_matrix.add(row, row, std::abs(cell_matrix(i, i)));
+                continue;
+              }
+            values.clear();
+            for (const unsigned int j : order)
+              if (!elastic_unknowns.is_constrained(cell_dofs[j]))
+                values.push_back(cell_matrix(i, j));
+            system_matrix.add(row,
+                              static_cast<unsigned int>(columns.size()),
+                              columns.data(),
+                              values.data(),
+                              /*elide_zero_values=*/false,
+                              /*col_indices_are_sorted=*/true);
+          }
       }
+  }
+
+
+
+  template <int dim>
+  DofVector
+  ElasticProblem<dim>::diagonal() const
+  {
+    DofVector result(elastic_unknowns.n_dofs());
+    for (const auto i : elastic_unknowns.dof_handler().locally_owned_dofs())
+      result(i) = system_matrix.diag_element(i);
+    add_over_ranks(result, elastic_unknowns.communicator());
+    return result;
   }
 
 
@@ -152,7 +204,12 @@ namespace Debond
       {
         distributed_matrix =
           std::make_unique<dealii::TrilinosWrappers::SparseMatrix>();
-        distributed_matrix->reinit(system_matrix, /*drop_tolerance=*/0.);
+        const auto &own = elastic_unknowns.dof_handler().locally_owned_dofs();
+        distributed_matrix->reinit(own,
+                                   own,
+                                   system_matrix,
+                                   elastic_unknowns.communicator(),
+                                   /*drop_tolerance=*/0.);
       }
     return *distributed_matrix;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/contact/bernstein.h>
 #include <debond/elasticity/extended_operator.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +14,7 @@ namespace Debond
     : problem(elastic_problem)
   {
     make_reference_gradients();
-    cells.reserve(
-      problem.unknowns().dof_handler().get_triangulation().n_active_cells());
-    for (const auto &dof_cell :
-         problem.unknowns().dof_handler().active_cell_iterators())
+    for (const auto &dof_cell : owned_cells(problem.unknowns().dof_handler()))
       {
         Cell cell;
         cell.dofs.resize(dof_cell->get_fe().dofs_per_cell);
@@ -104,6 +102,10 @@ namespace Debond
             }
         }
 
+    dealii::Utilities::MPI::sum(
+      dealii::ArrayView<const long double>(forces.data(), forces.size()),
+      problem.unknowns().communicator(),
+      dealii::ArrayView<long double>(forces.data(), forces.size()));
     problem.unknowns().edges().forces_to_conjugates(forces);
     ExtendedVector result = forces;
     for (const auto &frame : problem.unknowns().frames())
@@ -144,6 +146,9 @@ namespace Debond
                   std::max(largest_change, std::abs(exact[d][e] - other[d][e]));
               }
         }
+    const MPI_Comm ranks = problem.unknowns().communicator();
+    largest              = dealii::Utilities::MPI::max(largest, ranks);
+    largest_change       = dealii::Utilities::MPI::max(largest_change, ranks);
     return largest > 0. ? static_cast<double>(largest_change / largest) : 0.;
   }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/elasticity/fields.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <boost/accumulators/accumulators.hpp>
 #include <boost/accumulators/statistics/stats.hpp>
@@ -77,8 +78,7 @@ namespace Debond
                                     strain_rule<dim>(elastic_unknowns.degree()),
                                     dealii::update_JxW_values);
     const auto       &values = cell_stresses.values();
-    for (const auto &cell :
-         elastic_unknowns.dof_handler().active_cell_iterators())
+    for (const auto &cell : owned_cells(elastic_unknowns.dof_handler()))
       {
         cell_stresses.reinit(cell);
         const auto &dofs = cell_stresses.dofs();
@@ -95,6 +95,7 @@ namespace Debond
               }
           }
       }
+    add_over_ranks(forces, elastic_unknowns.communicator());
     forces -= applied_nodal_forces(factors);
     return elastic_unknowns.in_frames(forces);
   }
@@ -116,8 +117,7 @@ namespace Debond
                                     strain_rule<dim>(elastic_unknowns.degree()),
                                     dealii::update_JxW_values);
     const auto       &values = cell_stresses.values();
-    for (const auto &cell :
-         elastic_unknowns.dof_handler().active_cell_iterators())
+    for (const auto &cell : owned_cells(elastic_unknowns.dof_handler()))
       {
         cell_stresses.reinit(cell);
         const auto  &dofs    = cell_stresses.dofs();
@@ -133,6 +133,7 @@ namespace Debond
                                    values.shape_grad(i, q).norm();
           }
       }
+    add_over_ranks(rounding, elastic_unknowns.communicator());
     const DofVector forces = applied_nodal_forces(factors);
     for (unsigned int i = 0; i < rounding.size(); ++i)
       rounding[i] = std::numeric_limits<double>::epsilon() *
@@ -176,19 +177,10 @@ namespace Debond
   ElasticFields<dim>::elastic_functional(const DofVector  &u,
                                          const LoadFactors factors) const
   {
-    return elastic_terms(u, factors).sum();
-  }
-
-
-
-  template <int dim>
-  typename ElasticFields<dim>::Terms
-  ElasticFields<dim>::elastic_terms(const DofVector  &u,
-                                    const LoadFactors factors) const
-  {
-    return terms(u,
-                 factors,
-                 elastic_unknowns.in_frames(applied_nodal_forces(factors)));
+    return functional(u,
+                      factors,
+                      elastic_unknowns.in_frames(
+                        applied_nodal_forces(factors)));
   }
 
 
@@ -198,7 +190,7 @@ namespace Debond
   ElasticFields<dim>::strain_energy(const DofVector  &u,
                                     const LoadFactors factors) const
   {
-    return terms(u, factors, DofVector(u.size())).sum();
+    return functional(u, factors, DofVector(u.size()));
   }
 
 
@@ -227,48 +219,36 @@ namespace Debond
 
 
   template <int dim>
-  typename ElasticFields<dim>::Terms
-  ElasticFields<dim>::terms(const DofVector  &u,
-                            const LoadFactors factors,
-                            const DofVector  &load) const
-  {
-    const DofVector displacement =
-      elastic_unknowns.cartesian_displacement(u, factors);
-    Terms             result = {{}, load, lifted(u, factors)};
-    CellStresses<dim> cell_stresses(*this,
-                                    displacement,
-                                    factors,
-                                    strain_rule<dim>(elastic_unknowns.degree()),
-                                    dealii::update_JxW_values);
-    const auto       &values = cell_stresses.values();
-    for (const auto &cell :
-         elastic_unknowns.dof_handler().active_cell_iterators())
-      {
-        cell_stresses.reinit(cell);
-        for (const unsigned int q : values.quadrature_point_indices())
-          result.energies.push_back(
-            0.5 * values.JxW(q) *
-            (dealii::symmetrize(cell_stresses.gradient(q)) *
-             cell_stresses.elastic_stress(q)));
-      }
-    return result;
-  }
-
-
-
-  template <int dim>
   double
-  ElasticFields<dim>::Terms::sum() const
+  ElasticFields<dim>::functional(const DofVector  &u,
+                                 const LoadFactors factors,
+                                 const DofVector  &load) const
   {
     namespace accumulators = boost::accumulators;
     accumulators::
       accumulator_set<double, accumulators::stats<accumulators::tag::sum_kahan>>
-        result;
-    for (const double energy : energies)
-      result(energy);
-    for (unsigned int i = 0; i < displacement.size(); ++i)
+                      result;
+    const DofVector   displacement = lifted(u, factors);
+    const DofVector   cartesian =
+      elastic_unknowns.cartesian_displacement(u, factors);
+    CellStresses<dim> cell_stresses(*this,
+                                    cartesian,
+                                    factors,
+                                    strain_rule<dim>(elastic_unknowns.degree()),
+                                    dealii::update_JxW_values);
+    const auto       &values = cell_stresses.values();
+    for (const auto &cell : owned_cells(elastic_unknowns.dof_handler()))
+      {
+        cell_stresses.reinit(cell);
+        for (const unsigned int q : values.quadrature_point_indices())
+          result(0.5 * values.JxW(q) *
+                 (dealii::symmetrize(cell_stresses.gradient(q)) *
+                  cell_stresses.elastic_stress(q)));
+      }
+    for (const auto i : elastic_unknowns.dof_handler().locally_owned_dofs())
       result(-load(i) * displacement(i));
-    return accumulators::sum_kahan(result);
+    return dealii::Utilities::MPI::sum(accumulators::sum_kahan(result),
+                                       elastic_unknowns.communicator());
   }
 
 

@@ -7,6 +7,7 @@
 #include <debond/base/text.h>
 #include <debond/contact/field_value.h>
 #include <debond/elasticity/load_vector.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <algorithm>
 #include <array>
@@ -300,7 +301,7 @@ namespace Debond
 
       std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
       std::vector<dealii::Tensor<1, dim>>          values(rule.size());
-      for (const auto &cell : dof_handler.active_cell_iterators())
+      for (const auto &cell : owned_cells(dof_handler))
         for (const unsigned int f : cell->face_indices())
           {
             const auto face       = cell->face(f);
@@ -382,7 +383,7 @@ namespace Debond
                                         dealii::update_JxW_values);
 
       std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
-      for (const auto &cell : dof_handler.active_cell_iterators())
+      for (const auto &cell : owned_cells(dof_handler))
         {
           fe_values.reinit(cell);
           cell->get_dof_indices(dofs);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/elasticity/mesh_transfer.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <algorithm>
 #include <vector>
@@ -34,12 +35,15 @@ namespace Debond
     DofVector                                    result(unknowns.n_dofs());
     std::vector<dealii::types::global_dof_index> cell_dofs(
       unknowns.dof_handler().get_fe().dofs_per_cell);
-    for (const auto &cell : unknowns.dof_handler().active_cell_iterators())
+    const dealii::IndexSet &own = unknowns.dof_handler().locally_owned_dofs();
+    for (const auto &cell : owned_cells(unknowns.dof_handler()))
       {
         cell->get_dof_indices(cell_dofs);
         for (unsigned int i = 0; i < cell_dofs.size(); ++i)
           {
             const unsigned int node = i / dim, d = i % dim;
+            if (!own.is_element(cell_dofs[i]))
+              continue;
             if (node <= dim)
               result(cell_dofs[i]) = displacements[cell->vertex_index(node)][d];
             else
@@ -51,7 +55,8 @@ namespace Debond
               }
           }
       }
-    result = problem.unknowns().from_cartesian(result);
+    add_over_ranks(result, unknowns.communicator());
+    result = unknowns.from_cartesian(result);
     if (problem.unknowns().has_gap())
       {
         // Between nodes a gap is not what a coarser mesh sees.
@@ -70,46 +75,65 @@ namespace Debond
                        const std::vector<unsigned int> &ancestors,
                        const ElasticProblem<dim>       &target)
   {
-    using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
-    std::vector<Cell> whole_cells;
-    for (const auto &cell :
-         source.unknowns().dof_handler().active_cell_iterators())
-      whole_cells.push_back(cell);
-    const DofVector values = source.unknowns().cartesian_displacement(u);
-    const std::vector<dealii::Point<dim>> positions =
-      target.unknowns().positions();
-    const auto &fe = source.unknowns().dof_handler().get_fe();
-
-    // The Jacobian takes to the points of the reference cell.
-    dealii::FEValues<dim> fe_values(source.unknowns().mapping(),
-                                    fe,
-                                    dealii::QGaussSimplex<dim>(1),
-                                    dealii::update_inverse_jacobians);
-    std::vector<dealii::types::global_dof_index> from(fe.dofs_per_cell),
-      to(fe.dofs_per_cell);
-    DofVector         result(target.unknowns().n_dofs());
-    std::vector<bool> is_done(result.size(), false);
-    for (const auto &cell :
-         target.unknowns().dof_handler().active_cell_iterators())
+    // Of all cells of the source vertices and values, which other ranks may
+    // have: vertices first.
+    const auto        &source_dofs  = source.unknowns().dof_handler();
+    const auto        &fe           = source_dofs.get_fe();
+    const unsigned int n            = fe.dofs_per_cell;
+    const std::size_t  n_of_cell    = dim * (dim + 1) + n;
+    const DofVector    displacement = source.unknowns().cartesian_displacement(u);
+    std::vector<double> of_cells(
+      n_of_cell * source_dofs.get_triangulation().n_global_active_cells());
+    std::vector<dealii::types::global_dof_index> cell_dofs(n);
+    for (const auto &cell : owned_cells(source_dofs))
       {
-        const Cell &whole = whole_cells[ancestors[cell->active_cell_index()]];
-        fe_values.reinit(whole);
-        whole->get_dof_indices(from);
-        cell->get_dof_indices(to);
-        for (unsigned int i = 0; i < to.size(); ++i)
+        auto next =
+          of_cells.begin() + n_of_cell * cell->id().get_coarse_cell_id();
+        for (const unsigned int v : cell->vertex_indices())
+          for (unsigned int d = 0; d < dim; ++d)
+            *next++ = cell->vertex(v)[d];
+        cell->get_dof_indices(cell_dofs);
+        for (const auto dof : cell_dofs)
+          *next++ = displacement(dof);
+      }
+    dealii::Utilities::MPI::sum(of_cells,
+                                source.unknowns().communicator(),
+                                of_cells);
+
+    const ElasticUnknowns<dim>            &unknowns  = target.unknowns();
+    const std::vector<dealii::Point<dim>>  positions = unknowns.positions();
+    const dealii::IndexSet &own = unknowns.dof_handler().locally_owned_dofs();
+    DofVector               result(unknowns.n_dofs());
+    std::vector<bool>       is_done(result.size(), false);
+    for (const auto &cell : owned_cells(unknowns.dof_handler()))
+      {
+        const double *const vertices =
+          of_cells.data() +
+          n_of_cell * ancestors[cell->id().get_coarse_cell_id()];
+        const double *const    values = vertices + dim * (dim + 1);
+        dealii::Point<dim>     origin;
+        dealii::Tensor<2, dim> edges; // as columns
+        for (unsigned int d = 0; d < dim; ++d)
           {
-            if (is_done[to[i]])
+            origin[d] = vertices[d];
+            for (unsigned int v = 0; v < dim; ++v)
+              edges[d][v] = vertices[(v + 1) * dim + d] - vertices[d];
+          }
+        const dealii::Tensor<2, dim> to_unit = dealii::invert(edges);
+        cell->get_dof_indices(cell_dofs);
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            if (is_done[cell_dofs[i]] || !own.is_element(cell_dofs[i]))
               continue;
-            is_done[to[i]] = true;
+            is_done[cell_dofs[i]] = true;
             const dealii::Point<dim> point(
-              dealii::apply_transformation(fe_values.inverse_jacobian(0),
-                                           positions[to[i]] -
-                                             whole->vertex(0)));
-            for (unsigned int j = i % dim; j < from.size(); j += dim)
-              result(to[i]) += fe.shape_value(j, point) * values(from[j]);
+              to_unit * (positions[cell_dofs[i]] - origin));
+            for (unsigned int j = i % dim; j < n; j += dim)
+              result(cell_dofs[i]) += fe.shape_value(j, point) * values[j];
           }
       }
-    return target.unknowns().from_cartesian(result);
+    add_over_ranks(result, unknowns.communicator());
+    return unknowns.from_cartesian(result);
   }
 
 

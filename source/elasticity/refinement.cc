@@ -44,13 +44,14 @@ namespace Debond
     const bool                  has_lifting = unknowns.has_lifting();
     const DofVector             lifting =
       has_lifting ? unknowns.lifting(factors) : DofVector(u.size());
-    double terms = 0.;
+    const DofVector             diagonal = problem.diagonal();
+    double                      terms    = 0.;
     for (unsigned int i = 0; i < u.size(); ++i)
       if (has_lifting || !unknowns.is_constrained(i))
         {
           const double size =
             std::abs(u(i) + lifting(i)) + std::abs(lifting(i));
-          terms += problem.diagonal_entry(i) * size * size;
+          terms += diagonal(i) * size * size;
         }
     return std::numeric_limits<double>::epsilon() * terms;
   }
@@ -88,9 +89,10 @@ namespace Debond
           active.push_back(s == 0.);
         // Of what w leaves of a lifting that it undoes.
         constexpr long double epsilon = std::numeric_limits<double>::epsilon();
+        const DofVector       diagonal = problem.diagonal();
         for (unsigned int i = 0; i < lifting.size(); ++i)
-          least_energy += problem.diagonal_entry(i) * epsilon * lifting(i) *
-                          epsilon * lifting(i);
+          least_energy +=
+            diagonal(i) * epsilon * lifting(i) * epsilon * lifting(i);
       }
 
       /// Returns false if the majorant is the one of before.

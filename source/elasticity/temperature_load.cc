@@ -7,6 +7,7 @@
 #include <debond/contact/field_value.h>
 #include <debond/elasticity/fields.h>
 #include <debond/elasticity/temperature_load.h>
+#include <debond/mesh/owned_cells.h>
 
 namespace Debond
 {
@@ -115,11 +116,13 @@ namespace Debond
                                       dealii::update_JxW_values);
     const dealii::FEValuesExtractors::Vector     displacement(0);
     std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
-    auto stress = thermal_stresses.begin();
-    for (const auto &cell : dof_handler.active_cell_iterators())
+    const unsigned int n_points = fe_values.n_quadrature_points;
+    for (const auto &cell : owned_cells(dof_handler))
       {
         fe_values.reinit(cell);
         cell->get_dof_indices(dofs);
+        auto stress =
+          thermal_stresses.begin() + cell->active_cell_index() * n_points;
         for (const unsigned int q : fe_values.quadrature_point_indices())
           {
             for (unsigned int i = 0; i < dofs.size(); ++i)

@@ -1,27 +1,53 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/bounding_box.h>
-#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_simplex_p.h>
 
+#include <debond/base/ranks.h>
 #include <debond/base/text.h>
 #include <debond/elasticity/boundary_face.h>
 #include <debond/elasticity/contact_nodes.h>
 #include <debond/elasticity/rigid_motions.h>
 #include <debond/elasticity/unknowns.h>
+#include <debond/mesh/owned_cells.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <string>
 
 namespace Debond
 {
+  namespace
+  {
+    /// Of the box around the whole mesh.
+    template <int dim>
+    double
+    diameter_of(const dealii::Triangulation<dim> &triangulation)
+    {
+      auto [lower, upper] =
+        dealii::BoundingBox<dim>(triangulation.get_vertices())
+          .get_boundary_points();
+      const MPI_Comm ranks = triangulation.get_communicator();
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          lower[d] = dealii::Utilities::MPI::min(lower[d], ranks);
+          upper[d] = dealii::Utilities::MPI::max(upper[d], ranks);
+        }
+      return lower.distance(upper);
+    }
+  } // namespace
+
+
+
   template <int dim>
   ElasticUnknowns<dim>::ElasticUnknowns(
     const dealii::Triangulation<dim> &triangulation,
     const BoundaryConditions         &conditions,
     const Supports<dim>              &supports,
-    const unsigned int                degree,
-    const std::vector<unsigned int>  &node_order)
+    const unsigned int                degree)
     : mapping_p1(dealii::FE_SimplexP<dim>(1))
     , fe(dealii::FE_SimplexP<dim>(degree), dim)
     , dofs(triangulation)
@@ -37,30 +63,15 @@ namespace Debond
           " is both clamped and a contact boundary.");
 
     dofs.distribute_dofs(fe);
-    const bool is_piece = !node_order.empty();
-    if (is_piece)
-      {
-        std::vector<dealii::types::global_dof_index> numbers(dofs.n_dofs());
-        for (const auto &cell : dofs.active_cell_iterators())
-          for (const unsigned int v : cell->vertex_indices())
-            for (unsigned int d = 0; d < dim; ++d)
-              numbers[cell->vertex_dof_index(v, d)] =
-                node_order[cell->vertex_index(v)] * dim + d;
-        dofs.renumber_dofs(numbers);
-      }
-    const double diameter = [&] {
-      const auto corners =
-        dealii::BoundingBox<dim>(triangulation.get_vertices())
-          .get_boundary_points();
-      return corners.first.distance(corners.second);
-    }();
+    const double diameter = diameter_of(triangulation);
 
     // G of most scenes is zero, and then there is none.
     gap.reinit(supports.gaps.empty() ? 0 : dofs.n_dofs());
     const auto faces = [&](const std::set<dealii::types::boundary_id> &ids) {
-      return boundary_faces(dofs, ids, conditions.names, is_piece);
+      return boundary_faces(dofs, ids, conditions.names);
     };
-    contact_edges = EdgeCoefficients<dim>(dofs, conditions.contact);
+    const std::vector<BoundaryFace<dim>> contact = faces(conditions.contact);
+    contact_edges = EdgeCoefficients<dim>(dofs.n_dofs() / dim, contact);
     node_supports =
       NodeSupports<dim>(dofs.n_dofs() / dim,
                         supports.displacements.empty() ? 0 : dofs.n_dofs());
@@ -70,7 +81,7 @@ namespace Debond
                               condition,
                               conditions,
                               contact_edges);
-    contact_space = make_contact_space(faces(conditions.contact),
+    contact_space = make_contact_space(contact,
                                        degree,
                                        conditions,
                                        supports,
@@ -81,8 +92,7 @@ namespace Debond
     if (gap.size() > 0 && gap.all_zero())
       gap.reinit(0);
 
-    if (!is_piece)
-      free_motions = free_rigid_motions(held, diameter);
+    free_motions = free_rigid_motions(held, diameter);
     if (!free_motions.motions.empty())
       {
         for (const auto &node : contact_space.boundary().nodes)
@@ -150,9 +160,64 @@ namespace Debond
   std::vector<dealii::Point<dim>>
   ElasticUnknowns<dim>::positions() const
   {
+    const std::vector<dealii::Point<dim>>       &points = fe.get_unit_support_points();
+    std::vector<double>                          coordinates(n_dofs() * std::size_t{dim});
+    std::vector<dealii::types::global_dof_index> cell_dofs(fe.dofs_per_cell);
+    const dealii::IndexSet                      &own = dofs.locally_owned_dofs();
+    for (const auto &cell : owned_cells(dofs))
+      {
+        cell->get_dof_indices(cell_dofs);
+        for (unsigned int i = 0; i < cell_dofs.size(); ++i)
+          if (own.is_element(cell_dofs[i]))
+            {
+              const dealii::Point<dim> point =
+                mapping_p1.transform_unit_to_real_cell(cell, points[i]);
+              std::copy(point.begin_raw(),
+                        point.end_raw(),
+                        coordinates.begin() + std::size_t(dim) * cell_dofs[i]);
+            }
+      }
+    dealii::Utilities::MPI::sum(coordinates, communicator(), coordinates);
     std::vector<dealii::Point<dim>> result(n_dofs());
-    dealii::DoFTools::map_dofs_to_support_points(mapping_p1, dofs, result);
+    for (std::size_t i = 0; i < result.size(); ++i)
+      for (unsigned int d = 0; d < dim; ++d)
+        result[i][d] = coordinates[dim * i + d];
     return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<dealii::types::global_dof_index>
+  ElasticUnknowns<dim>::serial_order() const
+  {
+    std::vector<dealii::types::global_dof_index> order(n_dofs());
+    std::iota(order.begin(), order.end(), 0U);
+    if (number_of_ranks(communicator()) == 1)
+      return order;
+    // On one rank they are numbered as the cells come to them.
+    const unsigned int                           n = fe.dofs_per_cell;
+    std::vector<dealii::types::global_dof_index> cell_dofs(n);
+    std::vector<std::uint64_t>                   first_visits(
+      n_dofs(), std::numeric_limits<std::uint64_t>::max());
+    for (const auto &cell : owned_cells(dofs))
+      {
+        cell->get_dof_indices(cell_dofs);
+        for (unsigned int i = 0; i < n; ++i)
+          first_visits[cell_dofs[i]] =
+            std::min<std::uint64_t>(first_visits[cell_dofs[i]],
+                     cell->id().get_coarse_cell_id() * n + i);
+      }
+    dealii::Utilities::MPI::min(first_visits, communicator(), first_visits);
+    auto visited = order;
+    std::sort(visited.begin(),
+              visited.end(),
+              [&first_visits](const auto a, const auto b) {
+                return first_visits[a] < first_visits[b];
+              });
+    for (unsigned int k = 0; k < visited.size(); ++k)
+      order[visited[k]] = k;
+    return order;
   }
 
 

@@ -2,10 +2,10 @@
 #include <deal.II/base/numbers.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
+#include <deal.II/physics/transformations.h>
 
 #include <debond/mesh/box.h>
 #include <debond/mesh/crossed_lattice.h>
-#include <debond/mesh/crossed_mesh.h>
 
 #include <algorithm>
 #include <cmath>
@@ -104,8 +104,6 @@ namespace Debond
   void
   make_box(const BoxParameters &parameters, dealii::Triangulation<dim> &crossed)
   {
-    dealii::Point<dim>        corner;
-    std::vector<unsigned int> cells(dim);
     for (unsigned int d = 0; d < dim; ++d)
       {
         if (!(parameters.lengths[d] > 0.))
@@ -116,25 +114,63 @@ namespace Debond
           throw std::invalid_argument("Box: the number of cells in direction " +
                                       std::to_string(d) +
                                       " is 0, it must be at least 1.");
-        corner[d] = parameters.lengths[d];
-        cells[d]  = parameters.cells[d];
       }
+    const CellsAndVertices<dim> all =
+      part_of_box<dim>(parameters, {}, parameters.cells);
+    crossed.create_triangulation(all.vertices, all.cells, all.faces);
+  }
 
+
+
+  template <int dim>
+  CellsAndVertices<dim>
+  part_of_box(const BoxParameters               &box,
+              const std::array<unsigned int, 3> &begin,
+              const std::array<unsigned int, 3> &n_cells)
+  {
+    // First with cells of size 1: the products below do not depend on where
+    // the part begins.
+    dealii::Point<dim> first, last;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        first[d] = begin[d];
+        last[d]  = begin[d] + n_cells[d];
+      }
     dealii::Triangulation<dim> coarse;
     dealii::GridGenerator::subdivided_hyper_rectangle(
-      coarse, cells, dealii::Point<dim>(), corner, /*colorize=*/true);
-    crossed_subdivision(coarse, crossed);
+      coarse,
+      std::vector<unsigned int>(n_cells.begin(), n_cells.begin() + dim),
+      first,
+      last,
+      /*colorize=*/true);
+    dealii::GridTools::transform(
+      [&](dealii::Point<dim> point) {
+        for (unsigned int d = 0; d < dim; ++d)
+          point[d] *= box.lengths[d] / box.cells[d];
+        return point;
+      },
+      coarse);
+    std::vector<typename dealii::Triangulation<dim>::cell_iterator> cells;
+    for (const auto &cell : coarse.active_cell_iterators())
+      cells.push_back(cell);
+    CellsAndVertices<dim> result =
+      crossed_cells<dim>(cells, dealii::numbers::invalid_boundary_id);
 
-    if (parameters.rotation != 0.)
+    if (box.rotation != 0.)
       {
-        const double angle = parameters.rotation * dealii::numbers::PI / 180.;
+        namespace Rotations = dealii::Physics::Transformations::Rotations;
+        const double angle  = box.rotation * dealii::numbers::PI / 180.;
+        dealii::Tensor<2, dim> rotation;
         if constexpr (dim == 2)
-          dealii::GridTools::rotate(angle, crossed);
+          rotation = Rotations::rotation_matrix_2d(angle);
         else
-          dealii::GridTools::rotate(dealii::Tensor<1, 3>({0., 0., 1.}),
-                                    angle,
-                                    crossed);
+          rotation =
+            Rotations::rotation_matrix_3d(dealii::Tensor<1, 3>({0., 0., 1.}),
+                                          angle);
+        for (dealii::Point<dim> &vertex : result.vertices)
+          vertex = dealii::Point<dim>(rotation * vertex);
       }
+    return result;
   }
 
 
@@ -323,6 +359,8 @@ namespace Debond
   template decltype(box_boundaries<3>) box_boundaries<3>;
   template decltype(make_box<2>)       make_box<2>;
   template decltype(make_box<3>)       make_box<3>;
+  template decltype(part_of_box<2>)    part_of_box<2>;
+  template decltype(part_of_box<3>)    part_of_box<3>;
   template class Box<2>;
   template class Box<3>;
 } // namespace Debond

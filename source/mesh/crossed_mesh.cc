@@ -95,6 +95,22 @@ namespace Debond
     if (crossed.n_levels() != 0)
       throw std::invalid_argument(
         "Crossed subdivision: the triangulation to be filled is not empty.");
+    const CellsAndVertices<dim> simplices =
+      crossed_cells<dim>(coarse_cells, id_of_cuts);
+    crossed.create_triangulation(simplices.vertices,
+                                 simplices.cells,
+                                 simplices.faces);
+  }
+
+
+
+  template <int dim>
+  CellsAndVertices<dim>
+  crossed_cells(
+    const std::vector<typename dealii::Triangulation<dim>::cell_iterator>
+                                    &coarse_cells,
+    const dealii::types::boundary_id id_of_cuts)
+  {
     const dealii::Triangulation<dim> &coarse =
       coarse_cells.front()->get_triangulation();
 
@@ -108,7 +124,10 @@ namespace Debond
         for (const unsigned int f : cell->face_indices())
           ++n_cells_at[cell->face_index(f)];
       }
-    std::vector<dealii::Point<dim>> vertices;
+    CellsAndVertices<dim>               result;
+    std::vector<dealii::Point<dim>>    &vertices = result.vertices;
+    std::vector<dealii::CellData<dim>> &cells    = result.cells;
+    dealii::SubCellData                &subcells = result.faces;
     for (unsigned int v = 0; v < new_index.size(); ++v)
       if (new_index[v] != 0)
         {
@@ -121,10 +140,7 @@ namespace Debond
       dim == 3 ? coarse.n_raw_faces() : 0,
       dealii::numbers::invalid_unsigned_int);
 
-    std::vector<dealii::CellData<dim>> cells;
     cells.reserve(coarse_cells.size() * (dim == 2 ? 4 : 24));
-    dealii::SubCellData subcells;
-
     for (const auto &cell : coarse_cells)
       {
         const unsigned int cell_centre =
@@ -204,13 +220,15 @@ namespace Debond
           }
       }
 
-    crossed.create_triangulation(vertices, cells, subcells);
+    return result;
   }
 
 
 
   template decltype(crossed_subdivision<2>) crossed_subdivision<2>;
   template decltype(crossed_subdivision<3>) crossed_subdivision<3>;
+  template decltype(crossed_cells<2>)       crossed_cells<2>;
+  template decltype(crossed_cells<3>)       crossed_cells<3>;
   template decltype(crossed_part<2>)        crossed_part<2>;
   template decltype(crossed_part<3>)        crossed_part<3>;
 } // namespace Debond

@@ -2,6 +2,7 @@
 #include <deal.II/base/data_out_base.h>
 #include <deal.II/base/utilities.h>
 
+#include <debond/base/processes.h>
 #include <debond/base/atomic_file.h>
 #include <debond/output/csv_table.h>
 #include <debond/output/load_path_output.h>
@@ -109,12 +110,15 @@ namespace Debond
   void
   LoadPathOutput<dim>::remove_steps() const
   {
+    if (!is_first_rank())
+      return;
     std::vector<std::filesystem::path> old;
     std::error_code                    unreadable;
     for (const auto &entry :
          std::filesystem::directory_iterator(path(directory_of_steps),
                                              unreadable))
-      if (entry.path().extension() == ".vtu" &&
+      if ((entry.path().extension() == ".vtu" ||
+           entry.path().extension() == ".pvtu") &&
           entry.is_regular_file(unreadable))
         old.push_back(entry.path());
     for (const std::filesystem::path &file : old)
@@ -141,7 +145,9 @@ namespace Debond
           {
             const std::string name = name_of_step("body", step.step);
             write_body_vtu(problem, u, path(name), step.factors());
-            bodies.emplace_back(step.step, name);
+            bodies.emplace_back(step.step,
+                                joined_file(name,
+                                            problem.unknowns().communicator()));
           }
         if (output.path_contact_vtu)
           {

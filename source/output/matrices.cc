@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/utility.hpp>
+
 #include <debond/base/atomic_file.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/output/matrices.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <tuple>
+#include <utility>
 
 namespace Debond
 {
@@ -50,21 +56,46 @@ namespace Debond
 
 
 
-    /// The lower triangle.
-    void
-    write_sparse(const dealii::SparseMatrix<double> &A, const std::string &path)
+    using Order = std::vector<dealii::types::global_dof_index>;
+
+    DofVector
+    in_order(const DofVector &v, const Order &order)
     {
+      DofVector result(v.size());
+      for (unsigned int i = 0; i < v.size(); ++i)
+        result(order[i]) = v(i);
+      return result;
+    }
+
+
+
+    /// The lower triangle, by rows.
+    template <int dim>
+    void
+    write_sparse(const ElasticProblem<dim> &problem, const std::string &path)
+    {
+      using Place       = std::pair<unsigned int, unsigned int>;
+      const auto &A     = problem.matrix();
+      const Order order = problem.unknowns().serial_order();
+      std::vector<std::pair<Place, double>> own, all;
+      for (const auto row :
+           problem.unknowns().dof_handler().locally_owned_dofs())
+        for (auto entry = A.begin(row); entry != A.end(row); ++entry)
+          if (const Place place(order[row], order[entry->column()]);
+              place.second <= place.first)
+            own.emplace_back(place, entry->value());
+      for (auto &of_rank :
+           dealii::Utilities::MPI::gather(problem.unknowns().communicator(),
+                                          own))
+        all.insert(all.end(), of_rank.begin(), of_rank.end());
+      std::sort(all.begin(), all.end());
       write(
         "coordinate real symmetric",
         [&](std::ostream &out) {
-          std::size_t n_entries = 0;
-          for (const auto &entry : A)
-            n_entries += entry.column() <= entry.row() ? 1 : 0;
-          out << A.m() << ' ' << A.n() << ' ' << n_entries << '\n';
-          for (const auto &entry : A)
-            if (entry.column() <= entry.row())
-              out << entry.row() + 1 << ' ' << entry.column() + 1 << ' '
-                  << entry.value() << '\n';
+          out << A.m() << ' ' << A.n() << ' ' << all.size() << '\n';
+          for (const auto &[place, value] : all)
+            out << place.first + 1 << ' ' << place.second + 1 << ' ' << value
+                << '\n';
         },
         path);
     }
@@ -92,6 +123,7 @@ namespace Debond
     void
     write_frames(const ElasticUnknowns<dim> &unknowns, const std::string &path)
     {
+      const Order       order = unknowns.serial_order();
       std::vector<bool> is_cartesian(unknowns.n_dofs(), true);
       std::vector<std::tuple<std::size_t, std::size_t, double>> entries;
       for (const auto &frame : unknowns.frames())
@@ -100,13 +132,13 @@ namespace Debond
             is_cartesian[frame.dofs[i]] = false;
             for (unsigned int j = 0; j < dim; ++j)
               if (frame.to_frame[i][j] != 0.)
-                entries.emplace_back(frame.dofs[i],
-                                     frame.dofs[j],
+                entries.emplace_back(order[frame.dofs[i]],
+                                     order[frame.dofs[j]],
                                      frame.to_frame[i][j]);
           }
       for (unsigned int i = 0; i < is_cartesian.size(); ++i)
         if (is_cartesian[i])
-          entries.emplace_back(i, i, 1.);
+          entries.emplace_back(order[i], order[i], 1.);
       write(
         "coordinate real general",
         [&](std::ostream &out) {
@@ -144,20 +176,25 @@ namespace Debond
     const auto add = [&](const std::string &name, const auto &write) {
       files.push_back(
         {name,
-         [&scene, wanted]() { return wanted && scene.piece() == nullptr; },
-         write});
+         [wanted]() { return wanted; }, write});
     };
     add("A.mtx", [&scene](const std::string &path) {
-      write_sparse(scene.problem().matrix(), path);
+      write_sparse(scene.problem(), path);
     });
     add("f.mtx", [&scene](const std::string &path) {
-      write_array<DofVector>({scene.problem().load()}, path);
+      const auto &problem = scene.problem();
+      write_array<DofVector>(
+        {in_order(problem.load(), problem.unknowns().serial_order())}, path);
     });
     add("frames.mtx", [&scene](const std::string &path) {
       write_frames(scene.problem().unknowns(), path);
     });
     add("modes.mtx", [&scene](const std::string &path) {
-      write_array(scene.problem().unknowns().rigid_body_modes(), path);
+      const auto &unknowns = scene.problem().unknowns();
+      std::vector<DofVector> modes = unknowns.rigid_body_modes();
+      for (DofVector &mode : modes)
+        mode = in_order(mode, unknowns.serial_order());
+      write_array(modes, path);
     });
     add("S.mtx", [condensed](const std::string &path) {
       write_dense(condensed().schur_complement(), path);
@@ -168,8 +205,9 @@ namespace Debond
     });
     add("contact.mtx", [&scene](const std::string &path) {
       std::vector<double> rows;
+      const Order         order = scene.problem().unknowns().serial_order();
       for (const auto i : scene.problem().unknowns().contact().normals())
-        rows.push_back(static_cast<double>(i) + 1.);
+        rows.push_back(static_cast<double>(order[i]) + 1.);
       write_array<std::vector<double>>({rows}, path);
     });
     add("weights.mtx", [of_nodes](const std::string &path) {

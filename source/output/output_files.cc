@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/processes.h>
 #include <debond/output/matrices.h>
 #include <debond/output/output_files.h>
 #include <debond/output/tables.h>
@@ -14,6 +15,8 @@ namespace Debond
   remove_files(const std::vector<OutputFile> &files,
                const std::string             &directory)
   {
+    if (!is_first_rank())
+      return;
     for (const OutputFile &file : files)
       {
         const auto      path = std::filesystem::path(directory) / file.name;
@@ -134,25 +137,24 @@ namespace Debond
                const Scene<dim>       &scene,
                const RunResult<dim>   &result)
   {
-    std::vector<OutputFile>       files  = matrix_files(scene, output.matrices);
+    std::vector<OutputFile> files = matrix_files(scene, output.matrices);
+    // One or the other.
+    for (const std::string name : {"body.vtu", "body.pvtu"})
+      files.push_back(
+        {name,
+         [&, name]() {
+           return output.body_vtu && result.has_displacement() &&
+                  name == joined_file("body.vtu", scene.ranks());
+         },
+         [&](const std::string &path) {
+           write_body_vtu(scene.problem(),
+                          result.solve.u,
+                          path,
+                          result.solve.load_factor,
+                          result.estimate ? &*result.estimate : nullptr,
+                          fields_of_cells(scene, result.certificate));
+         }});
     const std::vector<OutputFile> others = {
-      {"body.vtu",
-       [&]() {
-         return output.body_vtu && result.has_displacement() &&
-                scene.piece() == nullptr;
-       },
-       [&](const std::string &path) {
-         write_body_vtu(scene.problem(),
-                        result.solve.u,
-                        path,
-                        result.solve.load_factor,
-                        result.estimate ? &*result.estimate : nullptr,
-                        fields_of_cells(scene, result.certificate));
-       }},
-      // Of several ranks, which write it themselves.
-      {"body.pvtu",
-       []() { return false; },
-       [](const std::string & /*path*/) {}},
       {"contact.vtu",
        [&]() { return output.contact_vtu && result.has_displacement(); },
        [&](const std::string &path) {
@@ -182,7 +184,7 @@ namespace Debond
       {"displacement.txt",
        [&]() { return output.displacement && result.has_displacement(); },
        [&](const std::string &path) {
-         write_displacement(result.solve.u, path);
+         write_displacement(scene.problem().unknowns(), result.solve.u, path);
        }},
       {"proof.csv",
        [&]() {

@@ -7,11 +7,15 @@
 #include <deal.II/numerics/data_out.h>
 
 #include <debond/base/atomic_file.h>
+#include <debond/base/processes.h>
+#include <debond/base/ranks.h>
 #include <debond/contact/bernstein.h>
+#include <debond/mesh/owned_cells.h>
 #include <debond/output/vtu.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <limits>
 
@@ -54,6 +58,7 @@ namespace Debond
           stresses.push_back(means.solid_stress(0));
           has_regions |= cell->material_id() != first.material_id();
         }
+      has_regions = any_rank(has_regions);
       const auto add = [&](const std::string &name, const auto &value) {
         all.emplace_back(name, stresses.size());
         for (const auto &cell : dofs.active_cell_iterators())
@@ -132,57 +137,6 @@ namespace Debond
         dealii::DataOutBase::write_vtu_footer(file);
       }
     };
-
-
-
-    /// Writes the cells of the body, of @p piece its own ones; returns the file
-    /// that joins those of @p pieces, if there are any.
-    template <int dim>
-    std::string
-    write_body(const ElasticProblem<dim>      &problem,
-               const DofVector                &u,
-               const LoadFactors               factors,
-               const ErrorEstimate            *estimate,
-               const std::vector<CellField>   &more,
-               const std::string              &file_name,
-               const ProblemPiece<dim>        *piece  = nullptr,
-               const std::vector<std::string> &pieces = {})
-    {
-      namespace Interpretation = dealii::DataComponentInterpretation;
-      const DofVector displacement =
-        problem.unknowns().cartesian_displacement(u, factors);
-
-      BodyOut<dim> out;
-      out.set_flags(vtk_flags());
-      out.attach_dof_handler(problem.unknowns().dof_handler());
-      out.add_data_vector(
-        displacement,
-        std::vector<std::string>(dim, "displacement"),
-        dealii::DataOut<dim>::type_dof_data,
-        std::vector<Interpretation::DataComponentInterpretation>(
-          dim, Interpretation::component_is_part_of_vector));
-      const auto fields =
-        cell_fields(problem, displacement, factors, estimate, more);
-      for (const auto &[name, numbers] : fields)
-        out.add_data_vector(numbers,
-                            name,
-                            dealii::DataOut<dim>::type_cell_data);
-      std::vector<typename BodyOut<dim>::cell_iterator> cells;
-      for (const auto &cell : problem.unknowns()
-                                .dof_handler()
-                                .get_triangulation()
-                                .active_cell_iterators())
-        if (piece == nullptr ||
-            piece->body().owns_cell(cell->active_cell_index()))
-          cells.push_back(cell);
-      write_atomically(file_name, [&](std::ostream &file) {
-        out.write_in_parts(file, cells, problem.unknowns().degree());
-      });
-      std::ostringstream joined;
-      if (!pieces.empty())
-        out.write_pvtu_record(joined, pieces);
-      return joined.str();
-    }
 
 
 
@@ -273,35 +227,66 @@ namespace Debond
                  const ErrorEstimate          *estimate,
                  const std::vector<CellField> &more)
   {
-    write_body(problem, u, factors, estimate, more, file_name);
+    namespace Interpretation = dealii::DataComponentInterpretation;
+    const ElasticUnknowns<dim> &unknowns = problem.unknowns();
+    const DofVector displacement = unknowns.cartesian_displacement(u, factors);
+
+    BodyOut<dim> out;
+    out.set_flags(vtk_flags());
+    out.attach_dof_handler(unknowns.dof_handler());
+    out.add_data_vector(
+      displacement,
+      std::vector<std::string>(dim, "displacement"),
+      dealii::DataOut<dim>::type_dof_data,
+      std::vector<Interpretation::DataComponentInterpretation>(
+        dim, Interpretation::component_is_part_of_vector));
+    const auto fields =
+      cell_fields(problem, displacement, factors, estimate, more);
+    for (const auto &[name, numbers] : fields)
+      out.add_data_vector(numbers, name, dealii::DataOut<dim>::type_cell_data);
+    std::vector<typename BodyOut<dim>::cell_iterator> cells;
+    for (const auto &cell :
+         owned_cells(unknowns.dof_handler().get_triangulation()))
+      cells.push_back(cell);
+    const auto write = [&](std::ostream &file) {
+      out.write_in_parts(file, cells, unknowns.degree());
+    };
+
+    const MPI_Comm     ranks   = unknowns.communicator();
+    const unsigned int n_ranks = number_of_ranks(ranks);
+    if (n_ranks == 1)
+      {
+        write_atomically(file_name, write);
+        return;
+      }
+    const std::filesystem::path path(file_name);
+    const auto                  of_rank = [&path](const unsigned int rank) {
+      return path.stem().string() + ".rank" + std::to_string(rank) + ".vtu";
+    };
+    std::vector<std::string> names;
+    for (unsigned int rank = 0; rank < n_ranks; ++rank)
+      names.push_back(of_rank(rank));
+    on_all_ranks(ranks, [&]() {
+      write_own_file((path.parent_path() /
+                      of_rank(rank_of_this(ranks)))
+                       .string(),
+                     write);
+    });
+    write_atomically(joined_file(file_name, ranks), [&](std::ostream &file) {
+      out.write_pvtu_record(file, names);
+    });
   }
 
 
 
-  template <int dim>
-  std::vector<std::string>
-  write_body_pieces(const ElasticProblem<dim> &problem,
-                    const ProblemPiece<dim>   &piece,
-                    const DofVector           &u,
-                    const ErrorEstimate       *estimate,
-                    const std::string         &directory)
+  std::string
+  joined_file(const std::string &file_name, const MPI_Comm ranks)
   {
-    const MPI_Comm           ranks = piece.nodes().communicator();
-    std::vector<std::string> names;
-    for (unsigned int k = 0; k < dealii::Utilities::MPI::n_mpi_processes(ranks);
-         ++k)
-      names.push_back("body.rank" + std::to_string(k) + ".vtu");
-    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(ranks);
-    std::vector<std::string> written = {directory + "/" + names[rank]};
-    const std::string        joined =
-      write_body(problem, u, 1., estimate, {}, written[0], &piece, names);
-    if (rank == 0)
-      {
-        written.push_back(directory + "/body.pvtu");
-        write_atomically(written[1],
-                         [&joined](std::ostream &out) { out << joined; });
-      }
-    return written;
+    return number_of_ranks(ranks) == 1 ?
+             file_name :
+             std::filesystem::path(file_name)
+               .replace_extension(".pvtu")
+               .string();
   }
 
 
@@ -442,8 +427,6 @@ namespace Debond
 
   template decltype(write_body_vtu<2>)    write_body_vtu<2>;
   template decltype(write_body_vtu<3>)    write_body_vtu<3>;
-  template decltype(write_body_pieces<2>) write_body_pieces<2>;
-  template decltype(write_body_pieces<3>) write_body_pieces<3>;
   template decltype(write_contact_vtu<2>) write_contact_vtu<2>;
   template decltype(write_contact_vtu<3>) write_contact_vtu<3>;
 } // namespace Debond

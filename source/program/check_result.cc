@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/timer.h>
 
 #include <debond/base/append.h>
@@ -116,11 +115,8 @@ namespace Debond
     has_load(const Scene<dim> &scene, const double largest_displacement)
     {
       const ElasticProblem<dim> &problem = scene.problem();
-      const DofVector forces = problem.fields().applied_nodal_forces();
-      const double    largest_force =
-        scene.piece() == nullptr ?
-             forces.linfty_norm() :
-             scene.piece()->nodes().largest(forces.begin());
+      const double               largest_force =
+        problem.fields().applied_nodal_forces().linfty_norm();
       return problem.unknowns().has_prescribed_displacements() ||
              largest_force > 0. ||
              (problem.unknowns().has_gap() &&
@@ -149,8 +145,7 @@ namespace Debond
                                            result.solve.u,
                                            result.solve.functional,
                                            result.solve.load_factor,
-                                           &scene.dead_loads(),
-                                           scene.piece());
+                                           &scene.dead_loads());
           if (const std::string &reason = result.estimate->outside_calibration;
               !reason.empty())
             result.notes.push_back(
@@ -222,25 +217,16 @@ namespace Debond
                                    scene.law(),
                                    result.solve.u,
                                    result.solve.load_factor,
-                                   1e-6,
-                                   scene.piece());
+                                   1e-6);
     const auto values = [&](const Probes<dim> &probes) {
       return probes.values(scene.problem(),
                            result.solve.u,
-                           result.solve.load_factor,
-                           scene.piece());
+                           result.solve.load_factor);
     };
     result.probes = values(scene.probes());
     result.means  = values(scene.means());
     result.largest =
       largest_values(scene.problem(), result.solve.u, result.solve.load_factor);
-    if (scene.piece() != nullptr)
-      for (double *const value : {&result.largest.displacement,
-                                  &result.largest.gradient,
-                                  &result.largest.von_mises})
-        *value =
-          dealii::Utilities::MPI::max(*value,
-                                      scene.piece()->nodes().communicator());
     result.times.emplace_back("verification", timer.wall_time());
     judge(not_off.empty() ?
             verification_message(verification.tolerance, result) :
@@ -251,13 +237,9 @@ namespace Debond
     const bool is_loaded = has_load(scene, result.largest.displacement);
 
     // A loop that was interrupted has the solution of the mesh before.
-    bool is_solution = result.is_success() || !shortfall.empty() ||
+    const bool is_solution = result.is_success() || !shortfall.empty() ||
                        (result.solve.status == SolverStatus::interrupted &&
                         !result.levels.empty());
-    if (scene.piece() != nullptr)
-      is_solution =
-        dealii::Utilities::MPI::broadcast(scene.piece()->nodes().communicator(),
-                                          is_solution);
     // At rest all of u is rounding, of which there is no error.
     if (is_solution && is_loaded)
       {

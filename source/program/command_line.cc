@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/multithread_info.h>
 
 #include <debond/base/interrupt.h>
+#include <debond/base/processes.h>
+#include <debond/base/ranks.h>
 #include <debond/base/run_watch.h>
 #include <debond/base/text.h>
 #include <debond/base/version.h>
@@ -114,17 +115,12 @@ namespace Debond
     ExitCode
     run_or_validate(const Parameters &parameters, const bool only_validate)
     {
-      if (!only_validate && n_started_ranks() > 1)
-        return run_on_ranks<dim>(parameters,
-                                 MPI_COMM_WORLD,
-                                 std::cout,
-                                 isatty(STDOUT_FILENO) == 1);
       if (!only_validate)
         return run<dim>(parameters, std::cout, isatty(STDOUT_FILENO) == 1);
 
       MethodChoice choice =
         choose_method(parameters, parameters.solver, parameters.accuracy);
-      const Scene<dim> scene(parameters, parameters.solver.start);
+      const Scene<dim> scene(parameters, parameters.solver.start, MPI_COMM_WORLD);
       choose_linear_solver(scene, parameters.solver, choice);
       check_supports_of_method(choice, parameters.solver, scene);
       std::cout << parameters.scene << ": valid" << std::endl;
@@ -181,38 +177,43 @@ namespace Debond
 
     /// Does @p action and returns its exit code. What it throws is reported on
     /// std::cerr: each error of bad input, too little memory, and faults of the
-    /// program. Ranks agree on bad input, so the first one speaks for all; what
-    /// happens to one alone, such as a lack of memory, ends them all.
+    /// program. Of ranks that throw together one speaks for all; what happens to
+    /// one alone ends them all.
     ExitCode
     guard(const std::function<ExitCode()> &action)
     {
-      const bool has_ranks = n_started_ranks() > 1;
-      ExitCode   code      = ExitCode::internal_error;
+      ExitCode                 code = ExitCode::internal_error;
+      std::vector<std::string> lines;
+      bool                     is_own = true;
       try
         {
           return action();
         }
       catch (const BadInput &error)
         {
-          if (!has_ranks ||
-              dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-            for (const std::string &line : error.lines)
-              print_error(line);
-          return ExitCode::bad_input;
+          lines = error.lines;
+          code  = ExitCode::bad_input;
         }
       catch (const std::bad_alloc &)
         {
-          print_error("there is not enough memory for this scene; try fewer "
-                      "cells or a smaller bundle");
-          code = ExitCode::bad_input;
+          lines = {"there is not enough memory for this scene; try fewer cells "
+                   "or a smaller bundle"};
+          code  = ExitCode::bad_input;
         }
       catch (const std::exception &error)
         {
-          std::cerr << "debond: internal error: " << error.what() << std::endl;
+          is_own = dynamic_cast<const ErrorElsewhere *>(&error) == nullptr;
+          lines  = {std::string("internal error: ") + error.what()};
         }
-      if (has_ranks)
-        MPI_Abort(MPI_COMM_WORLD, static_cast<int>(code));
-      return code;
+      const std::optional<EndOfRanks> end =
+        end_together(is_own, static_cast<int>(code));
+      std::cerr.clear();
+      if (!end || end->is_speaker)
+        for (const std::string &line : lines)
+          print_error(line);
+      if (!end)
+        end_all_ranks(static_cast<int>(code));
+      return static_cast<ExitCode>(end->exit_code);
     }
 
 
@@ -308,11 +309,10 @@ namespace Debond
     use_one_blas_thread_by_default();
     RunWatch watch(std::cout, static_cast<int>(ExitCode::interrupted));
     if (n_started_ranks() > 1)
-      {
-        start_mpi();
-        if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
-          std::cout.setstate(std::ios::failbit);
-      }
+      start_mpi();
+    if (!is_first_rank())
+      for (std::ostream *const stream : {&std::cout, &std::cerr})
+        stream->setstate(std::ios::failbit);
     return guard([&]() { return execute(argc, argv); });
   }
 } // namespace Debond

@@ -5,7 +5,10 @@
 #include <debond/base/atomic_file.h>
 #include <debond/base/directory_lock.h>
 #include <debond/base/memory.h>
+#include <debond/base/processes.h>
+#include <debond/base/ranks.h>
 #include <debond/base/text.h>
+#include <debond/input/bad_input.h>
 #include <debond/output/load_path_output.h>
 #include <debond/output/output_files.h>
 #include <debond/output/report.h>
@@ -60,6 +63,22 @@ namespace Debond
 
 
 
+  namespace
+  {
+    void
+    refuse_certificates_of_ranks(const Parameters &parameters)
+    {
+      const std::string entry = "Certificate/Kind";
+      if (n_started_ranks() > 1 &&
+          parameters.certificate.kind != CertificateKind::none)
+        throw BadInput({parameters.locations.at(entry) + ": " + entry +
+                        ": several ranks have no certificate; run the scene on "
+                        "one rank"});
+    }
+  } // namespace
+
+
+
   template <int dim>
   ExitCode
   run(const Parameters &parameters, std::ostream &out, const bool terminal)
@@ -71,6 +90,7 @@ namespace Debond
     const OutputParameters   &output      = parameters.output;
     const AccuracyParameters &accuracy    = parameters.accuracy;
     MethodChoice choice = choose_method(parameters, solver, accuracy);
+    refuse_certificates_of_ranks(parameters);
     std::shared_ptr<const Scene<dim>> scene =
       make_first_scene<dim>(parameters, accuracy, parameters.solver.start);
     choose_linear_solver(*scene, solver, choice);
@@ -97,7 +117,10 @@ namespace Debond
     std::vector<std::string>     written;
     try
       {
-        lock.emplace(output.directory);
+        on_all_ranks(scene->ranks(), [&]() {
+          if (is_first_rank())
+            lock.emplace(output.directory);
+        });
         remove_files(files, output.directory);
         path_output->remove_steps();
         written.push_back(
@@ -111,6 +134,8 @@ namespace Debond
 
     Record record(output.machine_details);
     report_problem(*scene, choice, solver.bundle.u, record);
+    if (n_started_ranks() > 1 && record.has_details())
+      record.line("ranks", std::to_string(n_started_ranks()));
     record.print(out);
 
     result.times = {{"mesh", scene->mesh_seconds()},
@@ -142,9 +167,12 @@ namespace Debond
         catch (const BadInput &)
           {
             // A load that only the finer mesh shows to have no integral.
-            for (const std::string &file : written)
-              std::filesystem::remove(file);
-            lock->withdraw();
+            if (lock)
+              {
+                for (const std::string &file : written)
+                  std::filesystem::remove(file);
+                lock->withdraw();
+              }
             throw;
           }
         result.solve       = std::move(adaptive.solve);
@@ -212,7 +240,7 @@ namespace Debond
         append(write_files(files, output.directory), written);
         result.times.emplace_back("output", timer.wall_time());
         result.times.emplace_back("total", total.wall_time());
-        report_cost(result, choice, peak_memory(), record);
+        report_cost(result, choice, -least_of_ranks(-peak_memory()), record);
         const std::string summary =
           output_path(output.directory, "summary.json");
         record.write(summary);

@@ -6,6 +6,7 @@
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/input/bad_input.h>
 #include <debond/mesh/bisected_body.h>
+#include <debond/mesh/owned_cells.h>
 #include <debond/solve/adaptive_loop.h>
 #include <debond/solve/load_path.h>
 
@@ -210,6 +211,23 @@ namespace Debond
 
 
 
+    /// Of numbers for the cells that a rank has those of all cells, by their
+    /// places in the whole mesh.
+    template <int dim>
+    std::vector<double>
+    of_whole_mesh(const Scene<dim> &scene, const std::vector<double> &of_cells)
+    {
+      std::vector<double> result(scene.n_cells(), 0.);
+      for (const auto &cell :
+           owned_cells(scene.problem().unknowns().dof_handler()))
+        result[cell->id().get_coarse_cell_id()] =
+          of_cells[cell->active_cell_index()];
+      dealii::Utilities::MPI::sum(result, scene.ranks(), result);
+      return result;
+    }
+
+
+
     /// The displacement u of the scene, on the next mesh.
     template <int dim>
     DofVector
@@ -223,10 +241,32 @@ namespace Debond
                                     u,
                                     body.ancestors(),
                                     next.problem());
-      std::vector<dealii::Tensor<1, dim>> displacements =
+      const auto &dofs = scene.problem().unknowns().dof_handler();
+      const std::vector<dealii::Tensor<1, dim>> here =
         vertex_displacements(scene.problem(), u);
+      const std::vector<unsigned int> places =
+        bisected(scene).vertex_numbers(dofs.get_triangulation());
+      std::vector<double> of_all(dim * bisected(scene).vertices().size());
+      for (const auto &cell : owned_cells(dofs))
+        for (const unsigned int v : cell->vertex_indices())
+          if (dofs.locally_owned_dofs().is_element(
+                cell->vertex_dof_index(v, 0)))
+            for (unsigned int d = 0; d < dim; ++d)
+              of_all[dim * places[cell->vertex_index(v)] + d] =
+                here[cell->vertex_index(v)][d];
+      dealii::Utilities::MPI::sum(of_all, scene.ranks(), of_all);
+      std::vector<dealii::Tensor<1, dim>> displacements(of_all.size() / dim);
+      for (std::size_t i = 0; i < of_all.size(); ++i)
+        displacements[i / dim][static_cast<unsigned int>(i % dim)] = of_all[i];
       body.extend(displacements);
-      return from_vertex_displacements(displacements, next.problem());
+      std::vector<dealii::Tensor<1, dim>> on_next;
+      for (const unsigned int place :
+           body.vertex_numbers(next.problem()
+                                 .unknowns()
+                                 .dof_handler()
+                                 .get_triangulation()))
+        on_next.push_back(displacements[place]);
+      return from_vertex_displacements(on_next, next.problem());
     }
 
 
@@ -377,7 +417,7 @@ namespace Debond
                    const std::string        &start)
   {
     if (!accuracy.is_adaptive())
-      return std::make_shared<const Scene<dim>>(problem, start);
+      return std::make_shared<const Scene<dim>>(problem, start, MPI_COMM_WORLD);
     std::shared_ptr<const Body<dim>> body;
     try
       {
@@ -387,13 +427,18 @@ namespace Debond
     catch (const PartError &)
       {
         // The scene without refinement says which entry that is.
-        return std::make_shared<const Scene<dim>>(problem, start);
+        return std::make_shared<const Scene<dim>>(problem,
+                                                  start,
+                                                  MPI_COMM_WORLD);
       }
     catch (const std::invalid_argument &error)
       {
         throw BadInput({problem.scene + ": Accuracy: " + error.what()});
       }
-    return std::make_shared<const Scene<dim>>(problem, body, start);
+    return std::make_shared<const Scene<dim>>(problem,
+                                              body,
+                                              start,
+                                              MPI_COMM_WORLD);
   }
 
 
@@ -452,7 +497,10 @@ namespace Debond
         if (!is_first && solution.status == SolverStatus::interrupted)
           {
             if (!scene)
-              scene = std::make_shared<const Scene<dim>>(problem, finished);
+              scene = std::make_shared<const Scene<dim>>(problem,
+                                                         finished,
+                                                         "",
+                                                         MPI_COMM_WORLD);
             interrupt(result.solve);
             return result;
           }
@@ -529,7 +577,10 @@ namespace Debond
         while (true)
           {
             body = bisected(*scene).refined(divisions(
-              by_gaps ? result.certificate->gaps : estimate.cells, dim, times));
+              by_gaps ? result.certificate->gaps :
+                        of_whole_mesh(*scene, estimate.cells),
+              dim,
+              times));
             limit =
               too_large<dim>(problem, accuracy, solver.memory_limit, *body);
             if (limit.empty() || times <= least_growth(problem.degree))
@@ -561,7 +612,10 @@ namespace Debond
               }
             return result;
           }
-        next = std::make_shared<const Scene<dim>>(problem, body);
+        next = std::make_shared<const Scene<dim>>(problem,
+                                                  body,
+                                                  "",
+                                                  MPI_COMM_WORLD);
         if (guard.requested())
           {
             interrupt(result.solve);

@@ -56,8 +56,11 @@ namespace Debond
       const MatrixView                 S = condensed.schur_complement();
       const dealii::FullMatrix<double> matrix(S.rows(), S.cols(), S.data());
       const Vector load(condensed.load().begin(), condensed.load().end());
-      const Functional<dim, dealii::FullMatrix<double>> functional(
-        matrix, load, contact, scene.adhesion());
+      const Functional<dim> functional(
+        [&matrix](Vector &dst, const Vector &src) { matrix.vmult(dst, src); },
+        load,
+        contact,
+        scene.adhesion());
 
       // Without loads any tolerance will do.
       bundle.epsilon_s =

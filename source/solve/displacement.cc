@@ -7,29 +7,50 @@
 
 namespace Debond
 {
+  template <int dim>
   void
-  write_displacement(const DofVector &u, const std::string &file_name)
+  write_displacement(const ElasticUnknowns<dim> &unknowns,
+                     const DofVector            &u,
+                     const std::string          &file_name)
   {
-    write_atomically(file_name, [&u](std::ostream &out) {
+    const auto order = unknowns.serial_order();
+    DofVector  in_order(u.size());
+    for (unsigned int i = 0; i < u.size(); ++i)
+      in_order(order[i]) = u(i);
+    write_atomically(file_name, [&in_order](std::ostream &out) {
       out.precision(std::numeric_limits<double>::max_digits10);
-      for (const double value : u)
+      for (const double value : in_order)
         out << value << '\n';
     });
   }
 
 
 
+  template <int dim>
   DofVector
-  read_displacement(const std::string &file_name, const unsigned int n_dofs)
+  read_displacement(const std::string          &file_name,
+                    const ElasticUnknowns<dim> &unknowns)
   {
-    std::ifstream file = open_plain_file(file_name);
-    DofVector     u(n_dofs);
+    const unsigned int n_dofs = unknowns.n_dofs();
+    std::ifstream      file   = open_plain_file(file_name);
+    DofVector          u(n_dofs);
     for (double &value : u)
       file >> value;
     if (!file || !(file >> std::ws).eof())
       throw std::invalid_argument(
         file_name + " is not the displacement of a scene with " +
         std::to_string(n_dofs) + " degrees of freedom");
-    return u;
+    const auto order = unknowns.serial_order();
+    DofVector  result(n_dofs);
+    for (unsigned int i = 0; i < n_dofs; ++i)
+      result(i) = u(order[i]);
+    return result;
   }
+
+
+
+  template decltype(write_displacement<2>) write_displacement<2>;
+  template decltype(write_displacement<3>) write_displacement<3>;
+  template decltype(read_displacement<2>)  read_displacement<2>;
+  template decltype(read_displacement<3>)  read_displacement<3>;
 } // namespace Debond

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/memory.h>
 #include <debond/input/bad_input.h>
-#include <debond/linear_algebra/condensation.h>
+#include <debond/linear_algebra/cholmod_factor.h>
 #include <debond/solve/method_choice.h>
 
 #include <algorithm>
@@ -213,7 +213,9 @@ namespace Debond
         choice.linear_solver == LinearSolver::direct)
       {
         const FactorisationCost cost =
-          factorisation_cost(scene.problem().matrix(),
+          factorisation_cost({scene.problem().matrix(),
+                              unknowns.dof_handler().locally_owned_dofs(),
+                              scene.ranks()},
                              unknowns.contact().normals(),
                              dim);
         // The factor, A in it while it is made, S and what is made of it.

@@ -3,48 +3,8 @@
 
 #include <debond/solve/refine_result.h>
 
-#include <limits>
-#include <sstream>
-
 namespace Debond
 {
-  namespace
-  {
-    using Vector = DofVector;
-
-
-
-    /// Refinement knows no ranks.
-    template <int dim>
-    std::string
-    note_on_rounding(const Scene<dim> &scene, const Vector &u)
-    {
-      const ProblemPiece<dim> &piece = *scene.piece();
-      Vector                   terms = u;
-      for (unsigned int i = 0; i < u.size(); ++i)
-        terms(i) *= scene.problem().unknowns().is_constrained(i) ?
-                      0. :
-                      scene.problem().diagonal_entry(i);
-      const Eigen::VectorXd s = scene.contact_trace(u);
-      const double          energy =
-        piece.nodes().product(scene.problem().load().begin(), u.begin()) -
-        scene.adhesion().subgradient(s).dot(s);
-      const double rounding = std::numeric_limits<double>::epsilon() *
-                              piece.nodes().product(terms.begin(), u.begin());
-      if (rounding <= allowed_energy_rounding(scene.n_unknowns()) * energy)
-        return "";
-      std::ostringstream note;
-      note.precision(1);
-      note << std::scientific << "in double precision rounding can change "
-           << rounding / energy
-           << " of the strain energy; only one rank would refine the result in "
-              "extended precision.";
-      return note.str();
-    }
-  } // namespace
-
-
-
   template <int dim>
   bool
   refine_result(const Scene<dim> &scene,
@@ -57,20 +17,6 @@ namespace Debond
                             result.status == SolverStatus::no_descent;
     if (!can_be_verified(result.status) && !has_failed)
       return false;
-    if (has_failed && scene.piece() != nullptr)
-      {
-        result.message +=
-          " If rounding is the cause, as on very slender bodies, one rank in "
-          "place of several will do, which refines in extended precision.";
-        return false;
-      }
-    if (scene.piece() != nullptr)
-      {
-        const std::string note = note_on_rounding(scene, result.u);
-        if (!note.empty())
-          result.notes.push_back(note);
-        return !note.empty();
-      }
     const dealii::Timer   timer;
     const Eigen::VectorXd before =
       scene.problem().unknowns().contact().trace(result.u);

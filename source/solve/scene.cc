@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/ranks.h>
 #include <debond/base/run_watch.h>
 #include <debond/base/text.h>
 #include <debond/check/error_estimate.h>
 #include <debond/elasticity/temperature_load.h>
 #include <debond/input/bad_input.h>
 #include <debond/input/probe_parameters.h>
+#include <debond/mesh/distributed_mesh.h>
+#include <debond/mesh/owned_cells.h>
 #include <debond/solve/displacement.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/scene_conditions.h>
 #include <debond/solve/scene_loads.h>
 
+#include <boost/serialization/set.hpp>
+
 #include <algorithm>
-#include <functional>
 #include <set>
 
 namespace Debond
@@ -26,8 +30,7 @@ namespace Debond
     DofVector
     read_start(const std::string &file_name, const ElasticProblem<dim> &problem)
     {
-      const DofVector u =
-        read_displacement(file_name, problem.unknowns().n_dofs());
+      const DofVector u = read_displacement(file_name, problem.unknowns());
       bool admissible = true;
       for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
         admissible =
@@ -61,93 +64,57 @@ namespace Debond
 
 
   template <int dim>
-  Scene<dim>::Scene(const ProblemParameters &given, const std::string &start)
-    : Scene(given,
-            std::dynamic_pointer_cast<const Body<dim>>(given.body),
-            start)
-  {}
-
-
-
-  template <int dim>
-  Scene<dim>::Scene(const ProblemParameters         &given,
-                    std::shared_ptr<const Body<dim>> body,
-                    const std::string               &start)
-    : Scene(given, std::move(body), start, nullptr, MPI_COMM_NULL)
-  {}
-
-
-
-  template <int dim>
   Scene<dim>::Scene(const ProblemParameters         &given,
                     std::shared_ptr<const Body<dim>> body,
                     const std::string               &start,
-                    const BodyPiece<dim>            *body_piece,
                     const MPI_Comm                   ranks)
     : given(given)
     , elastic_body(std::move(body))
     , body_materials(given.materials.everywhere)
   {
     const Stage   stage("assembly");
-    BoundaryNames boundaries;
     dealii::Timer timer;
-    std::string   entry = "Mesh/Lengths"; // that errors belong to
-    // Returns what is wrong.
-    const auto attempt = [&](const std::function<void()> &action) {
+    std::string   entry    = "Mesh/Lengths"; // that errors belong to
+    const auto    describe = [&](const std::invalid_argument &error) {
+      if (const auto *load = dynamic_cast<const LoadError *>(&error))
+        entry = load->entry;
+      if (dynamic_cast<const TemperatureError *>(&error) != nullptr)
+        entry = "Loads/Temperature change";
+      if (const auto *piece = dynamic_cast<const PieceError *>(&error))
+        entry = piece->entry;
+      if (const auto *part = dynamic_cast<const PartError *>(&error))
+        entry = "Parts/" + part->part;
+      if (const auto *support = dynamic_cast<const SupportError *>(&error))
+        entry = entry_of(*support, given.supports);
+      if (const auto *probe = dynamic_cast<const ProbeError *>(&error))
+        entry = "Probes/" + probe->probe;
+      if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))
+        {
+          const std::string everywhere = bonds->is_threshold ?
+                                           "Contact law/Bond threshold" :
+                                           given.law.stiffness_entry;
+          entry                        = everywhere + ' ' + bonds->boundary;
+          if (given.locations.count(entry) == 0)
+            entry = everywhere;
+        }
+      return given.locations.at(entry) + ": " + entry + ": " + error.what();
+    };
+    on_all_ranks(ranks, [&]() {
       try
         {
-          action();
-          return std::string();
+          add_problem(ranks, entry);
+          entry = "Contact law/Quadrature";
+          add_contact();
+          entry = "Solver/Euclidean bundle/Start";
+          add_start(start);
         }
       catch (const std::invalid_argument &error)
         {
-          if (const auto *load = dynamic_cast<const LoadError *>(&error))
-            entry = load->entry;
-          if (dynamic_cast<const TemperatureError *>(&error) != nullptr)
-            entry = "Loads/Temperature change";
-          if (const auto *piece = dynamic_cast<const PieceError *>(&error))
-            entry = piece->entry;
-          if (const auto *part = dynamic_cast<const PartError *>(&error))
-            entry = "Parts/" + part->part;
-          if (const auto *support = dynamic_cast<const SupportError *>(&error))
-            entry = entry_of(*support, given.supports);
-          if (const auto *probe = dynamic_cast<const ProbeError *>(&error))
-            entry = "Probes/" + probe->probe;
-          if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))
-            {
-              const std::string everywhere = bonds->is_threshold ?
-                                               "Contact law/Bond threshold" :
-                                               given.law.stiffness_entry;
-              entry                        = everywhere + ' ' + bonds->boundary;
-              if (given.locations.count(entry) == 0)
-                entry = everywhere;
-            }
-          return given.locations.at(entry) + ": " + entry + ": " + error.what();
+          if (dynamic_cast<const ErrorElsewhere *>(&error) != nullptr)
+            throw;
+          throw BadInput({describe(error)});
         }
-    };
-
-    const auto throw_error_of_any = [&](const std::string &own_error) {
-      std::vector<std::string> errors = {own_error};
-      if (body_piece != nullptr)
-        errors = dealii::Utilities::MPI::all_gather(ranks, own_error);
-      for (const std::string &error : errors)
-        if (!error.empty())
-          throw BadInput({error});
-    };
-
-    throw_error_of_any(
-      attempt([&]() { add_problem(body_piece, boundaries, entry); }));
-    if (body_piece != nullptr)
-      problem_piece =
-        std::make_unique<const ProblemPiece<dim>>(*body_piece,
-                                                  elastic_problem->unknowns(),
-                                                  ranks);
-    throw_error_of_any(attempt([&]() {
-      entry = "Contact law/Quadrature";
-      add_contact();
-      entry = "Solver/Euclidean bundle/Start";
-      add_start(start);
-    }));
+    });
     add_notes();
     seconds_for_assembly = timer.wall_time() - seconds_for_mesh;
   }
@@ -156,16 +123,16 @@ namespace Debond
 
   template <int dim>
   void
-  Scene<dim>::add_problem(const BodyPiece<dim> *body_piece,
-                          BoundaryNames        &boundaries,
-                          std::string          &entry)
+  Scene<dim>::add_problem(const MPI_Comm ranks, std::string &entry)
   {
     dealii::Timer    timer;
     const PieceNames names = [&]() {
-      const Stage stage("mesh");
-      return elastic_body->make_mesh(triangulation);
+      const Stage          stage("mesh");
+      DistributedMesh<dim> mesh = make_distributed_mesh(*elastic_body, ranks);
+      triangulation             = std::move(mesh.triangulation);
+      return mesh.names;
     }();
-    boundaries       = names.boundaries;
+    const BoundaryNames &boundaries = names.boundaries;
     body_notes       = names.notes;
     seconds_for_mesh = timer.wall_time();
 
@@ -173,24 +140,22 @@ namespace Debond
     boundary_conditions = make_conditions(given, boundaries);
     body_supports       = make_supports<dim>(given, boundary_conditions);
     elastic_problem     = std::make_unique<ElasticProblem<dim>>(
-      triangulation,
-      boundary_conditions,
-      body_supports,
-      given.degree,
-      body_piece == nullptr ? std::vector<unsigned int>() :
-                                  node_order(*body_piece, triangulation));
+      *triangulation, boundary_conditions, body_supports, given.degree);
     check_held_vertices(elastic_problem->unknowns(),
                         displacement_factors(given.load_path));
     entry                                   = "Material/Poisson ratio";
     const std::set<std::string> &dead_loads = given.load_path.dead_loads;
     body_loads                              = make_loads<dim>(
-      given.loads, dead_loads, false, boundaries, triangulation);
+      given.loads, dead_loads, false, boundaries, *triangulation);
     body_dead_loads =
-      make_loads<dim>(given.loads, dead_loads, true, boundaries, triangulation);
+      make_loads<dim>(given.loads, dead_loads, true, boundaries, *triangulation);
     body_materials = make_materials(given.materials, names.regions);
     std::set<double> moduli;
-    for (const auto &cell : triangulation.active_cell_iterators())
+    for (const auto &cell : owned_cells(*triangulation))
       moduli.insert(body_materials(cell->material_id()).young_modulus);
+    for (const std::set<double> &of_rank :
+         dealii::Utilities::MPI::all_gather(ranks, moduli))
+      moduli.insert(of_rank.begin(), of_rank.end());
     // Where parts meet both are in one sum, of whose 16 digits the softer one
     // has four left.
     if (!moduli.empty() && *moduli.rbegin() > 1e12 * *moduli.begin())
@@ -206,10 +171,9 @@ namespace Debond
     piece_means = Probes<dim>(elastic_problem->unknowns(),
                               names,
                               means_of_pieces<dim>(names));
-    if (body_piece == nullptr)
-      named_probes = Probes<dim>(elastic_problem->unknowns(),
-                                 names,
-                                 make_probes<dim>(given.probes));
+    named_probes = Probes<dim>(elastic_problem->unknowns(),
+                               names,
+                               make_probes<dim>(given.probes));
   }
 
 
@@ -287,42 +251,15 @@ namespace Debond
                      boundary_conditions,
                      body_supports,
                      Loads<dim>(),
-                     Vector(elastic_problem->unknowns().n_dofs()),
+                     DofVector(elastic_problem->unknowns().n_dofs()),
                      0.);
-    if (problem_piece)
-      return;
-    energy = std::make_unique<Functional<dim, dealii::SparseMatrix<double>>>(
-      elastic_problem->matrix(),
+    energy = std::make_unique<Functional<dim>>(
+      [this](DofVector &dst, const DofVector &src) {
+        elastic_problem->vmult(dst, src);
+      },
       elastic_problem->load(),
       elastic_problem->unknowns().contact(),
       *adhesion_integral);
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  Scene<dim>::n_cells() const
-  {
-    return problem_piece ? static_cast<unsigned int>(elastic_body->n_cells()) :
-                           triangulation.n_active_cells();
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  Scene<dim>::n_unknowns() const
-  {
-    const ElasticUnknowns<dim> &unknowns = elastic_problem->unknowns();
-    if (!problem_piece)
-      return unknowns.n_free_dofs();
-    unsigned int own = 0;
-    for (const auto &[begin, end] : problem_piece->nodes().own_ranges())
-      for (unsigned int i = begin * dim; i < end * dim; ++i)
-        own += !unknowns.is_constrained(i);
-    return dealii::Utilities::MPI::sum(own,
-                                       problem_piece->nodes().communicator());
   }
 
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/function.h>
+#include <deal.II/base/mpi.h>
 
 #include <debond/input/expression.h>
+#include <debond/mesh/owned_cells.h>
 #include <debond/solve/scene_loads.h>
 
 namespace Debond
@@ -38,9 +40,12 @@ namespace Debond
         if (load.kind == "Force")
           {
             double measure = 0.;
-            for (const auto &face : mesh.active_face_iterators())
-              if (face->at_boundary() && ids.count(face->boundary_id()) > 0)
-                measure += face->measure();
+            for (const auto &cell : owned_cells(mesh))
+              for (const auto &face : cell->face_iterators())
+                if (face->at_boundary() && ids.count(face->boundary_id()) > 0)
+                  measure += face->measure();
+            measure =
+              dealii::Utilities::MPI::sum(measure, mesh.get_communicator());
             std::vector<double> density(dim);
             for (unsigned int d = 0; d < dim; ++d)
               density[d] = value->value(dealii::Point<dim>(), d) / measure;

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
-
 #include <debond/base/interrupt.h>
 #include <debond/base/text.h>
 #include <debond/elasticity/contact_condensation.h>
@@ -107,16 +105,9 @@ namespace Debond
     SolveResult result;
     {
       const InterruptGuard guard;
-      const MPI_Comm       ranks = scene.piece() == nullptr ?
-                                     MPI_COMM_NULL :
-                                     scene.piece()->nodes().communicator();
-      const bool           is_logged =
-        out != nullptr &&
-        (scene.piece() == nullptr ||
-         dealii::Utilities::MPI::this_mpi_process(ranks) == 0);
-      const auto watch =
-        is_logged ? std::make_unique<Watch>(guard, *out, terminal, ranks) :
-                    std::make_unique<Watch>(guard, ranks);
+      const auto           watch =
+        out != nullptr ? std::make_unique<Watch>(guard, *out, terminal) :
+                         std::make_unique<Watch>(guard);
       if (choice.method == SolverMethod::euclidean_bundle)
         solve_by_euclidean_bundle(parameters.bundle, scene, *watch, result);
       else if (choice.linear_solver == LinearSolver::multigrid)

@@ -46,9 +46,7 @@ namespace Debond
   functional_of(const Scene<dim> &scene, const DofVector &u)
   {
     const ElasticProblem<dim> &problem = scene.problem();
-    return (scene.piece() == nullptr ?
-              problem.fields().elastic_functional(u) :
-              scene.piece()->elastic_functional(problem.fields(), u)) +
+    return problem.fields().elastic_functional(u) +
            scene.adhesion().energy(scene.contact_trace(u));
   }
 

@@ -21,11 +21,17 @@ namespace Debond
    * is replaced.
    *
    * Throws std::runtime_error with the file and the system's reason if it
-   * cannot be written; exceptions of @p write pass through.
+   * cannot be written; exceptions of @p write pass through. To be called by all
+   * ranks, of which the first one writes.
    */
   void
   write_atomically(const std::string                         &file_name,
                    const std::function<void(std::ostream &)> &write);
+
+  /// The same by this rank alone.
+  void
+  write_own_file(const std::string                         &file_name,
+                 const std::function<void(std::ostream &)> &write);
 } // namespace Debond
 
 #endif

@@ -21,10 +21,20 @@ namespace Debond
 
     InterruptGuard(const InterruptGuard &) = delete;
 
-    /// Whether a signal has arrived under a guard. Loops ask it before each
+    /// Whether a signal has arrived under a guard, at any of the ranks that
+    /// were started together: all of them have to ask. Loops ask it before each
     /// piece of work that can take a good part of a second.
     static bool
     requested();
+
+    /// The same for loops of which each rank, or each thread, has its own: on
+    /// several ranks what requested() has last said.
+    static bool
+    noticed();
+
+    /// Whether this process has had a signal.
+    static bool
+    arrived();
 
   private:
     struct sigaction previous_int;

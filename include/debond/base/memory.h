@@ -13,8 +13,9 @@ namespace Debond
   double
   peak_memory();
 
-  /// What the process may still take, in bytes: of @p limit, which is for all
-  /// of it, or of what the system can give, if that is 0.
+  /// What each process may still take, in bytes: of @p limit, which is for all
+  /// of it, or of what the system can give, if that is 0. To be called by all
+  /// ranks.
   double
   memory_left(const double limit);
 

@@ -4,7 +4,7 @@
 
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/elasticity/problem_piece.h>
+#include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/dof_vector.h>
 
 #include <string>
@@ -73,9 +73,8 @@ namespace Debond
    * std::invalid_argument with the place if a load or a bond is none at a point
    * of a face that the solution did not ask for.
    *
-   * Ranks that share a problem, of which @p piece is this one's, call it
-   * together: `cells` are then those of the piece, right at its own ones, and
-   * the rest is the whole's on the first rank, which alone needs J(u).
+   * To be called by all ranks that share the problem: `cells` are those of the
+   * mesh that a rank has, right at its own ones, all else is the whole's.
    */
   template <int dim>
   ErrorEstimate
@@ -87,8 +86,7 @@ namespace Debond
                  const DofVector             &u,
                  const double                 functional,
                  const LoadFactors            factors    = 1.,
-                 const Loads<dim>            *dead_loads = nullptr,
-                 const ProblemPiece<dim>     *piece      = nullptr);
+                 const Loads<dim>            *dead_loads = nullptr);
 } // namespace Debond
 
 #endif

@@ -3,7 +3,8 @@
 #define debond_check_probes_h
 
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/elasticity/problem_piece.h>
+#include <debond/elasticity/elastic_problem.h>
+#include <debond/mesh/body.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/body.h>
 
@@ -66,18 +67,16 @@ namespace Debond
     Probes() = default;
 
     /// @p pieces: of the mesh of @p unknowns. Throws ProbeError, or
-    /// std::out_of_range if there is no such piece.
+    /// std::out_of_range if there is no such piece. To be called by all ranks,
+    /// and so is values().
     Probes(const ElasticUnknowns<dim>    &unknowns,
            const PieceNames              &pieces,
            const std::vector<Probe<dim>> &probes);
 
-    /// Ranks that share a problem, of which @p piece is this one's, call it
-    /// together, and the first one has the values; they cannot ask for points.
     ProbeValues<dim>
     values(const ElasticProblem<dim> &problem,
            const DofVector           &u,
-           const LoadFactors          factors = 1.,
-           const ProblemPiece<dim>   *piece   = nullptr) const;
+           const LoadFactors          factors = 1.) const;
 
   private:
     /// Of nodes, by their first unknowns, which all the others follow.

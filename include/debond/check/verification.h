@@ -6,7 +6,7 @@
 
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/elasticity/problem_piece.h>
+#include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/dof_vector.h>
 
 #include <map>
@@ -165,8 +165,7 @@ namespace Debond
   /// contact and kink for ContactNodeState::state (and for nothing else). So
   /// does a gap under pressure within the node's violation and 1e-3 L_i.
   ///
-  /// Where ranks share the problem all of them call it with their @p piece, and
-  /// the first one has the result, with the sums of one rank.
+  /// To be called by all ranks that share the problem; all have the result.
   template <int dim>
   Verification<dim>
   verify(const ElasticProblem<dim>   &problem,
@@ -174,8 +173,7 @@ namespace Debond
          const AdhesiveLaw           &law,
          const DofVector             &u,
          const LoadFactors            factors   = 1.,
-         const double                 tolerance = 1e-6,
-         const ProblemPiece<dim>     *piece     = nullptr);
+         const double                 tolerance = 1e-6);
 } // namespace Debond
 
 #endif

@@ -78,6 +78,9 @@ namespace Debond
       /// The piece of the body's boundary that it belongs to.
       dealii::types::boundary_id id = 0;
 
+      /// Its place in the order of the cells of the whole mesh.
+      dealii::types::coarse_cell_id cell = 0;
+
       /// Of the k-th coefficient, see `nodes`.
       unsigned int
       node(const unsigned int k) const

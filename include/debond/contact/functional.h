@@ -6,6 +6,8 @@
 #include <debond/contact/contact_space.h>
 #include <debond/optimization/objective.h>
 
+#include <functional>
+
 namespace Debond
 {
   /**
@@ -14,13 +16,16 @@ namespace Debond
    *     J(v) = 1/2 <A v, v> - <f, v> + int_{Gamma_C} j_1(v_nu) dGamma
    *
    * on the vector of all degrees of freedom, with one Clarke subgradient.
-   * Needs of MatrixType only vmult(). Keeps references to its arguments.
+   * Keeps references to its arguments but the first.
    */
-  template <int dim, typename MatrixType>
+  template <int dim>
   class Functional : public Objective
   {
   public:
-    Functional(const MatrixType            &A,
+    /// Makes of a vector, the second one, its product with A.
+    using Product = std::function<void(DofVector &, const DofVector &)>;
+
+    Functional(const Product               &multiply,
                const DofVector             &f,
                const ContactSpace<dim>     &contact,
                const AdhesionIntegral<dim> &adhesion);
@@ -39,7 +44,7 @@ namespace Debond
   private:
     class Line;
 
-    const MatrixType            &A;
+    const Product                multiply;
     const DofVector             &f;
     const ContactSpace<dim>     &contact;
     const AdhesionIntegral<dim> &adhesion;

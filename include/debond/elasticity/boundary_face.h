@@ -21,6 +21,7 @@ namespace Debond
   {
     static constexpr unsigned int maximum = n_coefficients(dim, 2);
 
+    dealii::types::coarse_cell_id           cell; ///< in the order of all
     dealii::types::boundary_id              id;
     unsigned int                            n_nodes; ///< vertices come first
     std::array<unsigned int, maximum>       indices; ///< of nodes
@@ -28,18 +29,26 @@ namespace Debond
     std::array<std::array<dealii::types::global_dof_index, dim>, maximum> dofs;
     double                 measure;
     dealii::Tensor<1, dim> normal; ///< outward unit normal
+
+    /// For Boost's serialisation.
+    template <typename Archive>
+    void
+    serialize(Archive &archive, const unsigned int)
+    {
+      archive &cell &id &n_nodes &indices &positions &dofs &measure &normal;
+    }
   };
 
 
 
-  /// The faces of these boundaries, in the order of the cells. Unless the mesh
-  /// is a piece, throws std::invalid_argument if one of them is not in it.
+  /// The faces of these boundaries, of all ranks and on each of them, in the
+  /// order of the cells. To be called by all ranks. Throws
+  /// std::invalid_argument if one of the boundaries is not in the mesh.
   template <int dim>
   std::vector<BoundaryFace<dim>>
   boundary_faces(const dealii::DoFHandler<dim>              &dofs,
                  const std::set<dealii::types::boundary_id> &boundaries,
-                 const BoundaryNames                        &names,
-                 const bool                                  is_piece);
+                 const BoundaryNames                        &names);
 } // namespace Debond
 
 #endif

@@ -40,7 +40,9 @@ namespace Debond
     const Stage stage("factorisation");
     const auto &normals = problem.unknowns().contact().normals();
     return Condensation(
-      problem.matrix(),
+      {problem.matrix(),
+       problem.unknowns().dof_handler().locally_owned_dofs(),
+       problem.unknowns().communicator()},
       problem.load(),
       {normals.begin(), normals.end()},
       [&](const unsigned int i) {
@@ -81,10 +83,11 @@ namespace Debond
   double
   stiffness_at_contact(const ElasticProblem<dim> &problem)
   {
-    const auto &normals = problem.unknowns().contact().normals();
-    double      sum     = 0.;
+    const auto     &normals  = problem.unknowns().contact().normals();
+    const DofVector diagonal = problem.diagonal();
+    double          sum      = 0.;
     for (const dealii::types::global_dof_index normal : normals)
-      sum += problem.matrix().diag_element(normal);
+      sum += diagonal(normal);
     return normals.empty() ? 0. : sum / static_cast<double>(normals.size());
   }
 

@@ -4,8 +4,7 @@
 
 #include <deal.II/lac/lapack_full_matrix.h>
 
-#include <debond/elasticity/elastic_levels.h>
-#include <debond/elasticity/multigrid.h>
+#include <debond/elasticity/displacement_problem.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/majorise/bound_qp.h>
@@ -59,67 +58,41 @@ namespace Debond
 
 
 
-  /// By a multigrid cycle of A; the bonds are left out.
+  /// By the truncated cycle.
   class MultigridCorrection : public CorrectionSolver
   {
   public:
-    /// Keeps a reference to the cycle. @p normals are the degrees of freedom of
-    /// the contact nodes.
-    MultigridCorrection(
-      const Multigrid                                    &cycle,
-      const std::vector<dealii::types::global_dof_index> &contact_normals)
-      : multigrid(cycle)
-      , normals(contact_normals)
+    /// Keeps references, and truncates the cycle.
+    MultigridCorrection(const ContactUnknowns  &contact,
+                        TruncatedMultigrid     &cycle,
+                        const dealii::IndexSet &own,
+                        const MPI_Comm          ranks)
+      : contact(contact)
+      , cycle(cycle)
+      , own(own)
+      , ranks(ranks)
     {}
 
     void
-    prepare(const Eigen::SparseMatrix<double> &, const ActiveSet &held) override
-    {
-      active = held;
-    }
-
-    DofVector
-    solve(const DofVector &r) const override;
-
-  private:
-    const Multigrid                             &multigrid;
-    std::vector<dealii::types::global_dof_index> normals;
-    ActiveSet                                    active;
-  };
-
-
-
-  /// By the truncated cycle of a level.
-  template <int dim>
-  class LevelCorrection : public CorrectionSolver
-  {
-  public:
-    /// Keeps a reference, and truncates the cycle.
-    explicit LevelCorrection(ElasticLevels<dim> &levels,
-                             const unsigned int  level = 0);
-
-    void
     prepare(const Eigen::SparseMatrix<double> &E,
-            const ActiveSet                   &held) override;
-
-    DofVector
-    solve(const DofVector &r) const override;
-
-    const ElasticLevels<dim> &
-    levels() const
+            const ActiveSet                   &held) override
     {
-      return elastic_levels;
+      contact.truncate(E, held, cycle);
     }
 
-    unsigned int
-    level() const
+    DofVector
+    solve(const DofVector &r) const override
     {
-      return l;
+      DistributedVector correction(own, ranks);
+      cycle.vmult(correction, distribute(r, own, ranks));
+      return gather(correction);
     }
 
   private:
-    ElasticLevels<dim> &elastic_levels;
-    const unsigned int  l;
+    const ContactUnknowns &contact;
+    TruncatedMultigrid    &cycle;
+    const dealii::IndexSet own;
+    const MPI_Comm         ranks;
   };
 } // namespace Debond
 

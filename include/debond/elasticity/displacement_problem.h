@@ -2,8 +2,10 @@
 #ifndef debond_elasticity_displacement_problem_h
 #define debond_elasticity_displacement_problem_h
 
-#include <debond/elasticity/correction_solver.h>
-#include <debond/linear_algebra/dof_vector.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <debond/linear_algebra/distributed_vector.h>
+#include <debond/linear_algebra/truncated_multigrid.h>
 #include <debond/linear_algebra/views.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
@@ -16,6 +18,61 @@
 
 namespace Debond
 {
+  /// The unknowns of the contact nodes' normal displacements s, which all ranks
+  /// have, and which of them are held.
+  class ContactUnknowns
+  {
+  public:
+    /// @p own: the unknowns of this rank.
+    ContactUnknowns(
+      const std::vector<dealii::types::global_dof_index> &normals,
+      const dealii::IndexSet                             &own,
+      const MPI_Comm                                      ranks)
+      : normals(normals)
+      , own(own)
+      , ranks(ranks)
+    {}
+
+    unsigned int
+    size() const
+    {
+      return static_cast<unsigned int>(normals.size());
+    }
+
+    /// The entries of v, on all ranks.
+    Eigen::VectorXd
+    trace(const DistributedVector &v) const;
+
+    /// v += the entries s.
+    void
+    add(const VectorView &s, DistributedVector &v) const;
+
+    /// Makes the entries those of s.
+    void
+    set(const VectorView &s, DistributedVector &v) const;
+
+    /// Makes the entries of held nodes zero.
+    void
+    set_zero(const ActiveSet &held, DistributedVector &v) const;
+
+    /// The rows and columns of A.
+    Eigen::SparseMatrix<double>
+    block_of(const dealii::TrilinosWrappers::SparseMatrix &A) const;
+
+    /// Prepares a cycle for A + E where nodes are held.
+    void
+    truncate(const Eigen::SparseMatrix<double> &E,
+             const ActiveSet                   &held,
+             TruncatedMultigrid                &cycle) const;
+
+  private:
+    const std::vector<dealii::types::global_dof_index> normals;
+    const dealii::IndexSet                             own;
+    const MPI_Comm                                     ranks;
+  };
+
+
+
   /**
    * J = 1/2 <A u, u> - <f, u> + Phi(s), s <= 0, on all unknowns u, of which
    * some are the normal displacements s. Majorants are minimised by truncated
@@ -26,101 +83,61 @@ namespace Debond
    * and an exact line search.
    *
    * Residuals are Euclidean norms of forces, relative to the largest of the
-   * load, the internal forces and the forces of the foundation.
+   * load, the internal forces and the forces of the foundation. All functions
+   * are to be called by all ranks.
    */
   class DisplacementProblem : public MajorantProblem
   {
   public:
+    /// Keeps references; @p start is the current point, of which the normal
+    /// displacements have to be <= 0, @p cycle that of A.
+    DisplacementProblem(const dealii::TrilinosWrappers::SparseMatrix &A,
+                        const DistributedVector                      &load,
+                        const PiecewiseQuadratic                     &nonsmooth,
+                        const ContactUnknowns                        &contact,
+                        TruncatedMultigrid                           &cycle,
+                        DistributedVector                            &start);
+
+    /// Each linear iteration asks it whether it may go on, on all ranks alike.
+    /// If not, minimise() ends and leaves u as it was before.
+    std::function<bool()> may_go_on = []() { return true; };
+
     State
     evaluate() override;
 
     bool
     majorise() override;
 
-    /// As soon as may_go_on returns false, which each linear iteration asks, it
-    /// ends and leaves u as it was before.
     Minimisation
     minimise(const double tolerance) override;
 
-  protected:
-    /// Keeps references; @p start is the current point, of which the normal
-    /// displacements have to be <= 0, @p cycle the preconditioner.
-    DisplacementProblem(const DofVector                 &load,
-                        const PiecewiseQuadratic        &nonsmooth,
-                        const std::vector<unsigned int> &normals,
-                        CorrectionSolver                &cycle,
-                        DofVector                       &start,
-                        const std::function<bool()>     &go_on);
-
-    /// dst = A src.
-    virtual void
-    multiply(DofVector &dst, const DofVector &src) const = 0;
-
-    /// v += the columns of A of normal displacements, times @p factors.
-    virtual void
-    add_contact_columns(const Eigen::VectorXd &factors, DofVector &v) const = 0;
-
-    /// The entries of all normal displacements, and <a, b>: what ranks that
-    /// share the unknowns have to do together.
-    virtual Eigen::VectorXd
-    trace(const DofVector &v) const;
-
-    virtual double
-    product(const DofVector &a, const DofVector &b) const
-    {
-      return a * b;
-    }
-
-    /// The unknowns s, dealii::numbers::invalid_unsigned_int for those that
-    /// other ranks have.
-    const std::vector<unsigned int> normals;
-
-    // To be set before the first call.
-    DofVector                   diagonal;     ///< of A
-    Eigen::SparseMatrix<double> contact_rows; ///< and columns of s, of A
-
   private:
-    /// Products of deal.II's solvers.
-    class Vector;
-    struct LinearOperator;
-
-    double
-    norm(const DofVector &v) const;
-
-    /// v += the entries of all normal displacements, as far as they are here.
-    void
-    add_normal(const VectorView &s, DofVector &v) const;
+    using Vector = DistributedVector;
 
     /// Minus the majorant's gradient at u: a force for each unknown.
     void
-    majorant_force(DofVector &force) const;
-
-    /// dst = (A + E) src on the unknowns that are not active, zero on the
-    /// others.
-    void
-    multiply_majorant(DofVector &dst, const DofVector &src) const;
-
-    /// Sets the normals of active nodes to zero.
-    void
-    restrict_to_free(DofVector &v) const;
+    majorant_force(Vector &force) const;
 
     /// Minimises the majorant in one normal displacement after the other.
     void
-    smooth_contact(DofVector &force);
+    smooth_contact(Vector &force);
 
     /// Conjugate gradients to @p tolerance, an absolute one, with the nodes of
     /// the active set held. Returns false if they did not get there.
     bool
-    solve_majorant(const DofVector &force,
-                   const double     tolerance,
-                   DofVector       &correction,
-                   unsigned int    &n_iterations) const;
+    solve_majorant(const Vector &force,
+                   const double  tolerance,
+                   Vector       &correction,
+                   unsigned int &n_iterations) const;
 
-    const DofVector            &f;
-    const PiecewiseQuadratic   &phi;
-    CorrectionSolver           &cycle;
-    DofVector                  &u;
-    const std::function<bool()> may_go_on;
+    const dealii::TrilinosWrappers::SparseMatrix &A;
+    const Vector                                 &f;
+    const PiecewiseQuadratic                     &phi;
+    const ContactUnknowns                        &contact;
+    TruncatedMultigrid                           &cycle;
+    Vector                                       &u;
+    Vector                                        diagonal; ///< of A
+    const Eigen::SparseMatrix<double>             contact_block; ///< of A
 
     /// As of the last evaluate().
     double largest_force  = 0.; ///< what residuals are relative to
@@ -136,7 +153,6 @@ namespace Debond
     Eigen::SparseMatrix<double> cycle_E;
     ActiveSet                   cycle_active;
   };
-
 } // namespace Debond
 
 #endif

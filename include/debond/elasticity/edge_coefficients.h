@@ -2,10 +2,11 @@
 #ifndef debond_elasticity_edge_coefficients_h
 #define debond_elasticity_edge_coefficients_h
 
-#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/base/types.h>
+
+#include <debond/elasticity/boundary_face.h>
 
 #include <array>
-#include <set>
 #include <vector>
 
 namespace Debond
@@ -37,9 +38,10 @@ namespace Debond
     /// Of no edges.
     EdgeCoefficients() = default;
 
-    /// Of the edges of all faces of the @p contact boundary, of degree 1 none.
-    EdgeCoefficients(const dealii::DoFHandler<dim>              &dof_handler,
-                     const std::set<dealii::types::boundary_id> &contact);
+    /// Of the edges of all these faces, those of the contact boundary; of
+    /// degree 1 none. @p n_nodes: of the mesh.
+    EdgeCoefficients(const unsigned int                    n_nodes,
+                     const std::vector<BoundaryFace<dim>> &contact);
 
     /// The edge with this node in its middle; null if it has no coefficient.
     const Edge *

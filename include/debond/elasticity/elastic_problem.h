@@ -24,6 +24,9 @@ namespace Debond
    *
    * At constrained degrees of freedom A has only a diagonal entry: a positive
    * number of the size of the cells' own diagonal entries, without a meaning.
+   *
+   * Of A each rank has the rows of its own degrees of freedom, vectors are
+   * whole on all ranks. What computes is to be called by all of them.
    */
   template <int dim>
   class ElasticProblem
@@ -32,9 +35,10 @@ namespace Debond
     /// Throws as ElasticUnknowns does.
     ElasticProblem(const dealii::Triangulation<dim> &triangulation,
                    const BoundaryConditions         &conditions,
-                   const Supports<dim>              &supports   = {},
-                   const unsigned int                degree     = 1,
-                   const std::vector<unsigned int>  &node_order = {});
+                   const Supports<dim>              &supports = {},
+                   const unsigned int                degree   = 1)
+      : elastic_unknowns(triangulation, conditions, supports, degree)
+    {}
 
     /// Computes A and f. Throws std::invalid_argument if a material is not
     /// valid or a load is not, see load_vector() and
@@ -62,24 +66,28 @@ namespace Debond
     const ElasticFields<dim> &
     fields() const;
 
-    /// A.
+    /// The rows of A that this rank has; the others are zero.
     const dealii::SparseMatrix<double> &
     matrix() const
     {
       return system_matrix;
     }
 
-    /// A as Trilinos' multigrid reads it, made when it is asked for first.
-    /// Needs MPI.
-    const dealii::TrilinosWrappers::SparseMatrix &
-    trilinos_matrix() const;
+    /// dst = A src.
+    void
+    vmult(DofVector &dst, const DofVector &src) const
+    {
+      system_matrix.vmult(dst, src);
+      add_over_ranks(dst, elastic_unknowns.communicator());
+    }
 
     /// Of A.
-    double
-    diagonal_entry(const unsigned int i) const
-    {
-      return system_matrix.diag_element(i);
-    }
+    DofVector
+    diagonal() const;
+
+    /// A as Trilinos reads it, made when it is asked for first. Needs MPI.
+    const dealii::TrilinosWrappers::SparseMatrix &
+    trilinos_matrix() const;
 
     /// f - A G, what is applied together with what the lifting makes of it, at
     /// the free degrees of freedom.

@@ -99,22 +99,6 @@ namespace Debond
     elastic_functional(const DofVector  &u,
                        const LoadFactors factors = 1.) const;
 
-    /// What elastic_functional() sums up: the strain energies of the cells (of
-    /// degree 2 at each point of a cell) in their order, and the loads and the
-    /// displacements in the unknowns' frames.
-    struct Terms
-    {
-      std::vector<double> energies;
-      DofVector           load;
-      DofVector           displacement;
-
-      double
-      sum() const;
-    };
-
-    Terms
-    elastic_terms(const DofVector &u, const LoadFactors factors = 1.) const;
-
     /// The strain energy 1/2 <A u, u>, likewise.
     double
     strain_energy(const DofVector &u, const LoadFactors factors = 1.) const;
@@ -129,10 +113,10 @@ namespace Debond
     lifted(const DofVector &u, const LoadFactors factors) const;
 
     /// With a load given in the unknowns' frames.
-    Terms
-    terms(const DofVector  &u,
-          const LoadFactors factors,
-          const DofVector  &load) const;
+    double
+    functional(const DofVector  &u,
+               const LoadFactors factors,
+               const DofVector  &load) const;
 
     const ElasticUnknowns<dim>               &elastic_unknowns;
     ByRegion<Material>                        materials;

@@ -56,15 +56,12 @@ namespace Debond
     /// if supports contradict each other or the foundation, are not finite
     /// somewhere, or if a roller is not flat.
     ///
-    /// The mesh may be a piece of a larger one: then @p node_order (of degree
-    /// 1) has for each of its vertices the place in the order of the nodes,
-    /// which is that of the cells otherwise, boundaries may be missing, and
-    /// rigid motions are not looked at.
+    /// To be called by all ranks that share the mesh. All know all of what
+    /// supports and contact make of the unknowns.
     ElasticUnknowns(const dealii::Triangulation<dim> &triangulation,
                     const BoundaryConditions         &conditions,
-                    const Supports<dim>              &supports   = {},
-                    const unsigned int                degree     = 1,
-                    const std::vector<unsigned int>  &node_order = {});
+                    const Supports<dim>              &supports = {},
+                    const unsigned int                degree   = 1);
 
     ElasticUnknowns(const ElasticUnknowns &) = delete;
 
@@ -78,6 +75,13 @@ namespace Debond
     mapping() const
     {
       return mapping_p1;
+    }
+
+    /// Of the ranks that share the mesh.
+    MPI_Comm
+    communicator() const
+    {
+      return dofs.get_communicator();
     }
 
     /// Of the displacement's polynomials.
@@ -114,9 +118,14 @@ namespace Debond
     to_unknowns(const std::vector<dealii::types::global_dof_index> &cell_dofs,
                 dealii::FullMatrix<double> &cell_matrix) const;
 
-    /// Where the degrees of freedom are.
+    /// Where the degrees of freedom are. To be called by all ranks.
     std::vector<dealii::Point<dim>>
     positions() const;
+
+    /// For each degree of freedom the number that it has on one rank, for
+    /// files. To be called by all ranks.
+    std::vector<dealii::types::global_dof_index>
+    serial_order() const;
 
     unsigned int
     n_dofs() const

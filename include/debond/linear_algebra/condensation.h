@@ -2,10 +2,9 @@
 #ifndef debond_linear_algebra_condensation_h
 #define debond_linear_algebra_condensation_h
 
-#include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/sparse_matrix.h>
-
 #include <debond/linear_algebra/dof_vector.h>
+#include <debond/linear_algebra/elimination_factor.h>
+#include <debond/linear_algebra/matrix_on_ranks.h>
 #include <debond/linear_algebra/views.h>
 
 #include <functional>
@@ -26,22 +25,6 @@ namespace Debond
 
 
 
-  /// What the factorisation of a Condensation takes.
-  struct FactorisationCost
-  {
-    double operations; ///< floating point
-    double entries;    ///< of the factor, 8 bytes each
-  };
-
-  /// By the symbolic factorisation of the graph of nodes, each of which has @p
-  /// n_components successive rows of A. Throws std::bad_alloc.
-  FactorisationCost
-  factorisation_cost(const dealii::SparseMatrix<double> &A,
-                     const std::vector<unsigned int>    &kept,
-                     const unsigned int                  n_components);
-
-
-
   /**
    * The elastic problem condensed onto some of its unknowns s, here the normal
    * displacements of the contact nodes: with all others at equilibrium,
@@ -50,25 +33,26 @@ namespace Debond
    *
    * S being the Schur complement (discrete Steklov-Poincare operator) of A.
    *
-   * One supernodal Cholesky factorisation P A P' = L L' with the kept unknowns
-   * last gives everything: the trailing block L_ss of the factor has S = L_ss
-   * L_ss', L y = P f gives g = L_ss y_s and c_0 = -1/2 |y_i|^2, and L'x = (y_i,
-   * L_ss's) all unknowns for given s.
+   * A direct factorisation gives everything: CHOLMOD's on one rank, MUMPS' on
+   * several. Then all functions but schur_complement(), load() and
+   * condition_estimate(), the constructor and the destructor too, are to be
+   * called by all ranks; what they get has to be the same on all, but for the
+   * matrix, and what they return and throw is.
    */
   class Condensation
   {
   public:
     /// @p kept: the unknowns s in their order. @p is_excluded says which rows
     /// of A are left out (u = 0 there); on the others A has to be symmetric and
-    /// positive definite.
+    /// positive definite. It is not kept.
     ///
     /// If @p is_semidefinite, A needs to be definite only where s is zero, and
-    /// S is as singular as A: the factor is that of A with its diagonal entries
-    /// of s twice as large, S_+ = S + diag(A_ss) its Schur complement.
+    /// S is as singular as A; S_+ = S + diag(A_ss) is the Schur complement of A
+    /// with its diagonal entries of s twice as large.
     ///
     /// Throws std::runtime_error if A is not positive definite, std::bad_alloc
     /// if the factor does not fit into memory.
-    Condensation(const dealii::SparseMatrix<double>      &A,
+    Condensation(const MatrixOnRanks                     &A,
                  const DofVector                         &f,
                  const std::vector<unsigned int>         &kept,
                  const std::function<bool(unsigned int)> &is_excluded,
@@ -76,8 +60,6 @@ namespace Debond
                  const bool is_semidefinite                      = false);
 
     Condensation(const Condensation &) = delete;
-
-    ~Condensation();
 
     /// From now on f is @p factor times the load that the constructor got, but
     /// for its constant part and the one that has the @p second factor; S and
@@ -127,7 +109,7 @@ namespace Debond
     DofVector
     expand(const VectorView &s) const
     {
-      return backward(y, s);
+      return factor->expand(reduced, s);
     }
 
     /// u at equilibrium under another load, for the s that @p kept_unknowns
@@ -138,31 +120,16 @@ namespace Debond
             &kept_unknowns) const;
 
   private:
-    class Factor;
+    std::unique_ptr<const EliminationFactor> factor;
 
-    /// L^{-1} P f.
-    std::vector<double>
-    forward(const DofVector &f) const;
+    // Loads as the factor reduces them; empty for none.
+    Eigen::VectorXd reduced; ///< that of now
+    Eigen::VectorXd given;
+    Eigen::VectorXd constant; ///< the given one's constant part
+    Eigen::VectorXd second;   ///< and the one that has the second factor
 
-    /// L_ss y_s.
-    Eigen::VectorXd
-    condensed_load(const std::vector<double> &y) const;
-
-    /// u for y in the eliminated unknowns.
-    DofVector
-    backward(const std::vector<double> &y, const VectorView &s) const;
-
-    unsigned int              n;        ///< size of f
-    std::vector<unsigned int> unknowns; ///< rows of A, the kept ones last
-    std::unique_ptr<Factor>   factor;
-    std::vector<double>       y;          ///< L^{-1} P f of the load
-    std::vector<double>       given_y;    ///< of the given one
-    std::vector<double>       constant_y; ///< of its constant part, if any
-    std::vector<double>       second_y;   ///< of the one with a factor
     std::function<double(double, double)> other_energy;
     double                                constant_part = 0.; ///< of the energy
-    dealii::FullMatrix<double>            L_ss;
-    dealii::FullMatrix<double>            S;
     Eigen::VectorXd                       g;
   };
 } // namespace Debond

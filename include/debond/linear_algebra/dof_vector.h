@@ -2,16 +2,30 @@
 #ifndef debond_linear_algebra_dof_vector_h
 #define debond_linear_algebra_dof_vector_h
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/lac/vector.h>
+
+#include <debond/base/ranks.h>
 
 #include <Eigen/Core>
 
 namespace Debond
 {
   /// An entry for each degree of freedom: displacements u, loads f, residuals;
-  /// and what bundle methods minimise over.
+  /// and what bundle methods minimise over. All ranks have all entries, and the
+  /// same ones.
   /// What has an entry for each contact node is an Eigen vector.
   using DofVector = dealii::Vector<double>;
+
+
+
+  /// Adds up what ranks have found, each in its own cells, for all of them.
+  inline void
+  add_over_ranks(DofVector &v, const MPI_Comm ranks)
+  {
+    if (number_of_ranks(ranks) > 1)
+      dealii::Utilities::MPI::sum(v, ranks, v);
+  }
 
 
 

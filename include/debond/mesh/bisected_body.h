@@ -38,6 +38,17 @@ namespace Debond
       bisection.extend(values);
     }
 
+    /// In the order of the whole mesh.
+    const std::vector<dealii::Point<dim>> &
+    vertices() const
+    {
+      return bisection.vertices();
+    }
+
+    /// For each vertex of a part of the mesh its place there.
+    std::vector<unsigned int>
+    vertex_numbers(const dealii::Triangulation<dim> &part) const;
+
     /// Of each cell the one of the mesh that this one is refined() from.
     const std::vector<unsigned int> &
     ancestors() const

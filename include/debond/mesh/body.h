@@ -6,7 +6,7 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/grid/tria.h>
 
-#include <debond/linear_algebra/multigrid/interpolation.h>
+#include <debond/mesh/interpolation.h>
 
 #include <array>
 #include <functional>

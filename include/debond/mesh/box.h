@@ -3,6 +3,7 @@
 #define debond_mesh_box_h
 
 #include <debond/mesh/body.h>
+#include <debond/mesh/crossed_mesh.h>
 
 namespace Debond
 {
@@ -35,6 +36,15 @@ namespace Debond
   void
   make_box(const BoxParameters        &parameters,
            dealii::Triangulation<dim> &crossed);
+
+  /// Of this mesh the simplices of the cells from @p begin on, so many in each
+  /// direction: see crossed_cells(). The boundary ids are those of box_sides(),
+  /// also where the part ends inside of the box.
+  template <int dim>
+  CellsAndVertices<dim>
+  part_of_box(const BoxParameters               &box,
+              const std::array<unsigned int, 3> &begin,
+              const std::array<unsigned int, 3> &n_cells);
 
 
 

@@ -28,10 +28,28 @@ namespace Debond
   crossed_subdivision(const dealii::Triangulation<dim> &coarse,
                       dealii::Triangulation<dim>       &crossed);
 
+  /// What dealii::Triangulation::create_triangulation() takes.
+  template <int dim>
+  struct CellsAndVertices
+  {
+    std::vector<dealii::Point<dim>>    vertices;
+    std::vector<dealii::CellData<dim>> cells;
+    dealii::SubCellData                faces;
+  };
+
   /// The same of some cells of a mesh, in this order: simplices and vertices
   /// are to the last bit and in the order in which the whole has them, but for
-  /// those that are not there. Faces inside of the body at which the cells end
-  /// get the id @p id_of_cuts.
+  /// those that are not there. The 4 (24) simplices of a coarse cell follow
+  /// each other, face by face, and have their vertices on that face first.
+  /// Faces inside of the body at which the cells end get the id @p id_of_cuts.
+  template <int dim>
+  CellsAndVertices<dim>
+  crossed_cells(
+    const std::vector<typename dealii::Triangulation<dim>::cell_iterator>
+                                    &coarse_cells,
+    const dealii::types::boundary_id id_of_cuts);
+
+  /// The mesh of these. @p crossed must be empty.
   template <int dim>
   void
   crossed_part(

@@ -4,7 +4,7 @@
 
 #include <debond/check/error_estimate.h>
 #include <debond/check/verification.h>
-#include <debond/elasticity/problem_piece.h>
+#include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/dof_vector.h>
 
 #include <string>
@@ -24,7 +24,9 @@ namespace Debond
    * cell data, where P1 elements have them, stress components (with stress_zz
    * in plane strain), von Mises stress, strain-energy density, if
    * @p estimate is not null the estimated error of J per volume, and @p more.
-   * Throws std::runtime_error naming the file if it cannot be written.
+   * To be called by all ranks: of several each one writes its own cells as
+   * *.rankN.vtu, and the first one *.pvtu, which joins them. Throws
+   * std::runtime_error naming the file if it cannot be written.
    */
   template <int dim>
   void
@@ -35,16 +37,9 @@ namespace Debond
                  const ErrorEstimate          *estimate = nullptr,
                  const std::vector<CellField> &more     = {});
 
-  /// Each of several ranks writes what write_body_vtu() does of its own cells
-  /// as body.rankN.vtu, and the first one body.pvtu, which joins them. Returns
-  /// the paths of what the rank has written; throws as above.
-  template <int dim>
-  std::vector<std::string>
-  write_body_pieces(const ElasticProblem<dim> &problem,
-                    const ProblemPiece<dim>   &piece,
-                    const DofVector           &u,
-                    const ErrorEstimate       *estimate,
-                    const std::string         &directory);
+  /// The file that shows all, of one called @p file_name.
+  std::string
+  joined_file(const std::string &file_name, const MPI_Comm ranks);
 
   /**
    * Writes the contact boundary as VTU: displacement, u_nu, gap (-u_nu),

@@ -2,8 +2,6 @@
 #ifndef debond_program_run_h
 #define debond_program_run_h
 
-#include <deal.II/base/mpi.h>
-
 #include <debond/input/parameters.h>
 #include <debond/output/output_files.h>
 #include <debond/output/record.h>
@@ -41,36 +39,12 @@ namespace Debond
    * there, before the solve, so that a directory without access costs no
    * time. Errors of the scene are thrown as BadInput before anything is
    * written; all other outcomes are told by the exit code and by
-   * a line on std::cerr.
+   * a line on std::cerr. To be called by all ranks, which share the scene: the
+   * first one writes log, messages and files.
    */
   template <int dim>
   ExitCode
   run(const Parameters &parameters, std::ostream &out, const bool terminal);
-
-
-
-  /// The number of processes that a launcher such as mpirun has started, as it
-  /// says in the environment; 1 if there is none. MPI need not be there yet.
-  unsigned int
-  n_started_ranks();
-
-  /// Starts MPI with one thread, unless it has been started, until the program
-  /// ends.
-  void
-  start_mpi();
-
-
-
-  /// run() by all ranks, which share the scene (BodyPiece): the first one
-  /// writes log, messages and files but body.pvtu, and all return its exit
-  /// code. There are no probes. Throws BadInput on all of them if they cannot
-  /// share the scene, before anything is written.
-  template <int dim>
-  ExitCode
-  run_on_ranks(const Parameters &parameters,
-               const MPI_Comm    ranks,
-               std::ostream     &out,
-               const bool        terminal);
 } // namespace Debond
 
 #endif

@@ -2,21 +2,29 @@
 #ifndef debond_solve_displacement_h
 #define debond_solve_displacement_h
 
+#include <debond/elasticity/unknowns.h>
 #include <debond/linear_algebra/dof_vector.h>
 
 #include <string>
 
 namespace Debond
 {
-  /// Writes all degrees of freedom as text, a line each, with all digits.
-  /// Throws std::runtime_error naming the file if it cannot be written.
+  /// Writes all degrees of freedom as text, a line each, with all digits, in
+  /// the order that they have on one rank. Throws std::runtime_error naming the
+  /// file if it cannot be written.
+  template <int dim>
   void
-  write_displacement(const DofVector &u, const std::string &file_name);
+  write_displacement(const ElasticUnknowns<dim> &unknowns,
+                     const DofVector            &u,
+                     const std::string          &file_name);
 
   /// Reads what write_displacement() wrote. Throws std::invalid_argument
-  /// naming the file if it has not @p n_dofs numbers and nothing else.
+  /// naming the file if it has not a number for each of the unknowns and
+  /// nothing else.
+  template <int dim>
   DofVector
-  read_displacement(const std::string &file_name, const unsigned int n_dofs);
+  read_displacement(const std::string          &file_name,
+                    const ElasticUnknowns<dim> &unknowns);
 } // namespace Debond
 
 #endif

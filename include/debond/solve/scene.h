@@ -5,7 +5,7 @@
 #include <debond/check/probes.h>
 #include <debond/contact/functional.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/elasticity/problem_piece.h>
+#include <debond/mesh/body.h>
 #include <debond/input/problem_parameters.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/by_region.h>
@@ -25,22 +25,22 @@ namespace Debond
   class Scene
   {
   public:
-    /// @p start: a file with start(), empty for the body at rest.
-    explicit Scene(const ProblemParameters &given,
-                   const std::string       &start = "");
-
-    /// On another mesh: that of @p body, which has the boundaries that the
-    /// problem names.
+    /// On the mesh of @p body, which has the boundaries that the problem names,
+    /// shared by @p ranks, all of which call it. @p start: a file with start(),
+    /// empty for the body at rest.
     Scene(const ProblemParameters         &given,
           std::shared_ptr<const Body<dim>> body,
-          const std::string               &start = "");
+          const std::string               &start = "",
+          const MPI_Comm                   ranks = MPI_COMM_SELF);
 
-    /// The piece that one of several ranks has. To be called by all of them; an
-    /// error of one is thrown by all. There are no probes.
-    Scene(const ProblemParameters              &given,
-          std::shared_ptr<const BodyPiece<dim>> piece,
-          const MPI_Comm                        ranks)
-      : Scene(given, piece, "", piece.get(), ranks)
+    /// On that of the problem's own body.
+    explicit Scene(const ProblemParameters &given,
+                   const std::string       &start = "",
+                   const MPI_Comm           ranks = MPI_COMM_SELF)
+      : Scene(given,
+              std::dynamic_pointer_cast<const Body<dim>>(given.body),
+              start,
+              ranks)
     {}
 
     Scene(const Scene &) = delete;
@@ -58,26 +58,23 @@ namespace Debond
       return *elastic_body;
     }
 
-    /// What ranks share; null if this is the whole scene.
-    const ProblemPiece<dim> *
-    piece() const
+    /// That share the scene.
+    MPI_Comm
+    ranks() const
     {
-      return problem_piece.get();
+      return elastic_problem->unknowns().communicator();
     }
 
-    /// The boundary and the normal displacements of the whole scene.
     const ContactBoundary<dim> &
     contact_boundary() const
     {
-      return problem_piece ? problem_piece->boundary() :
-                             elastic_problem->unknowns().contact().boundary();
+      return elastic_problem->unknowns().contact().boundary();
     }
 
     Eigen::VectorXd
     contact_trace(const DofVector &u) const
     {
-      return problem_piece ? problem_piece->trace(u) :
-                             elastic_problem->unknowns().contact().trace(u);
+      return elastic_problem->unknowns().contact().trace(u);
     }
 
     const ElasticProblem<dim> &
@@ -167,10 +164,16 @@ namespace Debond
 
     /// Triangles or tetrahedra, and free unknowns, of the whole scene.
     unsigned int
-    n_cells() const;
+    n_cells() const
+    {
+      return static_cast<unsigned int>(triangulation->n_global_active_cells());
+    }
 
     unsigned int
-    n_unknowns() const;
+    n_unknowns() const
+    {
+      return elastic_problem->unknowns().n_free_dofs();
+    }
 
     /// Wall seconds that the constructor took for the mesh.
     double
@@ -187,18 +190,10 @@ namespace Debond
     }
 
   private:
-    Scene(const ProblemParameters         &given,
-          std::shared_ptr<const Body<dim>> body,
-          const std::string               &start,
-          const BodyPiece<dim>            *body_piece,
-          const MPI_Comm                   ranks);
-
     /// All but what belongs to the contact boundary; @p entry is that of
     /// errors.
     void
-    add_problem(const BodyPiece<dim> *body_piece,
-                BoundaryNames        &boundaries,
-                std::string          &entry);
+    add_problem(const MPI_Comm ranks, std::string &entry);
 
     void
     add_start(const std::string &file);
@@ -212,7 +207,7 @@ namespace Debond
 
     const ProblemParameters                  given;
     std::shared_ptr<const Body<dim>>         elastic_body;
-    dealii::Triangulation<dim>               triangulation;
+    std::unique_ptr<dealii::Triangulation<dim>> triangulation;
     std::vector<std::string>                 body_notes;
     Probes<dim>                              named_probes;
     Probes<dim>                              piece_means;
@@ -222,7 +217,6 @@ namespace Debond
     Loads<dim>                               body_dead_loads;
     ByRegion<Material>                       body_materials;
     std::unique_ptr<ElasticProblem<dim>>     elastic_problem;
-    std::unique_ptr<const ProblemPiece<dim>> problem_piece;
     std::unique_ptr<AdhesiveLaw>             adhesive_law;
     std::unique_ptr<ContactQuadrature<dim>>  quadrature;
     std::unique_ptr<BondField<dim>>          bond_field;

@@ -2,8 +2,6 @@
 #ifndef debond_solve_watch_h
 #define debond_solve_watch_h
 
-#include <deal.II/base/mpi.h>
-
 #include <debond/base/run_watch.h>
 #include <debond/solve/progress.h>
 
@@ -17,19 +15,12 @@ namespace Debond
   class Watch
   {
   public:
-    /// Several ranks all do what the first one decides.
-    explicit Watch(const InterruptGuard &guard,
-                   const MPI_Comm        ranks = MPI_COMM_NULL)
+    explicit Watch(const InterruptGuard &guard)
       : guard(guard)
-      , ranks(ranks)
     {}
 
-    Watch(const InterruptGuard &guard,
-          std::ostream         &out,
-          const bool            terminal,
-          const MPI_Comm        ranks)
+    Watch(const InterruptGuard &guard, std::ostream &out, const bool terminal)
       : guard(guard)
-      , ranks(ranks)
       , progress(std::make_unique<Progress>(out, terminal))
       , log(&out)
     {}
@@ -77,10 +68,7 @@ namespace Debond
     bool
     may_go_on() const
     {
-      const bool is_requested = guard.requested();
-      return !(ranks == MPI_COMM_NULL ?
-                 is_requested :
-                 dealii::Utilities::MPI::broadcast(ranks, is_requested));
+      return !guard.requested();
     }
 
   private:
@@ -89,7 +77,6 @@ namespace Debond
 
     double                    offset = 0.;
     const InterruptGuard     &guard;
-    const MPI_Comm            ranks = MPI_COMM_NULL;
     std::unique_ptr<Progress> progress;
     std::ostream             *log = nullptr;
   };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/interrupt.h>
+#include <debond/base/processes.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/node_bound.h>
 #include <debond/optimization/majorise/condensed_problem.h>
@@ -183,7 +184,7 @@ namespace Debond
       {
         if (result.nodes >= parameters.maximum_nodes)
           return ProofStatus::node_limit;
-        if (seconds() > parameters.maximum_seconds)
+        if (any_rank(seconds() > parameters.maximum_seconds))
           return ProofStatus::time_limit;
         if (double(open.size()) * vectors_per_node * n * sizeof(double) >
             parameters.maximum_bytes)

@@ -170,7 +170,7 @@ namespace Debond
                                        problem.A(i, i),
                                        s(i) - gradient(i) / problem.A(i, i));
         // Any point has a bound.
-        if (places == old_places || InterruptGuard::requested())
+        if (places == old_places || InterruptGuard::noticed())
           return;
         const Eigen::VectorXd old_s = s;
         solve_for(places, problem, envelopes, s);

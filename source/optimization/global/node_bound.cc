@@ -85,7 +85,7 @@ namespace Debond
           {
             const std::size_t n_undecided = undecided().size();
             const bool        all_decided = n_undecided == 0;
-            if (InterruptGuard::requested() || !set_up(round == 0))
+            if (InterruptGuard::noticed() || !set_up(round == 0))
               break;
             minimise_relaxation(problem, envelopes, node.x);
             const LowerBound lower_bound(problem, node.x);

@@ -126,7 +126,7 @@ namespace Debond
           {
             result.status = SolverStatus::quadratic_program;
           }
-        if (!can_be_verified(result.status) && InterruptGuard::requested())
+        if (!can_be_verified(result.status) && InterruptGuard::noticed())
           result.status = SolverStatus::interrupted;
         result.x = result.x.cwiseMin(b);
         return result;
@@ -151,7 +151,7 @@ namespace Debond
       bool
       may_go_on() const
       {
-        return !InterruptGuard::requested() &&
+        return !InterruptGuard::noticed() &&
                result.steps < std::min(maximum_active_set_steps, 100 + 2 * n);
       }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_linear_algebra_multigrid_interpolation_h
-#define debond_linear_algebra_multigrid_interpolation_h
+#ifndef debond_mesh_interpolation_h
+#define debond_mesh_interpolation_h
 
 #include <cstddef>
 #include <vector>

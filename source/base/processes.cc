@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <debond/base/processes.h>
+#include <debond/base/ranks.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+namespace Debond
+{
+  unsigned int
+  n_started_ranks()
+  {
+    // Of Open MPI; of MPICH and those that come from it.
+    static const unsigned int n_ranks = []() {
+      int n = 1;
+      for (const char *const name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
+        if (const char *const text = std::getenv(name))
+          n = std::max(n, std::atoi(text));
+      return static_cast<unsigned int>(n);
+    }();
+    return n_ranks;
+  }
+
+
+
+  namespace
+  {
+    /// For what ranks say to each other when they end: elsewhere others may
+    /// still be waiting.
+    MPI_Comm for_the_end = MPI_COMM_NULL;
+  } // namespace
+
+
+
+  void
+  start_mpi()
+  {
+    // Who uses this as a library may have started it.
+    if (dealii::Utilities::MPI::job_supports_mpi())
+      return;
+    static int                                            argc = 0;
+    static char                                         **argv = nullptr;
+    static const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+    if (n_started_ranks() > 1)
+      MPI_Comm_dup(MPI_COMM_WORLD, &for_the_end);
+  }
+
+
+
+  bool
+  is_first_rank()
+  {
+    return rank_of_this(MPI_COMM_WORLD) == 0;
+  }
+
+
+
+  bool
+  any_rank(const bool is_so_here)
+  {
+    return dealii::Utilities::MPI::max(is_so_here ? 1 : 0, MPI_COMM_WORLD) == 1;
+  }
+
+
+
+  double
+  least_of_ranks(const double number_here)
+  {
+    return dealii::Utilities::MPI::min(number_here, MPI_COMM_WORLD);
+  }
+
+
+
+  std::optional<EndOfRanks>
+  end_together(const bool is_own, const int exit_code)
+  {
+    if (for_the_end == MPI_COMM_NULL)
+      return EndOfRanks{is_own, exit_code};
+    const int n = static_cast<int>(
+      number_of_ranks(for_the_end));
+    const int rank = static_cast<int>(
+      rank_of_this(for_the_end));
+    const int   own = is_own ? rank : n;
+    int         first, is_agreed = 0;
+    MPI_Request request;
+    MPI_Iallreduce(&own, &first, 1, MPI_INT, MPI_MIN, for_the_end, &request);
+    constexpr std::chrono::seconds patience(3);
+    const auto                     begin = std::chrono::steady_clock::now();
+    while (!is_agreed && std::chrono::steady_clock::now() - begin < patience)
+      {
+        MPI_Test(&request, &is_agreed, MPI_STATUS_IGNORE);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+    if (!is_agreed)
+      return {};
+    int code = exit_code;
+    MPI_Bcast(&code, 1, MPI_INT, first < n ? first : 0, for_the_end);
+    return EndOfRanks{first == rank, code};
+  }
+
+
+
+  void
+  end_all_ranks(const int exit_code)
+  {
+    MPI_Abort(MPI_COMM_WORLD, exit_code);
+  }
+} // namespace Debond

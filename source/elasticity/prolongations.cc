@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/utility.hpp>
+
+#include <debond/base/ranks.h>
+#include <debond/elasticity/prolongations.h>
+#include <debond/mesh/owned_cells.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Of a node whose unknowns are not Cartesian, or not free: x = to_unknowns
+    /// u and u = to_cartesian x, where rows and columns of unknowns that are
+    /// not free are zero.
+    template <int dim>
+    struct NodeFrame
+    {
+      dealii::Tensor<2, dim> to_unknowns  = dealii::unit_symmetric_tensor<dim>();
+      dealii::Tensor<2, dim> to_cartesian = dealii::unit_symmetric_tensor<dim>();
+    };
+
+    /// By the numbers of the nodes.
+    template <int dim>
+    using NodeFrames = std::map<unsigned int, NodeFrame<dim>>;
+
+
+
+    template <int dim>
+    NodeFrames<dim>
+    node_frames(const ElasticUnknowns<dim> &unknowns)
+    {
+      NodeFrames<dim> frames;
+      for (const auto &frame : unknowns.frames())
+        frames[frame.dofs[0] / dim] = {frame.to_frame, frame.to_cartesian};
+      for (const auto &line : unknowns.constraints().get_lines())
+        {
+          NodeFrame<dim>    &frame = frames[line.index / dim];
+          const unsigned int c     = line.index % dim;
+          for (unsigned int d = 0; d < dim; ++d)
+            frame.to_unknowns[c][d] = frame.to_cartesian[d][c] = 0.;
+        }
+      return frames;
+    }
+
+
+
+    /// A coarse node is like the node with a frame that depends most on it, by
+    /// at least one half: where meshes are nested, that is the same point. @p
+    /// first_point: of the interpolation among the finer nodes.
+    template <int dim>
+    NodeFrames<dim>
+    coarse_frames(const NodeFrames<dim> &fine,
+                  const Interpolation   &interpolation,
+                  const unsigned int     first_point,
+                  const MPI_Comm         ranks)
+    {
+      // For each coarse node the weight and the finer one.
+      using Choice = std::pair<float, unsigned int>;
+      std::map<unsigned int, Choice> chosen;
+      const auto offer = [&chosen](const unsigned int coarse,
+                                   const Choice      &choice) {
+        const auto [place, is_new] = chosen.emplace(coarse, choice);
+        if (!is_new && (choice.first > place->second.first ||
+                        (choice.first == place->second.first &&
+                         choice.second < place->second.second)))
+          place->second = choice;
+      };
+      constexpr float least_dependence = 0.5f;
+      for (unsigned int i = 0; i < interpolation.n_points(); ++i)
+        if (fine.count(first_point + i) > 0)
+          for (std::size_t k = interpolation.starts[i];
+               k < interpolation.starts[i + 1];
+               ++k)
+            if (interpolation.weights[k] >= least_dependence)
+              offer(interpolation.nodes[k],
+                    {interpolation.weights[k], first_point + i});
+      for (const auto &of_rank :
+           dealii::Utilities::MPI::all_gather(ranks, chosen))
+        for (const auto &[coarse, choice] : of_rank)
+          offer(coarse, choice);
+      NodeFrames<dim> result;
+      for (const auto &[coarse, choice] : chosen)
+        result[coarse] = fine.at(choice.second);
+      return result;
+    }
+
+
+
+    /// The rows of the unknowns of the finer nodes from @p first_point on.
+    template <int dim>
+    TruncatedMultigrid::Prolongation
+    between_unknowns(const Interpolation   &interpolation,
+                     const unsigned int     first_point,
+                     const NodeFrames<dim> &fine,
+                     const NodeFrames<dim> &coarse)
+    {
+      const auto frame_of = [](const NodeFrames<dim> &frames,
+                               const unsigned int     node) {
+        const auto frame = frames.find(node);
+        return frame == frames.end() ? nullptr : &frame->second;
+      };
+      TruncatedMultigrid::Prolongation result;
+      result.starts = {0};
+      for (unsigned int i = 0; i < interpolation.n_points(); ++i)
+        {
+          const NodeFrame<dim> *const to = frame_of(fine, first_point + i);
+          for (unsigned int c = 0; c < dim; ++c)
+            {
+              for (std::size_t k = interpolation.starts[i];
+                   k < interpolation.starts[i + 1];
+                   ++k)
+                {
+                  const unsigned int          j    = interpolation.nodes[k];
+                  const NodeFrame<dim> *const from = frame_of(coarse, j);
+                  // A row of the map from coarse to fine unknowns.
+                  dealii::Tensor<1, dim> row;
+                  row[c] = 1.;
+                  if (to != nullptr)
+                    row = to->to_unknowns[c];
+                  if (from != nullptr)
+                    row = row * from->to_cartesian;
+                  for (unsigned int d = 0; d < dim; ++d)
+                    if (row[d] != 0.)
+                      {
+                        result.columns.push_back(j * dim + d);
+                        result.values.push_back(interpolation.weights[k] *
+                                                row[d]);
+                      }
+                }
+              result.starts.push_back(result.columns.size());
+            }
+        }
+      return result;
+    }
+
+
+
+    /// Numbers the coarse nodes so that those of ranks follow each other, and
+    /// returns where those of this rank begin and end. @p vertices of the level
+    /// and its interpolation are renumbered.
+    template <int dim>
+    std::pair<unsigned int, unsigned int>
+    share(CoarseLevel<dim> &level, const MPI_Comm ranks)
+    {
+      const unsigned int n = static_cast<unsigned int>(level.vertices.size());
+      const unsigned int n_ranks = number_of_ranks(ranks);
+      const unsigned int rank = rank_of_this(ranks);
+      if (n_ranks == 1)
+        return {0, n};
+      std::vector<unsigned int> order(n), number(n);
+      std::iota(order.begin(), order.end(), 0U);
+      std::stable_sort(order.begin(),
+                       order.end(),
+                       [&level](const unsigned int a, const unsigned int b) {
+                         return level.slabs[a] < level.slabs[b];
+                       });
+      std::vector<dealii::Point<dim>> vertices(n);
+      for (unsigned int k = 0; k < n; ++k)
+        {
+          number[order[k]] = k;
+          vertices[k]      = level.vertices[order[k]];
+        }
+      level.vertices = std::move(vertices);
+      for (unsigned int &node : level.to_finer.nodes)
+        node = number[node];
+      const auto first = [&](const std::size_t k) {
+        return static_cast<unsigned int>(k * n / n_ranks);
+      };
+      return {first(rank), first(rank + 1)};
+    }
+
+
+
+    Interpolation
+    rows_of(const Interpolation &whole,
+            const unsigned int   begin,
+            const unsigned int   end)
+    {
+      Interpolation result;
+      result.n_nodes = whole.n_nodes;
+      for (unsigned int i = begin; i < end; ++i)
+        result.starts.push_back(whole.starts[i + 1] - whole.starts[begin]);
+      const auto part = [&](const auto &entries, auto &own) {
+        own.assign(entries.begin() + whole.starts[begin],
+                   entries.begin() + whole.starts[end]);
+      };
+      part(whole.nodes, result.nodes);
+      part(whole.weights, result.weights);
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::vector<TruncatedMultigrid::Prolongation>
+  prolongations(const Body<dim> &body, const ElasticUnknowns<dim> &unknowns)
+  {
+    const auto             &dofs  = unknowns.dof_handler();
+    const dealii::IndexSet &own   = dofs.locally_owned_dofs();
+    const MPI_Comm          ranks = unknowns.communicator();
+    // Of the finer level, its own nodes.
+    unsigned int begin = own.n_elements() == 0 ?
+                           0 :
+                           static_cast<unsigned int>(own.nth_index_in_set(0)) /
+                             dim;
+    unsigned int end = begin + own.n_elements() / dim;
+
+    std::vector<unsigned int> vertices(end - begin);
+    for (const auto &cell : owned_cells(dofs))
+      for (const unsigned int v : cell->vertex_indices())
+        if (const unsigned int node = cell->vertex_dof_index(v, 0) / dim;
+            begin <= node && node < end)
+          vertices[node - begin] = cell->vertex_index(v);
+    std::vector<CoarseLevel<dim>> levels =
+      body.coarse_levels(dofs.get_triangulation(), vertices);
+
+    std::vector<TruncatedMultigrid::Prolongation> result;
+    NodeFrames<dim>                               fine = node_frames(unknowns);
+    for (CoarseLevel<dim> &level : levels)
+      {
+        // Of the first one there are only own rows.
+        if (!result.empty())
+          level.to_finer = rows_of(level.to_finer, begin, end);
+        const auto [next_begin, next_end] = share(level, ranks);
+        NodeFrames<dim> coarse =
+          coarse_frames(fine, level.to_finer, begin, ranks);
+        result.push_back(between_unknowns(level.to_finer, begin, fine, coarse));
+        result.back().n_own_columns = (next_end - next_begin) * dim;
+        fine                        = std::move(coarse);
+        begin                       = next_begin;
+        end                         = next_end;
+      }
+    return result;
+  }
+
+
+
+  template decltype(prolongations<2>) prolongations<2>;
+  template decltype(prolongations<3>) prolongations<3>;
+} // namespace Debond

@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/ranks.h>
+#include <debond/base/memory.h>
+#include <debond/linear_algebra/cholmod_factor.h>
+
+#include <cholmod.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+namespace Debond
+{
+  namespace
+  {
+    /// CHOLMOD's workspace. It prints nothing: errors are thrown.
+    struct Common : cholmod_common
+    {
+      Common()
+      {
+        cholmod_start(this);
+        print         = 0;
+        error_handler = nullptr;
+      }
+
+      ~Common()
+      {
+        cholmod_finish(this);
+      }
+
+      Common(const Common &) = delete;
+    };
+
+
+
+    template <typename Object, int (*release)(Object **, cholmod_common *)>
+    struct Release
+    {
+      cholmod_common *common;
+
+      void
+      operator()(Object *object) const
+      {
+        release(&object, common);
+      }
+    };
+
+    /// A CHOLMOD object that frees itself. Throws std::bad_alloc if it is null.
+    template <typename Object, int (*release)(Object **, cholmod_common *)>
+    class Owned : public std::unique_ptr<Object, Release<Object, release>>
+    {
+    public:
+      Owned(Object *object, cholmod_common &common)
+        : std::unique_ptr<Object, Release<Object, release>>(object, {&common})
+      {
+        if (object == nullptr)
+          throw std::bad_alloc();
+      }
+    };
+
+    using Dense    = Owned<cholmod_dense, cholmod_free_dense>;
+    using Sparse   = Owned<cholmod_sparse, cholmod_free_sparse>;
+    using Symbolic = Owned<cholmod_factor, cholmod_free_factor>;
+
+
+
+    /// The symbolic factorisation of the symmetric matrix with the last
+    /// @p n_kept unknowns last, the others by minimum degree.
+    Symbolic
+    analyse(cholmod_sparse    *matrix,
+            const unsigned int n_kept,
+            cholmod_common    &common)
+    {
+      const int        n = static_cast<int>(matrix->nrow);
+      std::vector<int> group(n, 0), permutation(n);
+      // Numbers of groups are below n, which a single unknown has to heed.
+      if (n > static_cast<int>(n_kept))
+        std::fill(group.end() - n_kept, group.end(), 1);
+      if (!cholmod_camd(
+            matrix, nullptr, 0, group.data(), permutation.data(), &common))
+        throw std::bad_alloc();
+      // CAMD keeps the groups apart but not the order within the last one.
+      for (unsigned int k = 0; k < n_kept; ++k)
+        permutation[n - n_kept + k] = n - n_kept + k;
+
+      common.nmethods           = 1;
+      common.method[0].ordering = CHOLMOD_GIVEN;
+      // A postordering is free to mix the kept unknowns with the others.
+      common.postorder = 0;
+      return Symbolic(
+        cholmod_analyze_p(matrix, permutation.data(), nullptr, 0, &common),
+        common);
+    }
+
+
+
+    class CholmodFactor : public EliminationFactor
+    {
+    public:
+      CholmodFactor(const dealii::SparseMatrix<double> &A,
+                    const Elimination                  &elimination)
+        : elimination(elimination)
+        , n(static_cast<int>(elimination.unknowns.size()))
+        , n_kept(elimination.n_kept)
+        , n_rows(A.m())
+      {
+        // CHOLMOD factorises nothing less.
+        if (n > 0)
+          factorize(A, elimination.is_semidefinite ? 2. : 1.);
+        L_ss = trailing_block();
+        S.reinit(n_kept, n_kept);
+        if (n_kept > 0)
+          L_ss.mTmult(S, L_ss);
+        if (elimination.is_semidefinite)
+          for (unsigned int i = 0; i < n_kept; ++i)
+            S(i, i) -= A.diag_element(elimination.unknowns[n - n_kept + i]);
+      }
+
+      /// L^{-1} P f.
+      Eigen::VectorXd
+      reduce(const DofVector &f) const override
+      {
+        Eigen::VectorXd right_side(n);
+        for (int i = 0; i < n; ++i)
+          right_side(i) = f(elimination.unknowns[i]);
+        return solve(CHOLMOD_L, solve(CHOLMOD_P, right_side));
+      }
+
+      /// L_ss y_s.
+      Eigen::VectorXd
+      condensed_load(const Eigen::VectorXd &y) const override
+      {
+        Eigen::VectorXd result = Eigen::VectorXd::Zero(n_kept);
+        for (unsigned int i = 0; i < n_kept; ++i)
+          for (unsigned int j = 0; j <= i; ++j)
+            result(i) += L_ss(i, j) * y(n - n_kept + j);
+        return result;
+      }
+
+      double
+      energy_at_zero(const Eigen::VectorXd &y,
+                     const double           other) const override
+      {
+        double result = other;
+        for (int i = 0; i < static_cast<int>(n - n_kept); ++i)
+          result -= 0.5 * y(i) * y(i);
+        return result;
+      }
+
+      double
+      energy_of_kept(const Eigen::VectorXd &y) const override
+      {
+        return sum(y, n - n_kept);
+      }
+
+      double
+      energy_without_contact(const Eigen::VectorXd &y) const override
+      {
+        return sum(y, 0);
+      }
+
+      DofVector
+      expand(const Eigen::VectorXd &y, const VectorView &s) const override
+      {
+        const unsigned int n_eliminated = elimination.n_eliminated();
+        Eigen::VectorXd    x            = y;
+        for (unsigned int j = 0; j < n_kept; ++j)
+          {
+            double sum = 0.;
+            for (unsigned int i = j; i < n_kept; ++i)
+              sum += L_ss(i, j) * s(i);
+            x(n_eliminated + j) = sum;
+          }
+        x              = solve(CHOLMOD_Pt, solve(CHOLMOD_Lt, x));
+        x.tail(n_kept) = s;
+
+        DofVector u(n_rows);
+        for (int i = 0; i < n; ++i)
+          u(elimination.unknowns[i]) = x(i);
+        return u;
+      }
+
+    private:
+      /// 1/2 |y|^2 of the entries from @p first on.
+      static double
+      sum(const Eigen::VectorXd &y, const Eigen::Index first)
+      {
+        double result = 0.;
+        for (Eigen::Index i = first; i < y.size(); ++i)
+          result += 0.5 * y(i) * y(i);
+        return result;
+      }
+
+      /// Solves with one part of the factorisation, CHOLMOD_P, CHOLMOD_L, ...
+      Eigen::VectorXd
+      solve(const int system, const Eigen::VectorXd &right_side) const
+      {
+        if (n == 0)
+          return right_side;
+        const Dense b(cholmod_allocate_dense(n, 1, n, CHOLMOD_REAL, &common),
+                      common);
+        std::copy(right_side.begin(),
+                  right_side.end(),
+                  static_cast<double *>(b->x));
+        const Dense x(cholmod_solve(system, factor->get(), b.get(), &common),
+                      common);
+        return Eigen::Map<const Eigen::VectorXd>(
+          static_cast<const double *>(x->x), n);
+      }
+
+      /// The trailing block L_ss of the factor, lower triangular.
+      dealii::FullMatrix<double>
+      trailing_block() const
+      {
+        dealii::FullMatrix<double> block(n_kept, n_kept);
+        if (n_kept == 0)
+          return block;
+        const int             first = n - n_kept;
+        const cholmod_factor *L     = factor->get();
+        const int            *super = static_cast<const int *>(L->super);
+        const int            *pi    = static_cast<const int *>(L->pi);
+        const int            *px    = static_cast<const int *>(L->px);
+        const int            *rows  = static_cast<const int *>(L->s);
+        const double         *x     = static_cast<const double *>(L->x);
+        for (int k = 0; k < static_cast<int>(L->nsuper); ++k)
+          {
+            const int n_rows = pi[k + 1] - pi[k];
+            for (int column = std::max(super[k], first); column < super[k + 1];
+                 ++column)
+              {
+                const double *values = x + px[k] + (column - super[k]) * n_rows;
+                for (int r = column - super[k]; r < n_rows; ++r)
+                  block(rows[pi[k] + r] - first, column - first) = values[r];
+              }
+          }
+        return block;
+      }
+
+      void
+      factorize(const dealii::SparseMatrix<double> &A,
+                const double                        diagonal_factor)
+      {
+        const std::vector<int> position = elimination.positions(A.m());
+
+        // The upper triangle by columns, which is the lower one by rows.
+        std::size_t n_entries = 0;
+        for (const unsigned int row : elimination.unknowns)
+          for (auto entry = A.begin(row); entry != A.end(row); ++entry)
+            n_entries += position[entry->column()] >= 0 &&
+                         position[entry->column()] <= position[row];
+        const Sparse matrix(cholmod_allocate_sparse(
+                              n, n, n_entries, 0, 1, 1, CHOLMOD_REAL, &common),
+                            common);
+        int         *starts = static_cast<int *>(matrix->p);
+        int         *rows   = static_cast<int *>(matrix->i);
+        double      *values = static_cast<double *>(matrix->x);
+        std::size_t  next   = 0;
+        for (int i = 0; i < n; ++i)
+          {
+            starts[i] = static_cast<int>(next);
+            for (auto entry = A.begin(elimination.unknowns[i]);
+                 entry != A.end(elimination.unknowns[i]);
+                 ++entry)
+              if (const int j = position[entry->column()]; j >= 0 && j <= i)
+                {
+                  const bool is_scaled =
+                    j == i && i >= n - static_cast<int>(n_kept);
+                  rows[next] = j;
+                  values[next++] =
+                    (is_scaled ? diagonal_factor : 1.) * entry->value();
+                }
+          }
+        starts[n] = static_cast<int>(next);
+
+        common.supernodal = CHOLMOD_SUPERNODAL;
+        common.final_ll   = 1;
+        factor.emplace(analyse(matrix.get(), n_kept, common));
+        cholmod_factor *const L = factor->get();
+        for (unsigned int k = 0; k < n_kept; ++k)
+          if (static_cast<const int *>(L->Perm)[n - n_kept + k] !=
+              static_cast<int>(n - n_kept + k))
+            throw std::runtime_error(
+              "Condensation: the ordering did not keep the "
+              "contact normals last.");
+
+        // What is more than that the system would end the program for.
+        if (8. * static_cast<double>(L->xsize) > memory_left(0.))
+          throw std::bad_alloc();
+        cholmod_factorize(matrix.get(), L, &common);
+        if (common.status == CHOLMOD_NOT_POSDEF)
+          throw not_positive_definite("row " + std::to_string(L->minor) +
+                                      " of " + std::to_string(n));
+        if (common.status != CHOLMOD_OK)
+          throw std::bad_alloc();
+      }
+
+      const Elimination       elimination;
+      const int               n;
+      const unsigned int      n_kept;
+      const unsigned int      n_rows; ///< of A
+      mutable Common          common;
+      std::optional<Symbolic> factor; ///< none without unknowns
+    };
+
+
+
+    /// The number of nodes, the entries of their graph in the upper triangle
+    /// with the kept nodes last, and how many nodes are kept.
+    struct NodeGraph
+    {
+      unsigned int     n;
+      unsigned int     n_kept;
+      std::vector<int> rows;
+      std::vector<int> columns;
+    };
+
+
+
+    /// What the own rows of A say. A row of a held unknown has only its
+    /// diagonal entry.
+    NodeGraph
+    own_graph(const MatrixOnRanks             &matrix,
+              const std::vector<unsigned int> &kept,
+              const unsigned int               n_components)
+    {
+      const unsigned int n = matrix.A.m() / n_components;
+      std::vector<char>  is_kept(n, 0);
+      for (const unsigned int i : kept)
+        is_kept[i / n_components] = 1;
+      const unsigned int n_kept = static_cast<unsigned int>(
+        std::count(is_kept.begin(), is_kept.end(), 1));
+      NodeGraph graph{n, n_kept, {}, {}};
+
+      std::vector<int> position(n);
+      int              next[2] = {0, static_cast<int>(n - n_kept)};
+      for (unsigned int node = 0; node < n; ++node)
+        position[node] = next[static_cast<int>(is_kept[node])]++;
+
+      std::set<int> column;
+      for (unsigned int node = 0; node < n; ++node)
+        {
+          if (!matrix.own_rows.is_element(node * n_components))
+            continue;
+          column.clear();
+          for (unsigned int c = 0; c < n_components; ++c)
+            for (auto entry = matrix.A.begin(node * n_components + c);
+                 entry != matrix.A.end(node * n_components + c);
+                 ++entry)
+              if (const int row = position[entry->column() / n_components];
+                  row <= position[node])
+                column.insert(row);
+          graph.rows.insert(graph.rows.end(), column.begin(), column.end());
+          graph.columns.resize(graph.rows.size(), position[node]);
+        }
+      return graph;
+    }
+
+
+
+    /// Throws std::bad_alloc.
+    FactorisationCost
+    cost_of(NodeGraph graph, const unsigned int n_components)
+    {
+      Common common;
+      common.supernodal       = CHOLMOD_SIMPLICIAL;
+      cholmod_triplet entries = {};
+      entries.nrow = entries.ncol = graph.n;
+      entries.nzmax = entries.nnz = graph.rows.size();
+      entries.i                   = graph.rows.data();
+      entries.j                   = graph.columns.data();
+      entries.stype               = 1;
+      entries.itype               = CHOLMOD_INT;
+      entries.xtype               = CHOLMOD_PATTERN;
+      const Sparse matrix(cholmod_triplet_to_sparse(&entries, 0, &common),
+                          common);
+      analyse(matrix.get(), graph.n_kept, common);
+      return {std::pow(n_components, 3) * common.fl,
+              std::pow(n_components, 2) * common.lnz};
+    }
+
+
+
+    /// On the first rank behind what it has itself.
+    void
+    append_from_others(const MPI_Comm ranks, std::vector<int> &numbers)
+    {
+      const auto all = dealii::Utilities::MPI::gather(ranks, numbers);
+      for (unsigned int rank = 1; rank < all.size(); ++rank)
+        numbers.insert(numbers.end(), all[rank].begin(), all[rank].end());
+    }
+  } // namespace
+
+
+
+  std::unique_ptr<EliminationFactor>
+  make_cholmod_factor(const dealii::SparseMatrix<double> &A,
+                      const Elimination                  &elimination)
+  {
+    return std::make_unique<CholmodFactor>(A, elimination);
+  }
+
+
+
+  FactorisationCost
+  factorisation_cost(const MatrixOnRanks             &matrix,
+                     const std::vector<unsigned int> &kept,
+                     const unsigned int               n_components)
+  {
+    NodeGraph graph = own_graph(matrix, kept, n_components);
+    if (!matrix.is_shared())
+      return cost_of(std::move(graph), n_components);
+
+    append_from_others(matrix.ranks, graph.rows);
+    append_from_others(matrix.ranks, graph.columns);
+    // Less than nothing says that memory was short.
+    FactorisationCost cost = {-1., -1.};
+    if (rank_of_this(matrix.ranks) == 0)
+      try
+        {
+          cost = cost_of(std::move(graph), n_components);
+        }
+      catch (const std::bad_alloc &)
+        {}
+    cost = dealii::Utilities::MPI::broadcast(matrix.ranks, cost);
+    if (cost.entries < 0.)
+      throw std::bad_alloc();
+    return cost;
+  }
+} // namespace Debond

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/exceptions.h>
+#include <deal.II/lac/lapack_templates.h>
+
+#include <debond/linear_algebra/elimination_factor.h>
+
+namespace Debond
+{
+  std::vector<int>
+  Elimination::positions(const unsigned int n) const
+  {
+    std::vector<int> result(n, -1);
+    for (unsigned int i = 0; i < unknowns.size(); ++i)
+      result[unknowns[i]] = static_cast<int>(i);
+    return result;
+  }
+
+
+
+  double
+  EliminationFactor::condition_estimate() const
+  {
+    const dealii::types::blas_int n_kept =
+      static_cast<dealii::types::blas_int>(S.m());
+    if (n_kept == 0)
+      return 1.;
+    const double                         norm = S.l1_norm();
+    double                               reciprocal;
+    std::vector<double>                  work(3 * n_kept);
+    std::vector<dealii::types::blas_int> integers(n_kept);
+    dealii::types::blas_int              info;
+    // L_ss by rows is its transpose by columns, the upper factor.
+    dealii::pocon("U",
+                  &n_kept,
+                  &L_ss(0, 0),
+                  &n_kept,
+                  &norm,
+                  &reciprocal,
+                  work.data(),
+                  integers.data(),
+                  &info);
+    AssertThrow(info == 0, dealii::ExcInternalError());
+    return 1. / reciprocal;
+  }
+
+
+
+  std::runtime_error
+  not_positive_definite(const std::string &where)
+  {
+    return std::runtime_error(
+      "Condensation: the elasticity matrix is not positive definite (" + where +
+      "). Check the supports and the material.");
+  }
+} // namespace Debond
