@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <memory>
 #include <thread>
 
 namespace Debond
@@ -32,6 +33,8 @@ namespace Debond
     /// For what ranks say to each other when they end: elsewhere others may
     /// still be waiting.
     MPI_Comm for_the_end = MPI_COMM_NULL;
+
+    std::unique_ptr<dealii::Utilities::MPI::MPI_InitFinalize> session;
   } // namespace
 
 
@@ -42,11 +45,20 @@ namespace Debond
     // Who uses this as a library may have started it.
     if (dealii::Utilities::MPI::job_supports_mpi())
       return;
-    static int                                            argc = 0;
-    static char                                         **argv = nullptr;
-    static const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+    static int    argc = 0;
+    static char **argv = nullptr;
+    session =
+      std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(argc, argv, 1);
     if (n_started_ranks() > 1)
       MPI_Comm_dup(MPI_COMM_WORLD, &for_the_end);
+  }
+
+
+
+  void
+  end_mpi()
+  {
+    session.reset();
   }
 
 

@@ -73,8 +73,7 @@ namespace Debond
 
 
   Eigen::SparseMatrix<double>
-  ContactUnknowns::block_of(
-    const dealii::TrilinosWrappers::SparseMatrix &A) const
+  ContactUnknowns::block_of(const dealii::SparseMatrix<double> &A) const
   {
     std::unordered_map<dealii::types::global_dof_index, unsigned int> nodes;
     for (unsigned int i = 0; i < normals.size(); ++i)
@@ -120,25 +119,26 @@ namespace Debond
 
 
 
+  template <int dim>
   DisplacementProblem::DisplacementProblem(
-    const dealii::TrilinosWrappers::SparseMatrix &matrix,
-    const DistributedVector                      &load,
-    const PiecewiseQuadratic                     &nonsmooth,
-    const ContactUnknowns                        &contact_unknowns,
-    TruncatedMultigrid                           &multigrid_cycle,
-    DistributedVector                            &start)
-    : A(matrix)
-    , f(load)
+    const ElasticProblem<dim> &problem,
+    const PiecewiseQuadratic  &nonsmooth,
+    TruncatedMultigrid        &multigrid_cycle,
+    DistributedVector         &start)
+    : A(problem.trilinos_matrix())
+    , f(distribute(problem.load(),
+                   start.locally_owned_elements(),
+                   start.get_mpi_communicator()))
+    , diagonal(distribute(problem.diagonal(),
+                          start.locally_owned_elements(),
+                          start.get_mpi_communicator()))
     , phi(nonsmooth)
-    , contact(contact_unknowns)
+    , contact(problem)
+    , contact_block(contact.block_of(problem.matrix()))
     , cycle(multigrid_cycle)
     , u(start)
-    , diagonal(u)
-    , contact_block(contact.block_of(A))
     , active(contact.size())
   {
-    for (const auto i : u.locally_owned_elements())
-      diagonal(i) = A.diag_element(i);
     const Eigen::VectorXd s = contact.trace(u);
     for (unsigned int i = 0; i < active.size(); ++i)
       active[i] = s(i) == 0.;
@@ -362,4 +362,17 @@ namespace Debond
       }
     return result;
   }
+
+
+
+  template DisplacementProblem::DisplacementProblem(
+    const ElasticProblem<2> &,
+    const PiecewiseQuadratic &,
+    TruncatedMultigrid &,
+    DistributedVector &);
+  template DisplacementProblem::DisplacementProblem(
+    const ElasticProblem<3> &,
+    const PiecewiseQuadratic &,
+    TruncatedMultigrid &,
+    DistributedVector &);
 } // namespace Debond

@@ -60,7 +60,11 @@ namespace Debond
     to_epetra(const TruncatedMultigrid::Prolongation &P, const Epetra_Map &rows)
     {
       const std::vector<int> columns(P.columns.begin(), P.columns.end());
-      auto result = std::make_unique<Epetra_CrsMatrix>(Copy, rows, 0);
+      std::vector<int>       lengths(rows.NumMyElements());
+      for (std::size_t i = 0; i < lengths.size(); ++i)
+        lengths[i] = static_cast<int>(P.starts[i + 1] - P.starts[i]);
+      auto result = std::make_unique<Epetra_CrsMatrix>(
+        Copy, rows, lengths.data(), /*StaticProfile=*/true);
       for (int i = 0; i < rows.NumMyElements(); ++i)
         if (P.starts[i] < P.starts[i + 1])
           check(result->InsertGlobalValues(rows.GID(i),

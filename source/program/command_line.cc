@@ -313,6 +313,8 @@ namespace Debond
     if (!is_first_rank())
       for (std::ostream *const stream : {&std::cout, &std::cerr})
         stream->setstate(std::ios::failbit);
-    return guard([&]() { return execute(argc, argv); });
+    const ExitCode code = guard([&]() { return execute(argc, argv); });
+    end_mpi();
+    return code;
   }
 } // namespace Debond

@@ -96,10 +96,7 @@ namespace Debond
                      Watch                  &watch,
                      SolveResult            &result)
   {
-    const ElasticProblem<dim> &problem  = scene.problem();
-    const auto                &unknowns = problem.unknowns();
-    const dealii::IndexSet &own = unknowns.dof_handler().locally_owned_dofs();
-    const MPI_Comm          ranks = scene.ranks();
+    const ElasticProblem<dim> &problem = scene.problem();
     watch.add_energy(prescribed_energy(problem, scene.adhesion()));
     watch.announce("multigrid", scene.n_unknowns());
     dealii::Timer timer;
@@ -119,11 +116,11 @@ namespace Debond
     result.parts["multigrid setup"] = timer.wall_time();
 
     timer.restart();
-    const ContactUnknowns   contact(unknowns.contact().normals(), own, ranks);
-    const DistributedVector f = distribute(problem.load(), own, ranks);
-    DistributedVector       u = distribute(result.u, own, ranks);
-    DisplacementProblem     minimised(
-      problem.trilinos_matrix(), f, scene.adhesion(), contact, *cycle, u);
+    DistributedVector u =
+      distribute(result.u,
+                 problem.unknowns().dof_handler().locally_owned_dofs(),
+                 scene.ranks());
+    DisplacementProblem minimised(problem, scene.adhesion(), *cycle, u);
     minimised.may_go_on = [&watch]() { return watch.may_go_on(); };
     add_majorise_result(MajoriseMinimise(parameters.majorise_minimise)
                           .minimize(minimised, std::ref(watch)),
@@ -137,7 +134,7 @@ namespace Debond
       result.notes.push_back(
         "fronts of bonds are as the search on coarser meshes left them; with "
         "Solver/Linear solver = direct it is done on the finest one");
-    MultigridCorrection correction(contact, *cycle, own, ranks);
+    MultigridCorrection correction(problem, *cycle);
     refine_result(scene, correction, watch, result);
   }
 

@@ -12,9 +12,14 @@ namespace Debond
   n_started_ranks();
 
   /// Starts MPI, which is called from the first thread only, unless it has been
-  /// started, until the program ends.
+  /// started.
   void
   start_mpi();
+
+  /// Ends what start_mpi() has started; to be called before objects with static
+  /// lifetime end, such as deal.II's stores of vectors.
+  void
+  end_mpi();
 
   /// The first of the started ranks writes log and files for all.
   bool

@@ -62,15 +62,14 @@ namespace Debond
   class MultigridCorrection : public CorrectionSolver
   {
   public:
-    /// Keeps references, and truncates the cycle.
-    MultigridCorrection(const ContactUnknowns  &contact,
-                        TruncatedMultigrid     &cycle,
-                        const dealii::IndexSet &own,
-                        const MPI_Comm          ranks)
-      : contact(contact)
+    /// Keeps a reference to the cycle, and truncates it.
+    template <int dim>
+    MultigridCorrection(const ElasticProblem<dim> &problem,
+                        TruncatedMultigrid        &cycle)
+      : contact(problem)
       , cycle(cycle)
-      , own(own)
-      , ranks(ranks)
+      , own(problem.unknowns().dof_handler().locally_owned_dofs())
+      , ranks(problem.unknowns().communicator())
     {}
 
     void
@@ -89,7 +88,7 @@ namespace Debond
     }
 
   private:
-    const ContactUnknowns &contact;
+    const ContactUnknowns  contact;
     TruncatedMultigrid    &cycle;
     const dealii::IndexSet own;
     const MPI_Comm         ranks;

@@ -4,6 +4,7 @@
 
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/distributed_vector.h>
 #include <debond/linear_algebra/truncated_multigrid.h>
 #include <debond/linear_algebra/views.h>
@@ -23,14 +24,11 @@ namespace Debond
   class ContactUnknowns
   {
   public:
-    /// @p own: the unknowns of this rank.
-    ContactUnknowns(
-      const std::vector<dealii::types::global_dof_index> &normals,
-      const dealii::IndexSet                             &own,
-      const MPI_Comm                                      ranks)
-      : normals(normals)
-      , own(own)
-      , ranks(ranks)
+    template <int dim>
+    explicit ContactUnknowns(const ElasticProblem<dim> &problem)
+      : normals(problem.unknowns().contact().normals())
+      , own(problem.unknowns().dof_handler().locally_owned_dofs())
+      , ranks(problem.unknowns().communicator())
     {}
 
     unsigned int
@@ -55,9 +53,9 @@ namespace Debond
     void
     set_zero(const ActiveSet &held, DistributedVector &v) const;
 
-    /// The rows and columns of A.
+    /// The rows and columns of A, of which each rank has its own rows.
     Eigen::SparseMatrix<double>
-    block_of(const dealii::TrilinosWrappers::SparseMatrix &A) const;
+    block_of(const dealii::SparseMatrix<double> &A) const;
 
     /// Prepares a cycle for A + E where nodes are held.
     void
@@ -91,12 +89,11 @@ namespace Debond
   public:
     /// Keeps references; @p start is the current point, of which the normal
     /// displacements have to be <= 0, @p cycle that of A.
-    DisplacementProblem(const dealii::TrilinosWrappers::SparseMatrix &A,
-                        const DistributedVector                      &load,
-                        const PiecewiseQuadratic                     &nonsmooth,
-                        const ContactUnknowns                        &contact,
-                        TruncatedMultigrid                           &cycle,
-                        DistributedVector                            &start);
+    template <int dim>
+    DisplacementProblem(const ElasticProblem<dim> &problem,
+                        const PiecewiseQuadratic  &nonsmooth,
+                        TruncatedMultigrid        &cycle,
+                        DistributedVector         &start);
 
     /// Each linear iteration asks it whether it may go on, on all ranks alike.
     /// If not, minimise() ends and leaves u as it was before.
@@ -131,13 +128,13 @@ namespace Debond
                    unsigned int &n_iterations) const;
 
     const dealii::TrilinosWrappers::SparseMatrix &A;
-    const Vector                                 &f;
+    const Vector                                  f;
+    const Vector                                  diagonal; ///< of A
     const PiecewiseQuadratic                     &phi;
-    const ContactUnknowns                        &contact;
+    const ContactUnknowns                         contact;
+    const Eigen::SparseMatrix<double>             contact_block; ///< of A
     TruncatedMultigrid                           &cycle;
     Vector                                       &u;
-    Vector                                        diagonal; ///< of A
-    const Eigen::SparseMatrix<double>             contact_block; ///< of A
 
     /// As of the last evaluate().
     double largest_force  = 0.; ///< what residuals are relative to
