@@ -58,7 +58,7 @@ namespace Debond
       const unsigned int rank  = rank_of_this(ranks);
       const double       deepest = dealii::Utilities::MPI::max(least, ranks);
       const unsigned int first   = dealii::Utilities::MPI::min(
-        least == deepest ? rank : dealii::numbers::invalid_unsigned_int, ranks);
+        least == deepest ? rank : number_of_ranks(ranks), ranks);
       constexpr double rounding = 1e-8;
       if (deepest < -rounding)
         throw ProbeError(probe.name, "the point is not in the body");

@@ -141,57 +141,74 @@ namespace Debond
 
 
 
-    /// Numbers the coarse nodes so that those of ranks follow each other, and
-    /// returns where those of this rank begin and end. @p vertices of the level
-    /// and its interpolation are renumbered.
-    template <int dim>
-    std::pair<unsigned int, unsigned int>
-    share(CoarseLevel<dim> &level, const MPI_Comm ranks)
+    /// The nodes of a level, numbered so that those of ranks follow each other.
+    struct Shares
     {
-      const unsigned int n = static_cast<unsigned int>(level.vertices.size());
+      unsigned int              begin, end; ///< of this rank
+      std::vector<unsigned int> places;     ///< of all in their own order
+    };
+
+
+
+    /// Gives each of @p n coarse nodes to a rank that has one of the finer nodes
+    /// that depend most on it, and renumbers them. @p rows: of own finer nodes.
+    Shares
+    share_out(const unsigned int n, Interpolation &rows, const MPI_Comm ranks)
+    {
       const unsigned int n_ranks = number_of_ranks(ranks);
-      const unsigned int rank = rank_of_this(ranks);
-      if (n_ranks == 1)
-        return {0, n};
-      std::vector<unsigned int> order(n), number(n);
-      std::iota(order.begin(), order.end(), 0U);
-      std::stable_sort(order.begin(),
-                       order.end(),
-                       [&level](const unsigned int a, const unsigned int b) {
-                         return level.slabs[a] < level.slabs[b];
+      const unsigned int rank    = rank_of_this(ranks);
+      std::vector<float> here(n, 0.f), anywhere(n);
+      for (std::size_t k = 0; k < rows.nodes.size(); ++k)
+        here[rows.nodes[k]] = std::max(here[rows.nodes[k]], rows.weights[k]);
+      dealii::Utilities::MPI::max(here, ranks, anywhere);
+      std::vector<unsigned int> owners(n);
+      for (unsigned int j = 0; j < n; ++j)
+        owners[j] = here[j] == anywhere[j] ? rank : n_ranks;
+      dealii::Utilities::MPI::min(owners, ranks, owners);
+
+      Shares result;
+      result.places.resize(n);
+      std::iota(result.places.begin(), result.places.end(), 0U);
+      std::stable_sort(result.places.begin(),
+                       result.places.end(),
+                       [&owners](const unsigned int a, const unsigned int b) {
+                         return owners[a] < owners[b];
                        });
-      std::vector<dealii::Point<dim>> vertices(n);
+      std::vector<unsigned int> numbers(n);
       for (unsigned int k = 0; k < n; ++k)
-        {
-          number[order[k]] = k;
-          vertices[k]      = level.vertices[order[k]];
-        }
-      level.vertices = std::move(vertices);
-      for (unsigned int &node : level.to_finer.nodes)
-        node = number[node];
-      const auto first = [&](const std::size_t k) {
-        return static_cast<unsigned int>(k * n / n_ranks);
+        numbers[result.places[k]] = k;
+      for (unsigned int &node : rows.nodes)
+        node = numbers[node];
+      const auto n_before = [&owners](const unsigned int k) {
+        return static_cast<unsigned int>(
+          std::count_if(owners.begin(), owners.end(), [k](const auto owner) {
+            return owner < k;
+          }));
       };
-      return {first(rank), first(rank + 1)};
+      result.begin = n_before(rank);
+      result.end   = n_before(rank + 1);
+      return result;
     }
 
 
 
     Interpolation
-    rows_of(const Interpolation &whole,
-            const unsigned int   begin,
-            const unsigned int   end)
+    own_rows(const Interpolation &whole, const Shares &points)
     {
       Interpolation result;
       result.n_nodes = whole.n_nodes;
-      for (unsigned int i = begin; i < end; ++i)
-        result.starts.push_back(whole.starts[i + 1] - whole.starts[begin]);
-      const auto part = [&](const auto &entries, auto &own) {
-        own.assign(entries.begin() + whole.starts[begin],
-                   entries.begin() + whole.starts[end]);
-      };
-      part(whole.nodes, result.nodes);
-      part(whole.weights, result.weights);
+      for (unsigned int k = points.begin; k < points.end; ++k)
+        {
+          const auto begin = whole.starts[points.places[k]],
+                     end   = whole.starts[points.places[k] + 1];
+          result.nodes.insert(result.nodes.end(),
+                              whole.nodes.begin() + begin,
+                              whole.nodes.begin() + end);
+          result.weights.insert(result.weights.end(),
+                                whole.weights.begin() + begin,
+                                whole.weights.begin() + end);
+          result.starts.push_back(result.nodes.size());
+        }
       return result;
     }
   } // namespace
@@ -205,37 +222,34 @@ namespace Debond
     const auto             &dofs  = unknowns.dof_handler();
     const dealii::IndexSet &own   = dofs.locally_owned_dofs();
     const MPI_Comm          ranks = unknowns.communicator();
-    // Of the finer level, its own nodes.
-    unsigned int begin = own.n_elements() == 0 ?
-                           0 :
-                           static_cast<unsigned int>(own.nth_index_in_set(0)) /
-                             dim;
-    unsigned int end = begin + own.n_elements() / dim;
+    Shares                  finer;
+    finer.begin = own.n_elements() == 0 ? 0 : own.nth_index_in_set(0) / dim;
+    finer.end   = finer.begin + own.n_elements() / dim;
 
-    std::vector<unsigned int> vertices(end - begin);
+    std::vector<dealii::Point<dim>> points(finer.end - finer.begin);
     for (const auto &cell : owned_cells(dofs))
       for (const unsigned int v : cell->vertex_indices())
         if (const unsigned int node = cell->vertex_dof_index(v, 0) / dim;
-            begin <= node && node < end)
-          vertices[node - begin] = cell->vertex_index(v);
-    std::vector<CoarseLevel<dim>> levels =
-      body.coarse_levels(dofs.get_triangulation(), vertices);
+            finer.begin <= node && node < finer.end)
+          points[node - finer.begin] = cell->vertex(v);
 
     std::vector<TruncatedMultigrid::Prolongation> result;
     NodeFrames<dim>                               fine = node_frames(unknowns);
-    for (CoarseLevel<dim> &level : levels)
+    for (const CoarseLevel<dim> &level : body.coarse_levels(points))
       {
         // Of the first one there are only own rows.
-        if (!result.empty())
-          level.to_finer = rows_of(level.to_finer, begin, end);
-        const auto [next_begin, next_end] = share(level, ranks);
+        Interpolation rows =
+          result.empty() ? level.to_finer : own_rows(level.to_finer, finer);
+        Shares coarser =
+          share_out(static_cast<unsigned int>(level.vertices.size()),
+                    rows,
+                    ranks);
         NodeFrames<dim> coarse =
-          coarse_frames(fine, level.to_finer, begin, ranks);
-        result.push_back(between_unknowns(level.to_finer, begin, fine, coarse));
-        result.back().n_own_columns = (next_end - next_begin) * dim;
+          coarse_frames(fine, rows, finer.begin, ranks);
+        result.push_back(between_unknowns(rows, finer.begin, fine, coarse));
+        result.back().n_own_columns = (coarser.end - coarser.begin) * dim;
         fine                        = std::move(coarse);
-        begin                       = next_begin;
-        end                         = next_end;
+        finer                       = std::move(coarser);
       }
     return result;
   }

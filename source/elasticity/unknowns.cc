@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <set>
 #include <stdexcept>
@@ -196,10 +195,11 @@ namespace Debond
     if (number_of_ranks(communicator()) == 1)
       return order;
     // On one rank they are numbered as the cells come to them.
-    const unsigned int                           n = fe.dofs_per_cell;
+    const std::uint64_t                          n = fe.dofs_per_cell;
     std::vector<dealii::types::global_dof_index> cell_dofs(n);
-    std::vector<std::uint64_t>                   first_visits(
-      n_dofs(), std::numeric_limits<std::uint64_t>::max());
+    // The largest number would be -1 for MPI::min().
+    std::vector<std::uint64_t> first_visits(
+      n_dofs(), dofs.get_triangulation().n_global_active_cells() * n);
     for (const auto &cell : owned_cells(dofs))
       {
         cell->get_dof_indices(cell_dofs);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace Debond
 {
@@ -83,34 +84,33 @@ namespace Debond
 
 
 
-  template <int dim>
-  std::vector<dealii::Tensor<1, dim>>
-  Body<dim>::interpolate(const dealii::Triangulation<dim>          &mesh,
-                         const std::vector<dealii::Tensor<1, dim>> &values,
-                         const std::vector<dealii::Point<dim>> &points) const
+  namespace
   {
-    namespace index = boost::geometry::index;
-    std::vector<typename dealii::Triangulation<dim>::active_cell_iterator>
-                                          cells;
-    std::vector<dealii::BoundingBox<dim>> boxes;
-    for (const auto &cell : mesh.active_cell_iterators())
+    /// Finds the cells of a mesh of simplices that points lie in, or next to.
+    template <int dim>
+    class CellSearch
+    {
+    public:
+      explicit CellSearch(const dealii::Triangulation<dim> &mesh)
+        : tree(dealii::pack_rtree_of_indices(boxes_of(mesh)))
       {
-        cells.push_back(cell);
-        boxes.push_back(cell->bounding_box());
+        for (const auto &cell : mesh.active_cell_iterators())
+          cells.push_back(cell);
       }
-    const auto tree = dealii::pack_rtree_of_indices(boxes);
 
-    std::vector<dealii::Tensor<1, dim>> result;
-    for (const dealii::Point<dim> &point : points)
+      /// The vertices of the cell that the point is farthest inside of, and its
+      /// barycentric coordinates there.
+      std::array<std::pair<unsigned int, double>, dim + 1>
+      operator()(const dealii::Point<dim> &point) const
       {
+        namespace index = boost::geometry::index;
         std::vector<std::size_t> candidates;
         tree.query(index::intersects(point), std::back_inserter(candidates));
         if (candidates.empty())
           tree.query(index::nearest(point, 1), std::back_inserter(candidates));
 
-        // The value of the cell that the point is farthest inside of.
-        double                 farthest = -std::numeric_limits<double>::max();
-        dealii::Tensor<1, dim> value;
+        double farthest = -std::numeric_limits<double>::max();
+        std::array<std::pair<unsigned int, double>, dim + 1> result;
         for (const std::size_t candidate : candidates)
           {
             const auto              &cell   = cells[candidate];
@@ -121,24 +121,98 @@ namespace Debond
                 edges[c][d] = cell->vertex(d + 1)[c] - origin[c];
             const dealii::Tensor<1, dim> xi =
               dealii::invert(edges) * (point - origin);
-
-            double                 first = 1., least = 1.;
-            dealii::Tensor<1, dim> sum;
+            double first = 1., least = 1.;
             for (unsigned int d = 0; d < dim; ++d)
               {
                 first -= xi[d];
                 least = std::min(least, xi[d]);
-                sum += xi[d] * values[cell->vertex_index(d + 1)];
               }
-            if (std::min(least, first) > farthest)
-              {
-                farthest = std::min(least, first);
-                value    = sum + first * values[cell->vertex_index(0)];
-              }
+            least = std::min(least, first);
+            if (least <= farthest)
+              continue;
+            farthest  = least;
+            result[0] = {cell->vertex_index(0), first};
+            for (unsigned int d = 0; d < dim; ++d)
+              result[d + 1] = {cell->vertex_index(d + 1), xi[d]};
           }
-        result.push_back(value);
+        return result;
       }
+
+    private:
+      static std::vector<dealii::BoundingBox<dim>>
+      boxes_of(const dealii::Triangulation<dim> &mesh)
+      {
+        std::vector<dealii::BoundingBox<dim>> boxes;
+        for (const auto &cell : mesh.active_cell_iterators())
+          boxes.push_back(cell->bounding_box());
+        return boxes;
+      }
+
+      std::vector<typename dealii::Triangulation<dim>::active_cell_iterator>
+        cells;
+      decltype(dealii::pack_rtree_of_indices(
+        std::vector<dealii::BoundingBox<dim>>())) tree;
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  std::vector<dealii::Tensor<1, dim>>
+  Body<dim>::interpolate(const dealii::Triangulation<dim>          &mesh,
+                         const std::vector<dealii::Tensor<1, dim>> &values,
+                         const std::vector<dealii::Point<dim>> &points) const
+  {
+    const CellSearch<dim>               search(mesh);
+    std::vector<dealii::Tensor<1, dim>> result(points.size());
+    for (std::size_t p = 0; p < points.size(); ++p)
+      for (const auto &[vertex, weight] : search(points[p]))
+        result[p] += weight * values[vertex];
     return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<CoarseLevel<dim>>
+  Body<dim>::coarse_levels(const std::vector<dealii::Point<dim>> &points) const
+  {
+    std::vector<CoarseLevel<dim>> levels;
+    if (!has_coarse_levels())
+      return levels;
+    for (auto body = coarser_whole(); body != nullptr;
+         body      = body->coarser_whole())
+      {
+        dealii::Triangulation<dim> mesh;
+        body->make_whole_mesh(mesh);
+        const CellSearch<dim> search(mesh);
+        CoarseLevel<dim>      level;
+        level.to_finer.n_nodes = mesh.n_vertices();
+        for (const dealii::Point<dim> &point :
+             levels.empty() ? points : levels.back().vertices)
+          {
+            // Beside the mesh, as on curved sides, next to it. What rounding
+            // makes of a zero is none.
+            constexpr double noise = 1e-6;
+            double           sum   = 0.;
+            const auto       found = search(point);
+            for (const auto &[unused, weight] : found)
+              sum += weight > noise ? weight : 0.;
+            for (const auto &[vertex, weight] : found)
+              if (weight > noise)
+                {
+                  level.to_finer.nodes.push_back(vertex);
+                  level.to_finer.weights.push_back(
+                    static_cast<float>(weight / sum));
+                }
+            level.to_finer.starts.push_back(level.to_finer.nodes.size());
+          }
+        level.vertices = mesh.get_vertices();
+        levels.push_back(std::move(level));
+        if (body->n_vertices() < fewest_vertices_of_level)
+          break;
+      }
+    return levels;
   }
 
 

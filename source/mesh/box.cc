@@ -30,8 +30,7 @@ namespace Debond
     template <int dim>
     CoarseLevel<dim>
     coarse_level(const CrossedLattice<dim>             &lattice,
-                 const std::vector<dealii::Point<dim>> &points,
-                 const unsigned int                     n_slabs)
+                 const std::vector<dealii::Point<dim>> &points)
     {
       CoarseLevel<dim>          level;
       std::vector<unsigned int> numbers(lattice.size());
@@ -40,7 +39,6 @@ namespace Debond
           {
             numbers[i] = static_cast<unsigned int>(level.vertices.size());
             level.vertices.push_back(lattice.point(i));
-            level.slabs.push_back(lattice.slab(i, n_slabs));
           }
 
       level.to_finer =
@@ -284,29 +282,13 @@ namespace Debond
 
   template <int dim>
   std::vector<CoarseLevel<dim>>
-  Box<dim>::coarse_levels(const dealii::Triangulation<dim> &mesh,
-                          const std::vector<unsigned int>  &vertices) const
-  {
-    std::vector<dealii::Point<dim>> points;
-    points.reserve(vertices.size());
-    for (const unsigned int v : vertices)
-      points.push_back(mesh.get_vertices()[v]);
-    return levels_of(coarse_boxes(), points);
-  }
-
-
-
-  template <int dim>
-  std::vector<CoarseLevel<dim>>
-  Box<dim>::levels_of(const std::vector<BoxParameters>      &boxes,
-                      const std::vector<dealii::Point<dim>> &vertices) const
+  Box<dim>::coarse_levels(const std::vector<dealii::Point<dim>> &points) const
   {
     std::vector<CoarseLevel<dim>> levels;
-    for (const BoxParameters &box : boxes)
+    for (const BoxParameters &box : coarse_boxes())
       levels.push_back(
         coarse_level(CrossedLattice<dim>(box),
-                     levels.empty() ? vertices : levels.back().vertices,
-                     parameters.cells[0]));
+                     levels.empty() ? points : levels.back().vertices));
     return levels;
   }
 
@@ -334,21 +316,6 @@ namespace Debond
     if (Box(finer).n_vertices() > most_coarsest_vertices)
       boxes.clear();
     return boxes;
-  }
-
-
-
-  template <int dim>
-  std::vector<unsigned int>
-  Box<dim>::slabs(const dealii::Triangulation<dim> &mesh) const
-  {
-    const CrossedLattice<dim> lattice(parameters);
-    std::vector<unsigned int> result;
-    result.reserve(mesh.n_vertices());
-    for (const dealii::Point<dim> &vertex : mesh.get_vertices())
-      result.push_back(
-        std::min(lattice.coordinates(vertex)[0] / 2, parameters.cells[0] - 1));
-    return result;
   }
 
 

@@ -79,24 +79,8 @@ namespace Debond
     cells.reserve(coarse.n_active_cells());
     for (const auto &cell : coarse.active_cell_iterators())
       cells.push_back(cell);
-    crossed_part(cells, dealii::numbers::invalid_boundary_id, crossed);
-  }
-
-
-
-  template <int dim>
-  void
-  crossed_part(
-    const std::vector<typename dealii::Triangulation<dim>::cell_iterator>
-                                    &coarse_cells,
-    const dealii::types::boundary_id id_of_cuts,
-    dealii::Triangulation<dim>      &crossed)
-  {
-    if (crossed.n_levels() != 0)
-      throw std::invalid_argument(
-        "Crossed subdivision: the triangulation to be filled is not empty.");
     const CellsAndVertices<dim> simplices =
-      crossed_cells<dim>(coarse_cells, id_of_cuts);
+      crossed_cells<dim>(cells, dealii::numbers::invalid_boundary_id);
     crossed.create_triangulation(simplices.vertices,
                                  simplices.cells,
                                  simplices.faces);
@@ -229,6 +213,4 @@ namespace Debond
   template decltype(crossed_subdivision<3>) crossed_subdivision<3>;
   template decltype(crossed_cells<2>)       crossed_cells<2>;
   template decltype(crossed_cells<3>)       crossed_cells<3>;
-  template decltype(crossed_part<2>)        crossed_part<2>;
-  template decltype(crossed_part<3>)        crossed_part<3>;
 } // namespace Debond

@@ -207,7 +207,6 @@ namespace Debond
         }
       const std::optional<EndOfRanks> end =
         end_together(is_own, static_cast<int>(code));
-      std::cerr.clear();
       if (!end || end->is_speaker)
         for (const std::string &line : lines)
           print_error(line);
@@ -311,8 +310,7 @@ namespace Debond
     if (n_started_ranks() > 1)
       start_mpi();
     if (!is_first_rank())
-      for (std::ostream *const stream : {&std::cout, &std::cerr})
-        stream->setstate(std::ios::failbit);
+      std::cout.setstate(std::ios::failbit);
     const ExitCode code = guard([&]() { return execute(argc, argv); });
     end_mpi();
     return code;

@@ -45,14 +45,18 @@ namespace Debond
   conclude(const RunResult<dim> &result, const std::string &output_error)
   {
     const bool interrupted = result.solve.minimum.interrupted;
+    const auto print       = [](const std::string &message) {
+      if (is_first_rank())
+        print_error(message);
+    };
     if (!result.is_answer())
-      print_error("NOT CONVERGED (" + result.status + "): " + result.message);
+      print("NOT CONVERGED (" + result.status + "): " + result.message);
     else if (interrupted)
-      print_error("the search or the proof was interrupted; the result is "
-                  "what it had found");
+      print("the search or the proof was interrupted; the result is what it had "
+            "found");
     if (!output_error.empty())
       {
-        print_error(output_error);
+        print(output_error);
         return ExitCode::output_not_saved;
       }
     if (result.solve.status == SolverStatus::interrupted ||
@@ -128,7 +132,8 @@ namespace Debond
       }
     catch (const std::runtime_error &error)
       {
-        print_error(error.what());
+        if (is_first_rank())
+          print_error(error.what());
         return ExitCode::output_not_saved;
       }
 

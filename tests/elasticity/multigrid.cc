@@ -10,9 +10,8 @@
 #include <debond/contact/adhesion_integral.h>
 #include <debond/contact/laws/winkler.h>
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/elasticity/displacement_problem.h>
 #include <debond/elasticity/mesh_transfer.h>
-#include <debond/elasticity/multigrid.h>
-#include <debond/elasticity/multigrid_problem.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/mesh/box.h>
 #include <debond/optimization/majorise/condensed_problem.h>
@@ -132,7 +131,7 @@ namespace
     double      rows_with_force = 0.;
     for (const auto &mode : body.problem->unknowns().rigid_body_modes())
       {
-        A.vmult(product, mode);
+        body.problem->vmult(product, mode);
         unsigned int count = 0;
         for (const double entry : product)
           count += std::abs(entry) > 1e-10 * A.frobenius_norm();
@@ -143,13 +142,20 @@ namespace
           rows_with_force,
           0.5);
 
-    const Multigrid       multigrid(*body.problem);
-    DofVector             u(body.problem->unknowns().n_dofs());
-    dealii::SolverControl control(60, 1e-10 * body.problem->load().l2_norm());
-    dealii::SolverCG<DofVector>(control).solve(A,
-                                               u,
-                                               body.problem->load(),
-                                               multigrid);
+    const auto distributed = [&](const DofVector &v) {
+      return distribute(v,
+                        dealii::complete_index_set(v.size()),
+                        MPI_COMM_SELF);
+    };
+    std::vector<DistributedVector> modes;
+    for (const DofVector &mode : body.problem->unknowns().rigid_body_modes())
+      modes.push_back(distributed(mode));
+    TruncatedMultigrid      cycle(A, dim, modes);
+    const DistributedVector load = distributed(body.problem->load());
+    DistributedVector       u    = load;
+    u                            = 0.;
+    dealii::SolverControl control(60, 1e-10 * load.l2_norm());
+    dealii::SolverCG<DistributedVector>(control).solve(A, u, load, cycle);
     std::cout << "  conjugate gradients within 60 iterations: "
               << verdict(control.last_step(), 60) << '\n';
 
@@ -181,9 +187,8 @@ namespace
         const double     J     = exact.functional + condensed.energy_at_zero();
 
         u = 0.;
-        MultigridCorrection   cycle(multigrid, normals);
-        MultigridProblem<dim> large(*body.problem, adhesion, cycle, u);
-        const auto            iterated = MajoriseMinimise({}).minimize(large);
+        DisplacementProblem large(*body.problem, adhesion, cycle, u);
+        const auto          iterated = MajoriseMinimise({}).minimize(large);
         std::cout << "  " << rule << ": "
                   << to_string(exact.status) + ", " + to_string(iterated.status)
                   << '\n';
@@ -192,7 +197,7 @@ namespace
               1e-11);
         DofVector    difference = condensed.expand(s);
         const double size       = difference.linfty_norm();
-        difference -= u;
+        difference -= gather(u);
         check("  difference of the displacements",
               difference.linfty_norm() / size,
               1e-8);
@@ -207,22 +212,19 @@ namespace
         bool ended = true, kept = true;
         for (const unsigned int allowed : {0, 1, 10, 30})
           {
-            u                           = 0.;
-            unsigned int          asked = 0;
-            DofVector             last(u);
-            MultigridProblem<dim> stopped(*body.problem,
-                                          adhesion,
-                                          cycle,
-                                          u,
-                                          [&]() { return ++asked <= allowed; });
-            const auto            result = MajoriseMinimise({}).minimize(
+            u                         = 0.;
+            unsigned int        asked = 0;
+            DofVector           last(u.size());
+            DisplacementProblem stopped(*body.problem, adhesion, cycle, u);
+            stopped.may_go_on = [&]() { return ++asked <= allowed; };
+            const auto result = MajoriseMinimise({}).minimize(
               stopped, [&](const MajoriseMinimiseIteration &) {
-                last = u;
+                last = gather(u);
                 return true;
               });
             ended = ended && result.status == SolverStatus::interrupted &&
                     asked <= allowed + 2;
-            kept = kept && u == last;
+            kept = kept && gather(u) == last;
           }
         std::cout << "  an interruption ends it within a linear iteration: "
                   << verdict(ended)

@@ -137,9 +137,6 @@ namespace Debond
   {
     std::vector<dealii::Point<dim>> vertices;
     Interpolation                   to_finer;
-
-    /// For each vertex the slab of the body (of its own mesh) that it lies in.
-    std::vector<unsigned int> slabs;
   };
 
 
@@ -179,24 +176,11 @@ namespace Debond
                 const std::vector<dealii::Point<dim>>     &points) const;
 
     /// The meshes of the coarser bodies as far as they are good for multigrid,
-    /// finest first, down to one that takes nothing to solve; interpolation is
-    /// to the vertices of @p mesh, which is the one of make_mesh(), in the
-    /// order @p vertices. Empty if there are none.
+    /// finest first, down to one that takes nothing to solve; empty unless
+    /// has_coarse_levels(). The first interpolation is to @p points of the
+    /// body, each next one to all vertices of the level before.
     virtual std::vector<CoarseLevel<dim>>
-    coarse_levels(const dealii::Triangulation<dim> &,
-                  const std::vector<unsigned int> &) const
-    {
-      return {};
-    }
-
-    /// For each of the mesh's vertices the slab of the body that it lies in:
-    /// sums are made slab by slab, so that they do not depend on where slabs
-    /// are. One for all if there is no other.
-    virtual std::vector<unsigned int>
-    slabs(const dealii::Triangulation<dim> &mesh) const
-    {
-      return std::vector<unsigned int>(mesh.n_vertices(), 0);
-    }
+    coarse_levels(const std::vector<dealii::Point<dim>> &points) const;
 
   private:
     /// The same of the body without its parts.

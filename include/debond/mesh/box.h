@@ -97,22 +97,12 @@ namespace Debond
                 const std::vector<dealii::Point<dim>> &points) const override;
 
     std::vector<CoarseLevel<dim>>
-    coarse_levels(const dealii::Triangulation<dim> &mesh,
-                  const std::vector<unsigned int>  &vertices) const override;
-
-    /// Layers of cells along x; what lies between two belongs to the second.
-    std::vector<unsigned int>
-    slabs(const dealii::Triangulation<dim> &mesh) const override;
+    coarse_levels(
+      const std::vector<dealii::Point<dim>> &points) const override;
 
     /// Those of coarse_levels().
     std::vector<BoxParameters>
     coarse_boxes() const;
-
-    /// The levels of some of these, one after the other, below the mesh that
-    /// has the vertices.
-    std::vector<CoarseLevel<dim>>
-    levels_of(const std::vector<BoxParameters>      &boxes,
-              const std::vector<dealii::Point<dim>> &vertices) const;
 
     const BoxParameters parameters;
   };

@@ -59,43 +59,6 @@ namespace Debond
       return n_odd != 1;
     }
 
-    /// The number of vertices before a vertex.
-    std::size_t
-    number(std::size_t index) const
-    {
-      Coordinates lattice;
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          lattice[d] =
-            static_cast<unsigned int>(index % (2 * box.cells[d] + 1));
-          index /= 2 * box.cells[d] + 1;
-        }
-      std::size_t  result = 0;
-      unsigned int n_odd  = 0;
-      for (unsigned int d = dim; d-- > 0;)
-        {
-          result += n_vertices(d, lattice[d], n_odd);
-          n_odd += lattice[d] % 2;
-        }
-      return result;
-    }
-
-    std::size_t
-    n_vertices() const
-    {
-      return n_vertices(dim - 1, 2 * box.cells[dim - 1] + 1, 0);
-    }
-
-    /// Where a vertex lies of @p n_slabs slabs along x; what lies between two
-    /// belongs to the second.
-    unsigned int
-    slab(const std::size_t index, const unsigned int n_slabs) const
-    {
-      const std::size_t n = std::size_t{2} * box.cells[0];
-      return static_cast<unsigned int>(
-        std::min<std::size_t>(index % (n + 1) * n_slabs / n, n_slabs - 1));
-    }
-
     dealii::Point<dim>
     point(std::size_t index) const
     {
@@ -186,22 +149,6 @@ namespace Debond
       for (unsigned int d = 0; d < dim; ++d)
         result[d] *= box.cells[d] / box.lengths[d];
       return result;
-    }
-
-    /// Of those whose coordinate in the direction @p d is below @p end, the
-    /// ones in the directions below being any, and of the ones above @p n_odd
-    /// being odd.
-    std::size_t
-    n_vertices(const unsigned int d,
-               const std::size_t  end,
-               const unsigned int n_odd) const
-    {
-      const std::size_t n_even_here = (end + 1) / 2, n_odd_here = end / 2;
-      if (d == 0)
-        return (n_odd != 1 ? n_even_here : 0) + (n_odd != 0 ? n_odd_here : 0);
-      const std::size_t all_below = 2 * box.cells[d - 1] + 1;
-      return n_even_here * n_vertices(d - 1, all_below, n_odd) +
-             n_odd_here * n_vertices(d - 1, all_below, n_odd + 1);
     }
 
     std::size_t

@@ -48,15 +48,6 @@ namespace Debond
     const std::vector<typename dealii::Triangulation<dim>::cell_iterator>
                                     &coarse_cells,
     const dealii::types::boundary_id id_of_cuts);
-
-  /// The mesh of these. @p crossed must be empty.
-  template <int dim>
-  void
-  crossed_part(
-    const std::vector<typename dealii::Triangulation<dim>::cell_iterator>
-                                    &coarse_cells,
-    const dealii::types::boundary_id id_of_cuts,
-    dealii::Triangulation<dim>      &crossed);
 } // namespace Debond
 
 #endif

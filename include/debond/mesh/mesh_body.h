@@ -2,7 +2,7 @@
 #ifndef debond_mesh_mesh_body_h
 #define debond_mesh_mesh_body_h
 
-#include <debond/mesh/halved_mesh.h>
+#include <debond/mesh/source_mesh.h>
 
 #include <functional>
 
@@ -52,54 +52,16 @@ namespace Debond
     std::unique_ptr<Body<dim>>
     coarser_whole() const override;
 
-    std::vector<CoarseLevel<dim>>
-    coarse_levels(const dealii::Triangulation<dim> &mesh,
-                  const std::vector<unsigned int>  &vertices) const override;
-
-    /// Those of units (HalvedMesh).
-    std::vector<unsigned int>
-    slabs(const dealii::Triangulation<dim> &mesh) const override;
-
-    /// Of triangles or tetrahedra from the start.
-    bool
-    is_of_simplices() const;
-
-    /// How many coarse_levels() there are.
-    unsigned int
-    n_coarse_levels() const;
-
-    /// The cells before they are crossed, or what a rank needs of them, at most
-    /// halved to the level @p finest and at least to that of the units.
-    HalvedMesh<dim>
-    halved(const unsigned int finest,
-           const unsigned int rank    = 0,
-           const unsigned int n_ranks = 1) const;
-
-    unsigned int
-    finest_level() const;
-
-    unsigned int
-    level_of_units() const;
-
-    /// Of the crossed mesh.
-    double
-    n_vertices_of_level(const unsigned int level) const;
-
-    /// The names of the whole mesh, and of each id the number of its faces,
-    /// crossed.
-    const PieceNames &
-    names() const;
-
-    std::map<dealii::types::boundary_id, unsigned int>
-    n_faces() const;
-
   private:
     const Source       make;
     const unsigned int n_refinements;
 
-    /// Of the mesh before it is halved.
-    bool         is_simplicial = false;
-    unsigned int unit_level    = 0;
+    bool         is_simplicial  = false;
+    unsigned int measured_level = 0; ///< on which the shape is measured
+
+    /// Of the crossed mesh.
+    double
+    n_vertices_of_level(const unsigned int level) const;
 
     /// Corners, edges, faces (of hexahedra) and cells of a part of the mesh.
     struct Counts
@@ -111,9 +73,9 @@ namespace Debond
       halved(const unsigned int times) const;
     };
 
-    Counts all;
+    Counts all; ///< of the mesh before it is halved
 
-    /// The mesh of the units' level: all that there is beforehand.
+    /// Halved so often: all that there is beforehand.
     std::unique_ptr<const SourceMesh<dim>> source;
   };
 } // namespace Debond
