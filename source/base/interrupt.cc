@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/processes.h>
 #include <debond/base/interrupt.h>
+#include <debond/base/processes.h>
 
 #include <atomic>
 

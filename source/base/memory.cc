@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
-#include <debond/base/processes.h>
 #include <debond/base/memory.h>
+#include <debond/base/processes.h>
 #include <debond/base/text.h>
 
 #include <sys/resource.h>

@@ -92,11 +92,9 @@ namespace Debond
   {
     if (for_the_end == MPI_COMM_NULL)
       return EndOfRanks{is_own, exit_code};
-    const int n = static_cast<int>(
-      number_of_ranks(for_the_end));
-    const int rank = static_cast<int>(
-      rank_of_this(for_the_end));
-    const int   own = is_own ? rank : n;
+    const int   n    = static_cast<int>(number_of_ranks(for_the_end));
+    const int   rank = static_cast<int>(rank_of_this(for_the_end));
+    const int   own  = is_own ? rank : n;
     int         first, is_agreed = 0;
     MPI_Request request;
     MPI_Iallreduce(&own, &first, 1, MPI_INT, MPI_MIN, for_the_end, &request);

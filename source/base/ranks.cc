@@ -52,11 +52,10 @@ namespace Debond
           dynamic_cast<const std::invalid_argument *>(&exception) != nullptr;
       }
     // Own errors first; n + 1 is none.
-    const unsigned int first =
-      dealii::Utilities::MPI::min(!error ? n + 1 :
-                                  is_own ? rank :
-                                           n,
-                                  ranks);
+    const unsigned int first = dealii::Utilities::MPI::min(!error ? n + 1 :
+                                                           is_own ? rank :
+                                                                    n,
+                                                           ranks);
     if (first > n)
       return;
     // All follow one of other ranks than these.

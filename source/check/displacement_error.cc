@@ -118,27 +118,27 @@ namespace Debond
 
     const MPI_Comm ranks = problem.unknowns().communicator();
     on_all_ranks(ranks, [&]() {
-    for (const auto &cell : owned_cells(problem.unknowns().dof_handler()))
-      {
-        cell_stresses.reinit(cell);
-        stiffness =
-          problem.fields().material(cell).template elasticity_tensor<dim>();
-        // The points of the rule are further than twice that from the faces.
-        const double step = 1e-3 * cell->minimum_vertex_distance();
-        for (const unsigned int q : values.quadrature_point_indices())
-          {
-            const dealii::Point<dim>    &point  = values.quadrature_point(q);
-            const double                 weight = values.JxW(q);
-            const dealii::Tensor<1, dim> exact_value = value_at(point, exact);
-            const dealii::Tensor<2, dim> exact_gradient =
-              gradient_at(point, step, exact);
-            add(weight, exact_value, exact_gradient, norms);
-            add(weight,
-                cell_stresses.displacement(q) - exact_value,
-                cell_stresses.gradient(q) - exact_gradient,
-                errors);
-          }
-      }
+      for (const auto &cell : owned_cells(problem.unknowns().dof_handler()))
+        {
+          cell_stresses.reinit(cell);
+          stiffness =
+            problem.fields().material(cell).template elasticity_tensor<dim>();
+          // The points of the rule are further than twice that from the faces.
+          const double step = 1e-3 * cell->minimum_vertex_distance();
+          for (const unsigned int q : values.quadrature_point_indices())
+            {
+              const dealii::Point<dim>    &point  = values.quadrature_point(q);
+              const double                 weight = values.JxW(q);
+              const dealii::Tensor<1, dim> exact_value = value_at(point, exact);
+              const dealii::Tensor<2, dim> exact_gradient =
+                gradient_at(point, step, exact);
+              add(weight, exact_value, exact_gradient, norms);
+              add(weight,
+                  cell_stresses.displacement(q) - exact_value,
+                  cell_stresses.gradient(q) - exact_gradient,
+                  errors);
+            }
+        }
     });
     for (Squares *const squares : {&errors, &norms})
       for (double *const sum :

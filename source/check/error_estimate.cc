@@ -697,18 +697,12 @@ namespace Debond
                  const LoadFactors            factors,
                  const Loads<dim>            *dead_loads)
   {
-    const auto    &dofs  = problem.unknowns().dof_handler();
-    const MPI_Comm ranks = problem.unknowns().communicator();
+    const auto                   &dofs  = problem.unknowns().dof_handler();
+    const MPI_Comm                ranks = problem.unknowns().communicator();
     std::optional<Residuals<dim>> residuals;
     on_all_ranks(ranks, [&]() {
-      residuals.emplace(problem,
-                        adhesion,
-                        conditions,
-                        supports,
-                        loads,
-                        u,
-                        factors,
-                        dead_loads);
+      residuals.emplace(
+        problem, adhesion, conditions, supports, loads, u, factors, dead_loads);
     });
 
     const double  constant = calibration<dim>(problem.unknowns().degree());

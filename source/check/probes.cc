@@ -54,8 +54,8 @@ namespace Debond
             }
         }
       // The first of the ranks that have found it deepest has the point.
-      const MPI_Comm     ranks = unknowns.communicator();
-      const unsigned int rank  = rank_of_this(ranks);
+      const MPI_Comm     ranks   = unknowns.communicator();
+      const unsigned int rank    = rank_of_this(ranks);
       const double       deepest = dealii::Utilities::MPI::max(least, ranks);
       const unsigned int first   = dealii::Utilities::MPI::min(
         least == deepest ? rank : number_of_ranks(ranks), ranks);

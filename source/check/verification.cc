@@ -395,16 +395,14 @@ namespace Debond
           contact(dof) = residual(dof);
 
       const auto resultant = [&](const DofVector &forces) {
-        const DofVector cartesian =
-          problem.unknowns().cartesian_forces(forces);
+        const DofVector cartesian = problem.unknowns().cartesian_forces(forces);
         dealii::Tensor<1, dim> sum;
         for (unsigned int i = 0; i < cartesian.size(); ++i)
           sum[i % dim] += cartesian(i);
         return sum;
       };
 
-      const DofVector applied =
-        problem.fields().applied_nodal_forces(factors);
+      const DofVector applied = problem.fields().applied_nodal_forces(factors);
       for (unsigned int i = 0; i < applied.size(); ++i)
         result.applied_force[i % dim] += applied(i);
       result.clamped_reaction = resultant(clamped);
@@ -442,7 +440,7 @@ namespace Debond
       // Resultants can vanish where forces do not.
       DofVector supports = clamped;
       supports += contact;
-      const double scale = supports.l1_norm() + applied.l1_norm();
+      const double scale     = supports.l1_norm() + applied.l1_norm();
       const double imbalance = (result.applied_force + result.clamped_reaction +
                                 result.contact_reaction)
                                  .norm();
@@ -506,8 +504,7 @@ namespace Debond
     if (problem.unknowns().has_lifting())
       displacement += problem.unknowns().lifting(factors);
     const double           largest_displacement = displacement.linfty_norm();
-    const LargestResiduals largest =
-      largest_residuals(problem, residual);
+    const LargestResiduals largest = largest_residuals(problem, residual);
     DofVector    rounding = problem.fields().residual_rounding(u, factors);
     const double largest_load =
       problem.fields().applied_nodal_forces(factors).linfty_norm();

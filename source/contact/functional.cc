@@ -93,8 +93,7 @@ namespace Debond
 
   template <int dim>
   void
-  Functional<dim>::subgradient(const DofVector &v,
-                                           DofVector       &eta) const
+  Functional<dim>::subgradient(const DofVector &v, DofVector &eta) const
   {
     multiply(eta, v);
     eta -= f;
@@ -105,8 +104,7 @@ namespace Debond
 
   template <int dim>
   std::unique_ptr<LineRestriction>
-  Functional<dim>::along(const DofVector &x,
-                                     const DofVector &d) const
+  Functional<dim>::along(const DofVector &x, const DofVector &d) const
   {
     return std::make_unique<Line>(*this, x, d);
   }

@@ -5,11 +5,11 @@
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_fe.h>
 
-#include <boost/serialization/array.hpp>
-
 #include <debond/base/ranks.h>
 #include <debond/elasticity/boundary_face.h>
 #include <debond/mesh/owned_cells.h>
+
+#include <boost/serialization/array.hpp>
 
 #include <algorithm>
 #include <stdexcept>

@@ -2,10 +2,10 @@
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_control.h>
 
-#include <boost/serialization/utility.hpp>
-
 #include <debond/elasticity/displacement_problem.h>
 #include <debond/linear_algebra/stagnation.h>
+
+#include <boost/serialization/utility.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -33,10 +33,10 @@ namespace Debond
     for (unsigned int i = 0; i < normals.size(); ++i)
       if (own.is_element(normals[i]))
         s(i) = v(normals[i]);
-    dealii::Utilities::MPI::sum(
-      dealii::ArrayView<const double>(s.data(), s.size()),
-      ranks,
-      dealii::ArrayView<double>(s.data(), s.size()));
+    dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(s.data(),
+                                                                s.size()),
+                                ranks,
+                                dealii::ArrayView<double>(s.data(), s.size()));
     return s;
   }
 
@@ -120,11 +120,10 @@ namespace Debond
 
 
   template <int dim>
-  DisplacementProblem::DisplacementProblem(
-    const ElasticProblem<dim> &problem,
-    const PiecewiseQuadratic  &nonsmooth,
-    TruncatedMultigrid        &multigrid_cycle,
-    DistributedVector         &start)
+  DisplacementProblem::DisplacementProblem(const ElasticProblem<dim> &problem,
+                                           const PiecewiseQuadratic  &nonsmooth,
+                                           TruncatedMultigrid &multigrid_cycle,
+                                           DistributedVector  &start)
     : A(problem.trilinos_matrix())
     , f(distribute(problem.load(),
                    start.locally_owned_elements(),
@@ -258,12 +257,13 @@ namespace Debond
     dealii::SolverControl    control(maximum_linear_iterations, tolerance);
     dealii::SolverCG<Vector> cg(control);
     Stagnation               stagnation;
-    cg.connect(
-      [this, &stagnation](const unsigned int, const double value, const auto &) {
-        return may_go_on() && !stagnation.is_reached(value) ?
-                 dealii::SolverControl::success :
-                 dealii::SolverControl::failure;
-      });
+    cg.connect([this, &stagnation](const unsigned int,
+                                   const double value,
+                                   const auto &) {
+      return may_go_on() && !stagnation.is_reached(value) ?
+               dealii::SolverControl::success :
+               dealii::SolverControl::failure;
+    });
     correction     = 0.;
     bool is_solved = true;
     try
@@ -288,7 +288,7 @@ namespace Debond
     const Vector previous_u = u;
     Minimisation result     = {SolverStatus::quadratic_program, 0, 0};
     Vector       force(u), free_force(u), correction(u), image(u);
-    const auto interrupted = [&]() {
+    const auto   interrupted = [&]() {
       result.status = SolverStatus::interrupted;
       u             = previous_u;
       return result;
@@ -365,14 +365,12 @@ namespace Debond
 
 
 
-  template DisplacementProblem::DisplacementProblem(
-    const ElasticProblem<2> &,
-    const PiecewiseQuadratic &,
-    TruncatedMultigrid &,
-    DistributedVector &);
-  template DisplacementProblem::DisplacementProblem(
-    const ElasticProblem<3> &,
-    const PiecewiseQuadratic &,
-    TruncatedMultigrid &,
-    DistributedVector &);
+  template DisplacementProblem::DisplacementProblem(const ElasticProblem<2> &,
+                                                    const PiecewiseQuadratic &,
+                                                    TruncatedMultigrid &,
+                                                    DistributedVector &);
+  template DisplacementProblem::DisplacementProblem(const ElasticProblem<3> &,
+                                                    const PiecewiseQuadratic &,
+                                                    TruncatedMultigrid &,
+                                                    DistributedVector &);
 } // namespace Debond

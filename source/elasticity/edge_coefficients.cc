@@ -14,9 +14,11 @@ namespace Debond
           number_of_node.resize(n_nodes, dealii::numbers::invalid_unsigned_int);
           if (find(face.indices[k]) != nullptr)
             continue;
-          const auto &[a, b]                = simplex_edges[k - dim];
-          number_of_node[face.indices[k]] = static_cast<unsigned int>(edges.size());
-          edges.push_back({face.indices[k], {{face.indices[a], face.indices[b]}}});
+          const auto &[a, b] = simplex_edges[k - dim];
+          number_of_node[face.indices[k]] =
+            static_cast<unsigned int>(edges.size());
+          edges.push_back(
+            {face.indices[k], {{face.indices[a], face.indices[b]}}});
         }
   }
 

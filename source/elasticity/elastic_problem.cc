@@ -6,6 +6,7 @@
 #include <debond/base/ranks.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/temperature_load.h>
+#include <debond/linear_algebra/trilinos_matrix.h>
 
 #include <algorithm>
 #include <cmath>
@@ -73,7 +74,7 @@ namespace Debond
     constraints.set_zero(system_load);
 
     // Cells of other ranks around the own ones make own rows complete.
-    dealii::DynamicSparsityPattern pattern(dofs.n_dofs(),
+    dealii::DynamicSparsityPattern               pattern(dofs.n_dofs(),
                                            dofs.n_dofs(),
                                            dofs.locally_owned_dofs());
     std::vector<dealii::types::global_dof_index> cell_dofs(
@@ -112,8 +113,8 @@ namespace Debond
     std::vector<dealii::types::global_dof_index> cell_dofs(n);
     std::vector<dealii::SymmetricTensor<2, dim>> strains(n);
 
-    const dealii::IndexSet                      &own = dofs.locally_owned_dofs();
-    std::vector<unsigned int>                    order(n);
+    const dealii::IndexSet   &own = dofs.locally_owned_dofs();
+    std::vector<unsigned int> order(n);
     std::vector<dealii::types::global_dof_index> columns;
     std::vector<double>                          values;
     for (const auto &cell : dofs.active_cell_iterators())
@@ -201,16 +202,10 @@ namespace Debond
   ElasticProblem<dim>::trilinos_matrix() const
   {
     if (!distributed_matrix)
-      {
-        distributed_matrix =
-          std::make_unique<dealii::TrilinosWrappers::SparseMatrix>();
-        const auto &own = elastic_unknowns.dof_handler().locally_owned_dofs();
-        distributed_matrix->reinit(own,
-                                   own,
-                                   system_matrix,
-                                   elastic_unknowns.communicator(),
-                                   /*drop_tolerance=*/0.);
-      }
+      distributed_matrix = Debond::trilinos_matrix(
+        {system_matrix,
+         elastic_unknowns.dof_handler().locally_owned_dofs(),
+         elastic_unknowns.communicator()});
     return *distributed_matrix;
   }
 

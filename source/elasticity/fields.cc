@@ -177,10 +177,8 @@ namespace Debond
   ElasticFields<dim>::elastic_functional(const DofVector  &u,
                                          const LoadFactors factors) const
   {
-    return functional(u,
-                      factors,
-                      elastic_unknowns.in_frames(
-                        applied_nodal_forces(factors)));
+    return functional(
+      u, factors, elastic_unknowns.in_frames(applied_nodal_forces(factors)));
   }
 
 
@@ -227,9 +225,9 @@ namespace Debond
     namespace accumulators = boost::accumulators;
     accumulators::
       accumulator_set<double, accumulators::stats<accumulators::tag::sum_kahan>>
-                      result;
-    const DofVector   displacement = lifted(u, factors);
-    const DofVector   cartesian =
+                    result;
+    const DofVector displacement = lifted(u, factors);
+    const DofVector cartesian =
       elastic_unknowns.cartesian_displacement(u, factors);
     CellStresses<dim> cell_stresses(*this,
                                     cartesian,

@@ -77,11 +77,11 @@ namespace Debond
   {
     // Of all cells of the source vertices and values, which other ranks may
     // have: vertices first.
-    const auto        &source_dofs  = source.unknowns().dof_handler();
-    const auto        &fe           = source_dofs.get_fe();
-    const unsigned int n            = fe.dofs_per_cell;
-    const std::size_t  n_of_cell    = dim * (dim + 1) + n;
-    const DofVector    displacement = source.unknowns().cartesian_displacement(u);
+    const auto        &source_dofs = source.unknowns().dof_handler();
+    const auto        &fe          = source_dofs.get_fe();
+    const unsigned int n           = fe.dofs_per_cell;
+    const std::size_t  n_of_cell   = dim * (dim + 1) + n;
+    const DofVector displacement = source.unknowns().cartesian_displacement(u);
     std::vector<double> of_cells(
       n_of_cell * source_dofs.get_triangulation().n_global_active_cells());
     std::vector<dealii::types::global_dof_index> cell_dofs(n);
@@ -100,8 +100,8 @@ namespace Debond
                                 source.unknowns().communicator(),
                                 of_cells);
 
-    const ElasticUnknowns<dim>            &unknowns  = target.unknowns();
-    const std::vector<dealii::Point<dim>>  positions = unknowns.positions();
+    const ElasticUnknowns<dim>           &unknowns  = target.unknowns();
+    const std::vector<dealii::Point<dim>> positions = unknowns.positions();
     const dealii::IndexSet &own = unknowns.dof_handler().locally_owned_dofs();
     DofVector               result(unknowns.n_dofs());
     std::vector<bool>       is_done(result.size(), false);
@@ -126,8 +126,8 @@ namespace Debond
             if (is_done[cell_dofs[i]] || !own.is_element(cell_dofs[i]))
               continue;
             is_done[cell_dofs[i]] = true;
-            const dealii::Point<dim> point(
-              to_unit * (positions[cell_dofs[i]] - origin));
+            const dealii::Point<dim> point(to_unit *
+                                           (positions[cell_dofs[i]] - origin));
             for (unsigned int j = i % dim; j < n; j += dim)
               result(cell_dofs[i]) += fe.shape_value(j, point) * values[j];
           }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <boost/serialization/array.hpp>
-#include <boost/serialization/utility.hpp>
-
 #include <debond/base/ranks.h>
 #include <debond/elasticity/prolongations.h>
 #include <debond/mesh/owned_cells.h>
+
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/utility.hpp>
 
 #include <algorithm>
 #include <map>
@@ -21,8 +21,9 @@ namespace Debond
     template <int dim>
     struct NodeFrame
     {
-      dealii::Tensor<2, dim> to_unknowns  = dealii::unit_symmetric_tensor<dim>();
-      dealii::Tensor<2, dim> to_cartesian = dealii::unit_symmetric_tensor<dim>();
+      dealii::Tensor<2, dim> to_unknowns = dealii::unit_symmetric_tensor<dim>();
+      dealii::Tensor<2, dim> to_cartesian =
+        dealii::unit_symmetric_tensor<dim>();
     };
 
     /// By the numbers of the nodes.
@@ -150,8 +151,9 @@ namespace Debond
 
 
 
-    /// Gives each of @p n coarse nodes to a rank that has one of the finer nodes
-    /// that depend most on it, and renumbers them. @p rows: of own finer nodes.
+    /// Gives each of @p n coarse nodes to a rank that has one of the finer
+    /// nodes that depend most on it, and renumbers them. @p rows: of own finer
+    /// nodes.
     Shares
     share_out(const unsigned int n, Interpolation &rows, const MPI_Comm ranks)
     {
@@ -244,8 +246,7 @@ namespace Debond
           share_out(static_cast<unsigned int>(level.vertices.size()),
                     rows,
                     ranks);
-        NodeFrames<dim> coarse =
-          coarse_frames(fine, rows, finer.begin, ranks);
+        NodeFrames<dim> coarse = coarse_frames(fine, rows, finer.begin, ranks);
         result.push_back(between_unknowns(rows, finer.begin, fine, coarse));
         result.back().n_own_columns = (coarser.end - coarser.begin) * dim;
         fine                        = std::move(coarse);

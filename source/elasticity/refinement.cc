@@ -44,8 +44,8 @@ namespace Debond
     const bool                  has_lifting = unknowns.has_lifting();
     const DofVector             lifting =
       has_lifting ? unknowns.lifting(factors) : DofVector(u.size());
-    const DofVector             diagonal = problem.diagonal();
-    double                      terms    = 0.;
+    const DofVector diagonal = problem.diagonal();
+    double          terms    = 0.;
     for (unsigned int i = 0; i < u.size(); ++i)
       if (has_lifting || !unknowns.is_constrained(i))
         {
@@ -88,7 +88,7 @@ namespace Debond
         for (const double s : problem.unknowns().contact().trace(start))
           active.push_back(s == 0.);
         // Of what w leaves of a lifting that it undoes.
-        constexpr long double epsilon = std::numeric_limits<double>::epsilon();
+        constexpr long double epsilon  = std::numeric_limits<double>::epsilon();
         const DofVector       diagonal = problem.diagonal();
         for (unsigned int i = 0; i < lifting.size(); ++i)
           least_energy +=

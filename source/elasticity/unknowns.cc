@@ -80,13 +80,8 @@ namespace Debond
                               condition,
                               conditions,
                               contact_edges);
-    contact_space = make_contact_space(contact,
-                                       degree,
-                                       conditions,
-                                       supports,
-                                       diameter,
-                                       node_supports,
-                                       gap);
+    contact_space = make_contact_space(
+      contact, degree, conditions, supports, diameter, node_supports, gap);
     std::vector<Support<dim>> held = node_supports.finish();
     if (gap.size() > 0 && gap.all_zero())
       gap.reinit(0);
@@ -159,10 +154,11 @@ namespace Debond
   std::vector<dealii::Point<dim>>
   ElasticUnknowns<dim>::positions() const
   {
-    const std::vector<dealii::Point<dim>>       &points = fe.get_unit_support_points();
-    std::vector<double>                          coordinates(n_dofs() * std::size_t{dim});
+    const std::vector<dealii::Point<dim>> &points =
+      fe.get_unit_support_points();
+    std::vector<double> coordinates(n_dofs() * std::size_t{dim});
     std::vector<dealii::types::global_dof_index> cell_dofs(fe.dofs_per_cell);
-    const dealii::IndexSet                      &own = dofs.locally_owned_dofs();
+    const dealii::IndexSet &own = dofs.locally_owned_dofs();
     for (const auto &cell : owned_cells(dofs))
       {
         cell->get_dof_indices(cell_dofs);
@@ -206,7 +202,7 @@ namespace Debond
         for (unsigned int i = 0; i < n; ++i)
           first_visits[cell_dofs[i]] =
             std::min<std::uint64_t>(first_visits[cell_dofs[i]],
-                     cell->id().get_coarse_cell_id() * n + i);
+                                    cell->id().get_coarse_cell_id() * n + i);
       }
     dealii::Utilities::MPI::min(first_visits, communicator(), first_visits);
     auto visited = order;

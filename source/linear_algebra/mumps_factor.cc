@@ -3,8 +3,8 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/lapack_templates.h>
 
-#include <debond/base/ranks.h>
 #include <debond/base/memory.h>
+#include <debond/base/ranks.h>
 #include <debond/linear_algebra/mumps_factor.h>
 
 #include <Eigen/SparseCore>

@@ -92,11 +92,15 @@ namespace Debond
     {
     public:
       explicit CellSearch(const dealii::Triangulation<dim> &mesh)
-        : tree(dealii::pack_rtree_of_indices(boxes_of(mesh)))
+        : boxes(boxes_of(mesh))
+        , tree(dealii::pack_rtree_of_indices(boxes))
       {
         for (const auto &cell : mesh.active_cell_iterators())
           cells.push_back(cell);
       }
+
+      /// The tree keeps a reference to the boxes.
+      CellSearch(const CellSearch &) = delete;
 
       /// The vertices of the cell that the point is farthest inside of, and its
       /// barycentric coordinates there.
@@ -149,8 +153,9 @@ namespace Debond
       }
 
       std::vector<typename dealii::Triangulation<dim>::active_cell_iterator>
-        cells;
-      decltype(dealii::pack_rtree_of_indices(
+                                                  cells;
+      const std::vector<dealii::BoundingBox<dim>> boxes;
+      const decltype(dealii::pack_rtree_of_indices(
         std::vector<dealii::BoundingBox<dim>>())) tree;
     };
   } // namespace
@@ -183,15 +188,15 @@ namespace Debond
     for (auto body = coarser_whole(); body != nullptr;
          body      = body->coarser_whole())
       {
-        dealii::Triangulation<dim> mesh;
-        body->make_whole_mesh(mesh);
-        const CellSearch<dim> search(mesh);
-        CoarseLevel<dim>      level;
-        level.to_finer.n_nodes = mesh.n_vertices();
-        for (const dealii::Point<dim> &point :
+             dealii::Triangulation<dim> mesh;
+             body->make_whole_mesh(mesh);
+             const CellSearch<dim> search(mesh);
+             CoarseLevel<dim>      level;
+             level.to_finer.n_nodes = mesh.n_vertices();
+             for (const dealii::Point<dim> &point :
              levels.empty() ? points : levels.back().vertices)
           {
-            // Beside the mesh, as on curved sides, next to it. What rounding
+                 // Beside the mesh, as on curved sides, next to it. What rounding
             // makes of a zero is none.
             constexpr double noise = 1e-6;
             double           sum   = 0.;
@@ -201,15 +206,15 @@ namespace Debond
             for (const auto &[vertex, weight] : found)
               if (weight > noise)
                 {
-                  level.to_finer.nodes.push_back(vertex);
-                  level.to_finer.weights.push_back(
+                       level.to_finer.nodes.push_back(vertex);
+                       level.to_finer.weights.push_back(
                     static_cast<float>(weight / sum));
                 }
             level.to_finer.starts.push_back(level.to_finer.nodes.size());
           }
-        level.vertices = mesh.get_vertices();
-        levels.push_back(std::move(level));
-        if (body->n_vertices() < fewest_vertices_of_level)
+             level.vertices = mesh.get_vertices();
+             levels.push_back(std::move(level));
+             if (body->n_vertices() < fewest_vertices_of_level)
           break;
       }
     return levels;

@@ -72,8 +72,7 @@ namespace Debond
     Description<dim>
     part_of_mesh(dealii::Triangulation<dim> &whole, const MPI_Comm ranks)
     {
-      const unsigned int n_ranks =
-        number_of_ranks(ranks);
+      const unsigned int n_ranks = number_of_ranks(ranks);
       using dealii::TriangulationDescription::Utilities::
         create_description_from_triangulation_in_groups;
       return create_description_from_triangulation_in_groups<dim, dim>(
@@ -150,12 +149,11 @@ namespace Debond
     Description<dim>
     part_of_layers(const BoxParameters &box, const MPI_Comm ranks)
     {
-      const std::uint64_t n_ranks =
-        number_of_ranks(ranks);
-      const unsigned int rank = rank_of_this(ranks);
-      const unsigned int direction   = direction_of_layers<dim>(box);
-      const unsigned int n_layers    = box.cells[direction];
-      const auto         first_layer = [&](const std::uint64_t owner) {
+      const std::uint64_t n_ranks     = number_of_ranks(ranks);
+      const unsigned int  rank        = rank_of_this(ranks);
+      const unsigned int  direction   = direction_of_layers<dim>(box);
+      const unsigned int  n_layers    = box.cells[direction];
+      const auto          first_layer = [&](const std::uint64_t owner) {
         return static_cast<unsigned int>((owner * n_layers + n_ranks - 1) /
                                          n_ranks);
       };
@@ -233,7 +231,7 @@ namespace Debond
   make_distributed_mesh(const Body<dim> &body, const MPI_Comm ranks)
   {
     DistributedMesh<dim> result;
-    const unsigned int n_ranks = number_of_ranks(ranks);
+    const unsigned int   n_ranks = number_of_ranks(ranks);
     if (n_ranks == 1)
       {
         result.triangulation = std::make_unique<dealii::Triangulation<dim>>();

@@ -55,8 +55,8 @@ namespace Debond
   {
     std::unique_ptr<SourceMesh<dim>>  coarsest = make(0);
     const dealii::Triangulation<dim> &mesh     = coarsest->mesh;
-    is_simplicial = mesh.all_reference_cells_are_simplex();
-    measured_level    = is_simplicial ? n_refinements : 0;
+    is_simplicial  = mesh.all_reference_cells_are_simplex();
+    measured_level = is_simplicial ? n_refinements : 0;
     for (std::size_t n = mesh.n_active_cells();
          n < fewest_measured && measured_level < n_refinements;
          n <<= dim)

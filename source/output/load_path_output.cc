@@ -2,8 +2,8 @@
 #include <deal.II/base/data_out_base.h>
 #include <deal.II/base/utilities.h>
 
-#include <debond/base/processes.h>
 #include <debond/base/atomic_file.h>
+#include <debond/base/processes.h>
 #include <debond/output/csv_table.h>
 #include <debond/output/load_path_output.h>
 #include <debond/output/vtu.h>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
-#include <boost/serialization/utility.hpp>
-
 #include <debond/base/atomic_file.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/output/matrices.h>
+
+#include <boost/serialization/utility.hpp>
 
 #include <algorithm>
 #include <functional>
@@ -174,9 +174,7 @@ namespace Debond
     };
     std::vector<OutputFile> files;
     const auto add = [&](const std::string &name, const auto &write) {
-      files.push_back(
-        {name,
-         [wanted]() { return wanted; }, write});
+      files.push_back({name, [wanted]() { return wanted; }, write});
     };
     add("A.mtx", [&scene](const std::string &path) {
       write_sparse(scene.problem(), path);
@@ -190,8 +188,8 @@ namespace Debond
       write_frames(scene.problem().unknowns(), path);
     });
     add("modes.mtx", [&scene](const std::string &path) {
-      const auto &unknowns = scene.problem().unknowns();
-      std::vector<DofVector> modes = unknowns.rigid_body_modes();
+      const auto            &unknowns = scene.problem().unknowns();
+      std::vector<DofVector> modes    = unknowns.rigid_body_modes();
       for (DofVector &mode : modes)
         mode = in_order(mode, unknowns.serial_order());
       write_array(modes, path);

@@ -58,7 +58,7 @@ namespace Debond
           stresses.push_back(means.solid_stress(0));
           has_regions |= cell->material_id() != first.material_id();
         }
-      has_regions = any_rank(has_regions);
+      has_regions    = any_rank(has_regions);
       const auto add = [&](const std::string &name, const auto &value) {
         all.emplace_back(name, stresses.size());
         for (const auto &cell : dofs.active_cell_iterators())
@@ -227,7 +227,7 @@ namespace Debond
                  const ErrorEstimate          *estimate,
                  const std::vector<CellField> &more)
   {
-    namespace Interpretation = dealii::DataComponentInterpretation;
+    namespace Interpretation             = dealii::DataComponentInterpretation;
     const ElasticUnknowns<dim> &unknowns = problem.unknowns();
     const DofVector displacement = unknowns.cartesian_displacement(u, factors);
 
@@ -267,10 +267,8 @@ namespace Debond
     for (unsigned int rank = 0; rank < n_ranks; ++rank)
       names.push_back(of_rank(rank));
     on_all_ranks(ranks, [&]() {
-      write_own_file((path.parent_path() /
-                      of_rank(rank_of_this(ranks)))
-                       .string(),
-                     write);
+      write_own_file(
+        (path.parent_path() / of_rank(rank_of_this(ranks))).string(), write);
     });
     write_atomically(joined_file(file_name, ranks), [&](std::ostream &file) {
       out.write_pvtu_record(file, names);
@@ -282,11 +280,10 @@ namespace Debond
   std::string
   joined_file(const std::string &file_name, const MPI_Comm ranks)
   {
-    return number_of_ranks(ranks) == 1 ?
-             file_name :
-             std::filesystem::path(file_name)
-               .replace_extension(".pvtu")
-               .string();
+    return number_of_ranks(ranks) == 1 ? file_name :
+                                         std::filesystem::path(file_name)
+                                           .replace_extension(".pvtu")
+                                           .string();
   }
 
 

@@ -237,9 +237,10 @@ namespace Debond
     const bool is_loaded = has_load(scene, result.largest.displacement);
 
     // A loop that was interrupted has the solution of the mesh before.
-    const bool is_solution = result.is_success() || !shortfall.empty() ||
-                       (result.solve.status == SolverStatus::interrupted &&
-                        !result.levels.empty());
+    const bool is_solution =
+      result.is_success() || !shortfall.empty() ||
+      (result.solve.status == SolverStatus::interrupted &&
+       !result.levels.empty());
     // At rest all of u is rounding, of which there is no error.
     if (is_solution && is_loaded)
       {

@@ -120,7 +120,9 @@ namespace Debond
 
       MethodChoice choice =
         choose_method(parameters, parameters.solver, parameters.accuracy);
-      const Scene<dim> scene(parameters, parameters.solver.start, MPI_COMM_WORLD);
+      const Scene<dim> scene(parameters,
+                             parameters.solver.start,
+                             MPI_COMM_WORLD);
       choose_linear_solver(scene, parameters.solver, choice);
       check_supports_of_method(choice, parameters.solver, scene);
       std::cout << parameters.scene << ": valid" << std::endl;
@@ -177,8 +179,8 @@ namespace Debond
 
     /// Does @p action and returns its exit code. What it throws is reported on
     /// std::cerr: each error of bad input, too little memory, and faults of the
-    /// program. Of ranks that throw together one speaks for all; what happens to
-    /// one alone ends them all.
+    /// program. Of ranks that throw together one speaks for all; what happens
+    /// to one alone ends them all.
     ExitCode
     guard(const std::function<ExitCode()> &action)
     {

@@ -52,8 +52,9 @@ namespace Debond
     if (!result.is_answer())
       print("NOT CONVERGED (" + result.status + "): " + result.message);
     else if (interrupted)
-      print("the search or the proof was interrupted; the result is what it had "
-            "found");
+      print(
+        "the search or the proof was interrupted; the result is what it had "
+        "found");
     if (!output_error.empty())
       {
         print(output_error);

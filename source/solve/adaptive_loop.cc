@@ -260,11 +260,8 @@ namespace Debond
         displacements[i / dim][static_cast<unsigned int>(i % dim)] = of_all[i];
       body.extend(displacements);
       std::vector<dealii::Tensor<1, dim>> on_next;
-      for (const unsigned int place :
-           body.vertex_numbers(next.problem()
-                                 .unknowns()
-                                 .dof_handler()
-                                 .get_triangulation()))
+      for (const unsigned int place : body.vertex_numbers(
+             next.problem().unknowns().dof_handler().get_triangulation()))
         on_next.push_back(displacements[place]);
       return from_vertex_displacements(on_next, next.problem());
     }
@@ -576,11 +573,11 @@ namespace Debond
         std::string                              limit;
         while (true)
           {
-            body = bisected(*scene).refined(divisions(
-              by_gaps ? result.certificate->gaps :
-                        of_whole_mesh(*scene, estimate.cells),
-              dim,
-              times));
+            body = bisected(*scene).refined(
+              divisions(by_gaps ? result.certificate->gaps :
+                                  of_whole_mesh(*scene, estimate.cells),
+                        dim,
+                        times));
             limit =
               too_large<dim>(problem, accuracy, solver.memory_limit, *body);
             if (limit.empty() || times <= least_growth(problem.degree))
@@ -612,10 +609,8 @@ namespace Debond
               }
             return result;
           }
-        next = std::make_shared<const Scene<dim>>(problem,
-                                                  body,
-                                                  "",
-                                                  MPI_COMM_WORLD);
+        next =
+          std::make_shared<const Scene<dim>>(problem, body, "", MPI_COMM_WORLD);
         if (guard.requested())
           {
             interrupt(result.solve);

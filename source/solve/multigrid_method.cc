@@ -55,7 +55,7 @@ namespace Debond
         result.notes.push_back(
           "start on the mesh of " + std::to_string(coarse_scene.n_cells()) +
           (dim == 2 ? " triangles: " : " tetrahedra: ") + start.message);
-      DofVector u = interpolate_displacement(coarse_scene.body(),
+      DofVector                u = interpolate_displacement(coarse_scene.body(),
                                              coarse_scene.problem(),
                                              start.u,
                                              scene.problem());
@@ -74,8 +74,9 @@ namespace Debond
       const auto &unknowns = scene.problem().unknowns();
       const auto &A        = scene.problem().trilinos_matrix();
       if (has_levels)
-        return std::make_unique<TruncatedMultigrid>(
-          A, prolongations(scene.body(), unknowns));
+        return std::make_unique<TruncatedMultigrid>(A,
+                                                    prolongations(scene.body(),
+                                                                  unknowns));
       std::vector<DistributedVector> modes;
       for (const DofVector &mode : unknowns.rigid_body_modes())
         modes.push_back(distribute(mode,

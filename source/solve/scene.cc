@@ -31,7 +31,7 @@ namespace Debond
     read_start(const std::string &file_name, const ElasticProblem<dim> &problem)
     {
       const DofVector u = read_displacement(file_name, problem.unknowns());
-      bool admissible = true;
+      bool            admissible = true;
       for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
         admissible =
           admissible && (u(i) == 0. || !problem.unknowns().is_constrained(i));
@@ -91,8 +91,8 @@ namespace Debond
       if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))
         {
           const std::string everywhere = bonds->is_threshold ?
-                                           "Contact law/Bond threshold" :
-                                           given.law.stiffness_entry;
+                                              "Contact law/Bond threshold" :
+                                              given.law.stiffness_entry;
           entry                        = everywhere + ' ' + bonds->boundary;
           if (given.locations.count(entry) == 0)
             entry = everywhere;
@@ -133,22 +133,24 @@ namespace Debond
       return mesh.names;
     }();
     const BoundaryNames &boundaries = names.boundaries;
-    body_notes       = names.notes;
-    seconds_for_mesh = timer.wall_time();
+    body_notes                      = names.notes;
+    seconds_for_mesh                = timer.wall_time();
 
     entry               = "Boundary conditions/Clamped boundaries";
     boundary_conditions = make_conditions(given, boundaries);
     body_supports       = make_supports<dim>(given, boundary_conditions);
-    elastic_problem     = std::make_unique<ElasticProblem<dim>>(
-      *triangulation, boundary_conditions, body_supports, given.degree);
+    elastic_problem     = std::make_unique<ElasticProblem<dim>>(*triangulation,
+                                                            boundary_conditions,
+                                                            body_supports,
+                                                            given.degree);
     check_held_vertices(elastic_problem->unknowns(),
                         displacement_factors(given.load_path));
     entry                                   = "Material/Poisson ratio";
     const std::set<std::string> &dead_loads = given.load_path.dead_loads;
     body_loads                              = make_loads<dim>(
       given.loads, dead_loads, false, boundaries, *triangulation);
-    body_dead_loads =
-      make_loads<dim>(given.loads, dead_loads, true, boundaries, *triangulation);
+    body_dead_loads = make_loads<dim>(
+      given.loads, dead_loads, true, boundaries, *triangulation);
     body_materials = make_materials(given.materials, names.regions);
     std::set<double> moduli;
     for (const auto &cell : owned_cells(*triangulation))
@@ -168,7 +170,7 @@ namespace Debond
                              "for double precision; what is 1e6 times as stiff "
                              "as the rest is as good as rigid"));
     elastic_problem->assemble(body_materials, body_loads, body_dead_loads);
-    piece_means = Probes<dim>(elastic_problem->unknowns(),
+    piece_means  = Probes<dim>(elastic_problem->unknowns(),
                               names,
                               means_of_pieces<dim>(names));
     named_probes = Probes<dim>(elastic_problem->unknowns(),

@@ -105,9 +105,9 @@ namespace Debond
     SolveResult result;
     {
       const InterruptGuard guard;
-      const auto           watch =
-        out != nullptr ? std::make_unique<Watch>(guard, *out, terminal) :
-                         std::make_unique<Watch>(guard);
+      const auto           watch = out != nullptr ?
+                                     std::make_unique<Watch>(guard, *out, terminal) :
+                                     std::make_unique<Watch>(guard);
       if (choice.method == SolverMethod::euclidean_bundle)
         solve_by_euclidean_bundle(parameters.bundle, scene, *watch, result);
       else if (choice.linear_solver == LinearSolver::multigrid)

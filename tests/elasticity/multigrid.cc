@@ -9,8 +9,8 @@
 
 #include <debond/contact/adhesion_integral.h>
 #include <debond/contact/laws/winkler.h>
-#include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/displacement_problem.h>
+#include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/mesh/box.h>
@@ -143,9 +143,7 @@ namespace
           0.5);
 
     const auto distributed = [&](const DofVector &v) {
-      return distribute(v,
-                        dealii::complete_index_set(v.size()),
-                        MPI_COMM_SELF);
+      return distribute(v, dealii::complete_index_set(v.size()), MPI_COMM_SELF);
     };
     std::vector<DistributedVector> modes;
     for (const DofVector &mode : body.problem->unknowns().rigid_body_modes())

@@ -54,10 +54,10 @@ namespace
       const TruncatedMultigrid cycle(problem.trilinos_matrix(),
                                      prolongations(scene.body(),
                                                    problem.unknowns()));
-      const DistributedVector  f = distribute(
-        problem.load(),
-        problem.unknowns().dof_handler().locally_owned_dofs(),
-        MPI_COMM_SELF);
+      const DistributedVector  f =
+        distribute(problem.load(),
+                   problem.unknowns().dof_handler().locally_owned_dofs(),
+                   MPI_COMM_SELF);
       DistributedVector u = f;
       u                   = 0.;
       dealii::SolverControl control(1000, 1e-10 * f.l2_norm());
@@ -65,7 +65,8 @@ namespace
         problem.trilinos_matrix(), u, f, cycle);
       outcome.linear_cycles = control.last_step();
       if (print_figures)
-        std::cout << "    " << cycle.n_levels() << " levels, operator complexity "
+        std::cout << "    " << cycle.n_levels()
+                  << " levels, operator complexity "
                   << cycle.operator_complexity() << '\n';
     }
     outcome.linear_seconds = timer.cpu_time();

@@ -4,7 +4,6 @@
 
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/dof_vector.h>
 
 #include <string>

@@ -3,8 +3,6 @@
 #define debond_check_probes_h
 
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/elasticity/elastic_problem.h>
-#include <debond/mesh/body.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/body.h>
 

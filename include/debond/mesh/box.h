@@ -97,8 +97,7 @@ namespace Debond
                 const std::vector<dealii::Point<dim>> &points) const override;
 
     std::vector<CoarseLevel<dim>>
-    coarse_levels(
-      const std::vector<dealii::Point<dim>> &points) const override;
+    coarse_levels(const std::vector<dealii::Point<dim>> &points) const override;
 
     /// Those of coarse_levels().
     std::vector<BoxParameters>

@@ -12,8 +12,9 @@ namespace Debond
   auto
   owned_cells(const Mesh &mesh)
   {
-    return dealii::filter_iterators(mesh.active_cell_iterators(),
-                                    dealii::IteratorFilters::LocallyOwnedCell());
+    return dealii::filter_iterators(
+      mesh.active_cell_iterators(),
+      dealii::IteratorFilters::LocallyOwnedCell());
   }
 } // namespace Debond
 

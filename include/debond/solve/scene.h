@@ -5,9 +5,9 @@
 #include <debond/check/probes.h>
 #include <debond/contact/functional.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/mesh/body.h>
 #include <debond/input/problem_parameters.h>
 #include <debond/linear_algebra/dof_vector.h>
+#include <debond/mesh/body.h>
 #include <debond/mesh/by_region.h>
 
 #include <memory>
@@ -205,26 +205,26 @@ namespace Debond
     void
     add_notes();
 
-    const ProblemParameters                  given;
-    std::shared_ptr<const Body<dim>>         elastic_body;
+    const ProblemParameters                     given;
+    std::shared_ptr<const Body<dim>>            elastic_body;
     std::unique_ptr<dealii::Triangulation<dim>> triangulation;
-    std::vector<std::string>                 body_notes;
-    Probes<dim>                              named_probes;
-    Probes<dim>                              piece_means;
-    BoundaryConditions                       boundary_conditions;
-    Supports<dim>                            body_supports;
-    Loads<dim>                               body_loads;
-    Loads<dim>                               body_dead_loads;
-    ByRegion<Material>                       body_materials;
-    std::unique_ptr<ElasticProblem<dim>>     elastic_problem;
-    std::unique_ptr<AdhesiveLaw>             adhesive_law;
-    std::unique_ptr<ContactQuadrature<dim>>  quadrature;
-    std::unique_ptr<BondField<dim>>          bond_field;
-    std::unique_ptr<AdhesionIntegral<dim>>   adhesion_integral;
-    std::unique_ptr<Objective>               energy;
-    DofVector                                first_iterate;
-    double                                   seconds_for_mesh;
-    double                                   seconds_for_assembly;
+    std::vector<std::string>                    body_notes;
+    Probes<dim>                                 named_probes;
+    Probes<dim>                                 piece_means;
+    BoundaryConditions                          boundary_conditions;
+    Supports<dim>                               body_supports;
+    Loads<dim>                                  body_loads;
+    Loads<dim>                                  body_dead_loads;
+    ByRegion<Material>                          body_materials;
+    std::unique_ptr<ElasticProblem<dim>>        elastic_problem;
+    std::unique_ptr<AdhesiveLaw>                adhesive_law;
+    std::unique_ptr<ContactQuadrature<dim>>     quadrature;
+    std::unique_ptr<BondField<dim>>             bond_field;
+    std::unique_ptr<AdhesionIntegral<dim>>      adhesion_integral;
+    std::unique_ptr<Objective>                  energy;
+    DofVector                                   first_iterate;
+    double                                      seconds_for_mesh;
+    double                                      seconds_for_assembly;
   };
 } // namespace Debond
 
