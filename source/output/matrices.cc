@@ -84,9 +84,9 @@ namespace Debond
           if (const Place place(order[row], order[entry->column()]);
               place.second <= place.first)
             own.emplace_back(place, entry->value());
-      for (auto &of_rank :
-           dealii::Utilities::MPI::gather(problem.unknowns().communicator(),
-                                          own))
+      for (const auto &of_rank :
+           dealii::Utilities::MPI::all_gather(problem.unknowns().communicator(),
+                                              own))
         all.insert(all.end(), of_rank.begin(), of_rank.end());
       std::sort(all.begin(), all.end());
       write(
