@@ -76,6 +76,9 @@ namespace Debond
   {
     check_coarse_mesh(coarse);
     std::vector<typename dealii::Triangulation<dim>::cell_iterator> cells;
+    if (crossed.n_levels() != 0)
+      throw std::invalid_argument(
+        "Crossed subdivision: the triangulation to be filled is not empty.");
     cells.reserve(coarse.n_active_cells());
     for (const auto &cell : coarse.active_cell_iterators())
       cells.push_back(cell);

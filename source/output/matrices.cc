@@ -139,6 +139,7 @@ namespace Debond
       for (unsigned int i = 0; i < is_cartesian.size(); ++i)
         if (is_cartesian[i])
           entries.emplace_back(order[i], order[i], 1.);
+      std::sort(entries.begin(), entries.end());
       write(
         "coordinate real general",
         [&](std::ostream &out) {
