@@ -4,7 +4,7 @@
 
 #include <deal.II/lac/lapack_full_matrix.h>
 
-#include <debond/elasticity/displacement_problem.h>
+#include <debond/elasticity/contact_unknowns.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/majorise/bound_qp.h>

@@ -4,73 +4,14 @@
 
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
-#include <debond/elasticity/elastic_problem.h>
-#include <debond/linear_algebra/distributed_vector.h>
-#include <debond/linear_algebra/truncated_multigrid.h>
-#include <debond/linear_algebra/views.h>
-#include <debond/optimization/majorise/bound_qp.h>
+#include <debond/elasticity/contact_unknowns.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
-#include <Eigen/SparseCore>
-
 #include <functional>
-#include <vector>
 
 namespace Debond
 {
-  /// The unknowns of the contact nodes' normal displacements s, which all ranks
-  /// have, and which of them are held.
-  class ContactUnknowns
-  {
-  public:
-    template <int dim>
-    explicit ContactUnknowns(const ElasticProblem<dim> &problem)
-      : normals(problem.unknowns().contact().normals())
-      , own(problem.unknowns().dof_handler().locally_owned_dofs())
-      , ranks(problem.unknowns().communicator())
-    {}
-
-    unsigned int
-    size() const
-    {
-      return static_cast<unsigned int>(normals.size());
-    }
-
-    /// The entries of v, on all ranks.
-    Eigen::VectorXd
-    trace(const DistributedVector &v) const;
-
-    /// v += the entries s.
-    void
-    add(const VectorView &s, DistributedVector &v) const;
-
-    /// Makes the entries those of s.
-    void
-    set(const VectorView &s, DistributedVector &v) const;
-
-    /// Makes the entries of held nodes zero.
-    void
-    set_zero(const ActiveSet &held, DistributedVector &v) const;
-
-    /// The rows and columns of A, of which each rank has its own rows.
-    Eigen::SparseMatrix<double>
-    block_of(const dealii::SparseMatrix<double> &A) const;
-
-    /// Prepares a cycle for A + E where nodes are held.
-    void
-    truncate(const Eigen::SparseMatrix<double> &E,
-             const ActiveSet                   &held,
-             TruncatedMultigrid                &cycle) const;
-
-  private:
-    const std::vector<dealii::types::global_dof_index> normals;
-    const dealii::IndexSet                             own;
-    const MPI_Comm                                     ranks;
-  };
-
-
-
   /**
    * J = 1/2 <A u, u> - <f, u> + Phi(s), s <= 0, on all unknowns u, of which
    * some are the normal displacements s. Majorants are minimised by truncated
