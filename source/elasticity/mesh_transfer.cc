@@ -2,69 +2,47 @@
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/mesh/owned_cells.h>
 
-#include <algorithm>
 #include <vector>
 
 namespace Debond
 {
-  template <int dim>
-  std::vector<dealii::Tensor<1, dim>>
-  vertex_displacements(const ElasticProblem<dim> &problem, const DofVector &u)
+  namespace
   {
-    const dealii::DoFHandler<dim> &dofs = problem.unknowns().dof_handler();
-    const DofVector displacement = problem.unknowns().cartesian_displacement(u);
-    std::vector<dealii::Tensor<1, dim>> at_vertices(
-      dofs.get_triangulation().n_vertices());
-    for (const auto &cell : dofs.active_cell_iterators())
-      for (const unsigned int v : cell->vertex_indices())
-        for (unsigned int d = 0; d < dim; ++d)
-          at_vertices[cell->vertex_index(v)][d] =
-            displacement[cell->vertex_dof_index(v, d)];
-    return at_vertices;
-  }
+    /// In the vertices' order in the mesh.
+    template <int dim>
+    std::vector<dealii::Tensor<1, dim>>
+    vertex_displacements(const ElasticProblem<dim> &problem, const DofVector &u)
+    {
+      const dealii::DoFHandler<dim> &dofs = problem.unknowns().dof_handler();
+      const DofVector                displacement =
+        problem.unknowns().cartesian_displacement(u);
+      std::vector<dealii::Tensor<1, dim>> at_vertices(
+        dofs.get_triangulation().n_vertices());
+      for (const auto &cell : dofs.active_cell_iterators())
+        for (const unsigned int v : cell->vertex_indices())
+          for (unsigned int d = 0; d < dim; ++d)
+            at_vertices[cell->vertex_index(v)][d] =
+              displacement[cell->vertex_dof_index(v, d)];
+      return at_vertices;
+    }
 
 
 
-  template <int dim>
-  DofVector
-  from_vertex_displacements(
-    const std::vector<dealii::Tensor<1, dim>> &displacements,
-    const ElasticProblem<dim>                 &problem)
-  {
-    const auto                                  &unknowns = problem.unknowns();
-    DofVector                                    result(unknowns.n_dofs());
-    std::vector<dealii::types::global_dof_index> cell_dofs(
-      unknowns.dof_handler().get_fe().dofs_per_cell);
-    const dealii::IndexSet &own = unknowns.dof_handler().locally_owned_dofs();
-    for (const auto &cell : owned_cells(unknowns.dof_handler()))
-      {
-        cell->get_dof_indices(cell_dofs);
-        for (unsigned int i = 0; i < cell_dofs.size(); ++i)
-          {
-            const unsigned int node = i / dim, d = i % dim;
-            if (!own.is_element(cell_dofs[i]))
-              continue;
-            if (node <= dim)
-              result(cell_dofs[i]) = displacements[cell->vertex_index(node)][d];
-            else
-              {
-                const auto line = cell->line(node - (dim + 1));
-                result(cell_dofs[i]) =
-                  0.5 * (displacements[line->vertex_index(0)][d] +
-                         displacements[line->vertex_index(1)][d]);
-              }
-          }
-      }
-    add_over_ranks(result, unknowns.communicator());
-    result = unknowns.from_cartesian(result);
-    if (problem.unknowns().has_gap())
-      {
-        // Between nodes a gap is not what a coarser mesh sees.
-        const ContactSpace<dim> &contact = problem.unknowns().contact();
-        contact.add_normal(-contact.trace(result).cwiseMax(0.), result);
-      }
-    return result;
-  }
+    /// The unknowns of Cartesian components, of which each rank has its own
+    /// ones, without what would enter the foundation: between nodes a gap is
+    /// not what a coarser mesh sees.
+    template <int dim>
+    DofVector
+    admissible(const ElasticUnknowns<dim> &unknowns, DofVector cartesian)
+    {
+      add_over_ranks(cartesian, unknowns.communicator());
+      DofVector result = unknowns.from_cartesian(cartesian);
+      if (unknowns.has_gap())
+        unknowns.contact().add_normal(
+          -unknowns.contact().trace(result).cwiseMax(0.), result);
+      return result;
+    }
+  } // namespace
 
 
 
@@ -132,8 +110,7 @@ namespace Debond
               result(cell_dofs[i]) += fe.shape_value(j, point) * values[j];
           }
       }
-    add_over_ranks(result, unknowns.communicator());
-    return unknowns.from_cartesian(result);
+    return admissible(unknowns, result);
   }
 
 
@@ -145,25 +122,27 @@ namespace Debond
                            const DofVector           &u,
                            const ElasticProblem<dim> &target)
   {
-    const auto mesh_of = [](const ElasticProblem<dim> &problem) -> const auto &
-    {
-      return problem.unknowns().dof_handler().get_triangulation();
-    };
-    return from_vertex_displacements(
-      body.interpolate(mesh_of(source),
+    const ElasticUnknowns<dim>           &unknowns  = target.unknowns();
+    const std::vector<dealii::Point<dim>> positions = unknowns.positions();
+    const dealii::IndexSet &own = unknowns.dof_handler().locally_owned_dofs();
+    std::vector<dealii::Point<dim>> nodes;
+    for (const auto i : own)
+      if (i % dim == 0)
+        nodes.push_back(positions[i]);
+    const std::vector<dealii::Tensor<1, dim>> values =
+      body.interpolate(source.unknowns().dof_handler().get_triangulation(),
                        vertex_displacements(source, u),
-                       mesh_of(target).get_vertices()),
-      target);
+                       nodes);
+    DofVector result(unknowns.n_dofs());
+    for (const auto i : own)
+      result(i) = values[own.index_within_set(i) / dim][i % dim];
+    return admissible(unknowns, result);
   }
 
 
 
-  template decltype(vertex_displacements<2>)      vertex_displacements<2>;
-  template decltype(vertex_displacements<3>)      vertex_displacements<3>;
-  template decltype(from_vertex_displacements<2>) from_vertex_displacements<2>;
-  template decltype(from_vertex_displacements<3>) from_vertex_displacements<3>;
-  template decltype(divided_displacement<2>)      divided_displacement<2>;
-  template decltype(divided_displacement<3>)      divided_displacement<3>;
-  template decltype(interpolate_displacement<2>)  interpolate_displacement<2>;
-  template decltype(interpolate_displacement<3>)  interpolate_displacement<3>;
+  template decltype(divided_displacement<2>)     divided_displacement<2>;
+  template decltype(divided_displacement<3>)     divided_displacement<3>;
+  template decltype(interpolate_displacement<2>) interpolate_displacement<2>;
+  template decltype(interpolate_displacement<3>) interpolate_displacement<3>;
 } // namespace Debond

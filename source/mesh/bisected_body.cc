@@ -2,9 +2,7 @@
 #include <debond/mesh/bisected_body.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
 
 namespace Debond
 {
@@ -58,27 +56,6 @@ namespace Debond
       cells *= finer;
     shape.is_box = shape.is_box && finer == 1.;
     return shape;
-  }
-
-
-
-  template <int dim>
-  std::vector<unsigned int>
-  BisectedBody<dim>::vertex_numbers(
-    const dealii::Triangulation<dim> &part) const
-  {
-    std::map<std::array<double, dim>, unsigned int> numbers;
-    const auto key = [](const dealii::Point<dim> &point) {
-      std::array<double, dim> result;
-      std::copy(point.begin_raw(), point.end_raw(), result.begin());
-      return result;
-    };
-    for (unsigned int v = 0; v < vertices().size(); ++v)
-      numbers[key(vertices()[v])] = v;
-    std::vector<unsigned int> result;
-    for (const dealii::Point<dim> &vertex : part.get_vertices())
-      result.push_back(numbers.at(key(vertex)));
-    return result;
   }
 
 

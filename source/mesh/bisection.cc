@@ -124,7 +124,6 @@ namespace Debond
   template <int dim>
   Bisection<dim>::Bisection(const dealii::Triangulation<dim> &mesh)
     : points(mesh.get_vertices())
-    , first_middle(static_cast<unsigned int>(points.size()))
   {
     for (const auto &cell : mesh.active_cell_iterators())
       {
@@ -342,10 +341,7 @@ namespace Debond
             const auto [z, is_new] =
               middles.insert(a, b, static_cast<unsigned int>(points.size()));
             if (is_new)
-              {
-                points.push_back(points[a] + 0.5 * (points[b] - points[a]));
-                parents.push_back({{a, b}});
-              }
+              points.push_back(points[a] + 0.5 * (points[b] - points[a]));
             for (const Simplex &half : halves(cell, z))
               {
                 next.push_back(half);

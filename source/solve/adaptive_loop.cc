@@ -228,46 +228,6 @@ namespace Debond
 
 
 
-    /// The displacement u of the scene, on the next mesh.
-    template <int dim>
-    DofVector
-    on_next_mesh(const Scene<dim>        &scene,
-                 const DofVector         &u,
-                 const BisectedBody<dim> &body,
-                 const Scene<dim>        &next)
-    {
-      if (scene.problem().unknowns().degree() == 2)
-        return divided_displacement(scene.problem(),
-                                    u,
-                                    body.ancestors(),
-                                    next.problem());
-      const auto &dofs = scene.problem().unknowns().dof_handler();
-      const std::vector<dealii::Tensor<1, dim>> here =
-        vertex_displacements(scene.problem(), u);
-      const std::vector<unsigned int> places =
-        bisected(scene).vertex_numbers(dofs.get_triangulation());
-      std::vector<double> of_all(dim * bisected(scene).vertices().size());
-      for (const auto &cell : owned_cells(dofs))
-        for (const unsigned int v : cell->vertex_indices())
-          if (dofs.locally_owned_dofs().is_element(
-                cell->vertex_dof_index(v, 0)))
-            for (unsigned int d = 0; d < dim; ++d)
-              of_all[dim * places[cell->vertex_index(v)] + d] =
-                here[cell->vertex_index(v)][d];
-      dealii::Utilities::MPI::sum(of_all, scene.ranks(), of_all);
-      std::vector<dealii::Tensor<1, dim>> displacements(of_all.size() / dim);
-      for (std::size_t i = 0; i < of_all.size(); ++i)
-        displacements[i / dim][static_cast<unsigned int>(i % dim)] = of_all[i];
-      body.extend(displacements);
-      std::vector<dealii::Tensor<1, dim>> on_next;
-      for (const unsigned int place : body.vertex_numbers(
-             next.problem().unknowns().dof_handler().get_triangulation()))
-        on_next.push_back(displacements[place]);
-      return from_vertex_displacements(on_next, next.problem());
-    }
-
-
-
     template <int dim>
     ErrorEstimate
     estimate_of(const Scene<dim>            &scene,
@@ -453,6 +413,7 @@ namespace Debond
   {
     // Of all meshes.
     const ProblemParameters           problem = scene->parameters();
+    const MPI_Comm                    ranks   = scene->ranks();
     AdaptiveResult                    result;
     const InterruptGuard              guard;
     dealii::Timer                     timer;
@@ -497,7 +458,7 @@ namespace Debond
               scene = std::make_shared<const Scene<dim>>(problem,
                                                          finished,
                                                          "",
-                                                         MPI_COMM_WORLD);
+                                                         ranks);
             interrupt(result.solve);
             return result;
           }
@@ -609,15 +570,17 @@ namespace Debond
               }
             return result;
           }
-        next =
-          std::make_shared<const Scene<dim>>(problem, body, "", MPI_COMM_WORLD);
+        next = std::make_shared<const Scene<dim>>(problem, body, "", ranks);
         if (guard.requested())
           {
             interrupt(result.solve);
             return result;
           }
         start = std::make_unique<const DofVector>(
-          on_next_mesh(*scene, result.solve.u, *body, *next));
+          divided_displacement(scene->problem(),
+                               result.solve.u,
+                               body->ancestors(),
+                               next->problem()));
         // Its memory is for the next mesh; the state of a path knows it.
         finished = latest;
         latest   = body;

@@ -10,24 +10,12 @@
 
 namespace Debond
 {
-  /// The displacement that belongs to u, by vertex index.
-  template <int dim>
-  std::vector<dealii::Tensor<1, dim>>
-  vertex_displacements(const ElasticProblem<dim> &problem, const DofVector &u);
-
-  /// The vector of unknowns of the displacement with these values, but for what
-  /// the supports prescribe and, if there are gaps, for what would enter the
-  /// foundation.
-  template <int dim>
-  DofVector
-  from_vertex_displacements(
-    const std::vector<dealii::Tensor<1, dim>> &displacements,
-    const ElasticProblem<dim>                 &problem);
-
   /// The displacement u of a problem on a mesh whose cells are divided in that
   /// of @p target, in its unknowns: the same polynomials of the same degree,
-  /// but for what the target's supports prescribe. @p ancestors: of each cell
-  /// of the target's the one that it is a part of.
+  /// but for what the target's supports prescribe and, if there are gaps, for
+  /// what would enter the foundation. @p ancestors: of each cell of the
+  /// target's whole mesh the one that it is a part of. To be called by all
+  /// ranks, and so is the other one.
   template <int dim>
   DofVector
   divided_displacement(const ElasticProblem<dim>       &source,
@@ -36,11 +24,12 @@ namespace Debond
                        const ElasticProblem<dim>       &target);
 
   /**
-   * The P1 displacement u of a problem on the mesh of @p body, at the
-   * vertices of another mesh of the same body: a vector of unknowns of
+   * The P1 displacement u of a problem on the mesh of @p body, whole on each
+   * rank, at the nodes of another mesh of the same body: a vector of unknowns
+   * of
    * @p target, whose supports and frames may be others. On a mesh whose cells
    * divide those of @p body the displacement is reproduced exactly (their P1
-   * spaces are nested) but for what the target's supports prescribe.
+   * spaces are nested) but for the same.
    *
    * @p body must be the one that made the source's triangulation.
    */

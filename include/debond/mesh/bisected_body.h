@@ -29,26 +29,6 @@ namespace Debond
         new BisectedBody(*this, times));
     }
 
-    /// The same P1 function on this mesh, from the values at the vertices of
-    /// the mesh that this one is refined() from.
-    template <typename T>
-    void
-    extend(std::vector<T> &values) const
-    {
-      bisection.extend(values);
-    }
-
-    /// In the order of the whole mesh.
-    const std::vector<dealii::Point<dim>> &
-    vertices() const
-    {
-      return bisection.vertices();
-    }
-
-    /// For each vertex of a part of the mesh its place there.
-    std::vector<unsigned int>
-    vertex_numbers(const dealii::Triangulation<dim> &part) const;
-
     /// Of each cell the one of the mesh that this one is refined() from.
     const std::vector<unsigned int> &
     ancestors() const
@@ -85,7 +65,7 @@ namespace Debond
     PieceNames
     make_whole_mesh(dealii::Triangulation<dim> &mesh) const override;
 
-    /// None: a solution goes from mesh to mesh by extend().
+    /// None: a solution goes from mesh to mesh by ancestors().
     std::unique_ptr<Body<dim>>
     coarser_whole() const override
     {

@@ -65,12 +65,6 @@ namespace Debond
       return whole_cells;
     }
 
-    /// Adds to the values at the vertices of this mesh some refinements ago
-    /// those of the same P1 function at the vertices that came since.
-    template <typename T>
-    void
-    extend(std::vector<T> &values) const;
-
     /// Fills an empty triangulation, with vertices and cells in this order.
     void
     make_mesh(dealii::Triangulation<dim> &mesh) const;
@@ -112,27 +106,7 @@ namespace Debond
     std::vector<dealii::Point<dim>> points;
     std::vector<Simplex>            cells;
     std::vector<unsigned int>       whole_cells; ///< see ancestors()
-
-    /// The ends of the edge that each vertex is the middle of, from the number
-    /// first_middle on.
-    unsigned int                             first_middle;
-    std::vector<std::array<unsigned int, 2>> parents;
   };
-
-
-
-  template <int dim>
-  template <typename T>
-  void
-  Bisection<dim>::extend(std::vector<T> &values) const
-  {
-    values.reserve(points.size());
-    for (std::size_t v = values.size(); v < points.size(); ++v)
-      {
-        const auto &ends = parents[v - first_middle];
-        values.push_back(0.5 * (values[ends[0]] + values[ends[1]]));
-      }
-  }
 } // namespace Debond
 
 #endif
