@@ -83,6 +83,39 @@ namespace Debond
 
 
 
+    /// The places of contact nodes in their order, the lexicographic one of
+    /// their positions. Rounding of the coordinates, as in a turned body, must
+    /// not change it: those that agree to 1e-10 of the body's @p diameter are
+    /// the same, and nodes at the same place stay as they are.
+    template <int dim>
+    std::vector<unsigned int>
+    contact_order(const std::vector<typename ContactBoundary<dim>::Node> &nodes,
+                  const double diameter)
+    {
+      std::array<std::vector<unsigned int>, dim> coordinate_ranks;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          std::vector<double> coordinates;
+          for (const auto &node : nodes)
+            coordinates.push_back(node.position[d]);
+          coordinate_ranks[d] = ranks(coordinates, 1e-10 * diameter);
+        }
+      std::vector<unsigned int> order(nodes.size());
+      std::iota(order.begin(), order.end(), 0u);
+      std::stable_sort(order.begin(),
+                       order.end(),
+                       [&](const unsigned int a, const unsigned int b) {
+                         for (unsigned int d = 0; d < dim; ++d)
+                           if (coordinate_ranks[d][a] != coordinate_ranks[d][b])
+                             return coordinate_ranks[d][a] <
+                                    coordinate_ranks[d][b];
+                         return false;
+                       });
+      return order;
+    }
+
+
+
     constexpr unsigned int no_node = dealii::numbers::invalid_unsigned_int;
 
 
@@ -321,35 +354,6 @@ namespace Debond
 
 
   template <int dim>
-  std::vector<unsigned int>
-  contact_order(const std::vector<typename ContactBoundary<dim>::Node> &nodes,
-                const double diameter)
-  {
-    std::array<std::vector<unsigned int>, dim> coordinate_ranks;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        std::vector<double> coordinates;
-        for (const auto &node : nodes)
-          coordinates.push_back(node.position[d]);
-        coordinate_ranks[d] = ranks(coordinates, 1e-10 * diameter);
-      }
-    std::vector<unsigned int> order(nodes.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(),
-                     order.end(),
-                     [&](const unsigned int a, const unsigned int b) {
-                       for (unsigned int d = 0; d < dim; ++d)
-                         if (coordinate_ranks[d][a] != coordinate_ranks[d][b])
-                           return coordinate_ranks[d][a] <
-                                  coordinate_ranks[d][b];
-                       return false;
-                     });
-    return order;
-  }
-
-
-
-  template <int dim>
   ContactSpace<dim>
   make_contact_space(const std::vector<BoundaryFace<dim>> &faces,
                      const unsigned int                    degree,
@@ -366,8 +370,6 @@ namespace Debond
 
 
 
-  template decltype(contact_order<2>)      contact_order<2>;
-  template decltype(contact_order<3>)      contact_order<3>;
   template decltype(make_contact_space<2>) make_contact_space<2>;
   template decltype(make_contact_space<3>) make_contact_space<3>;
 } // namespace Debond

@@ -6,7 +6,6 @@
 #include <debond/base/ranks.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/temperature_load.h>
-#include <debond/linear_algebra/trilinos_matrix.h>
 
 #include <algorithm>
 #include <cmath>
@@ -202,10 +201,16 @@ namespace Debond
   ElasticProblem<dim>::trilinos_matrix() const
   {
     if (!distributed_matrix)
-      distributed_matrix = Debond::trilinos_matrix(
-        {system_matrix,
-         elastic_unknowns.dof_handler().locally_owned_dofs(),
-         elastic_unknowns.communicator()});
+      {
+        distributed_matrix =
+          std::make_unique<dealii::TrilinosWrappers::SparseMatrix>();
+        const auto &own = elastic_unknowns.dof_handler().locally_owned_dofs();
+        distributed_matrix->reinit(own,
+                                   own,
+                                   system_matrix,
+                                   elastic_unknowns.communicator(),
+                                   /*drop_tolerance=*/0.);
+      }
     return *distributed_matrix;
   }
 

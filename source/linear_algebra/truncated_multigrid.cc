@@ -3,7 +3,6 @@
 #include <deal.II/lac/precondition.h>
 #include <deal.II/lac/trilinos_solver.h>
 
-#include <debond/linear_algebra/trilinos_matrix.h>
 #include <debond/linear_algebra/truncated_multigrid.h>
 
 #include <EpetraExt_MatrixMatrix.h>
@@ -13,9 +12,6 @@
 #include <ml_MultiLevelPreconditioner.h>
 #include <ml_epetra_utils.h>
 #include <ml_utils.h>
-
-#include <algorithm>
-#include <utility>
 
 namespace Debond
 {
@@ -233,70 +229,6 @@ namespace Debond
 
 
 
-  std::unique_ptr<Matrix>
-  trilinos_matrix(const MatrixOnRanks &matrix)
-  {
-    // Columns are own ones, and then those of other ranks.
-    const auto      &A = matrix.A;
-    const int        n = static_cast<int>(matrix.own_rows.n_elements());
-    dealii::IndexSet far(A.m());
-    std::size_t      n_entries = 0;
-    std::vector<unsigned int> far_columns;
-    for (const auto row : matrix.own_rows)
-      {
-        n_entries += A.get_row_length(row);
-        if (matrix.is_shared())
-          for (auto entry = A.begin(row); entry != A.end(row); ++entry)
-            if (!matrix.own_rows.is_element(entry->column()))
-              far_columns.push_back(entry->column());
-      }
-    std::sort(far_columns.begin(), far_columns.end());
-    far.add_indices(far_columns.begin(), far_columns.end());
-    const Epetra_Map rows(-1, n, 0, Epetra_MpiComm(matrix.ranks));
-    std::vector<int> columns(n);
-    rows.MyGlobalElements(columns.data());
-    columns.insert(columns.end(), far.begin(), far.end());
-    const Epetra_Map all_columns(
-      -1, static_cast<int>(columns.size()), columns.data(), 0, rows.Comm());
-
-    // Epetra's insertion of rows would take three times as long.
-    Epetra_CrsMatrix result(Copy, rows, all_columns, 0);
-    auto            &starts  = result.ExpertExtractIndexOffset();
-    auto            &indices = result.ExpertExtractIndices();
-    double         *&values  = result.ExpertExtractValues();
-    check(starts.Resize(n + 1));
-    check(indices.Resize(static_cast<int>(n_entries)));
-    values                                   = new double[n_entries];
-    int                                 next = 0, i = 0;
-    std::vector<std::pair<int, double>> entries;
-    for (const auto row : matrix.own_rows)
-      {
-        entries.clear();
-        for (auto entry = A.begin(row); entry != A.end(row); ++entry)
-          entries.emplace_back(
-            matrix.own_rows.is_element(entry->column()) ?
-              static_cast<int>(
-                matrix.own_rows.index_within_set(entry->column())) :
-              n + static_cast<int>(far.index_within_set(entry->column())),
-            entry->value());
-        std::sort(entries.begin(), entries.end());
-        starts[i++] = next;
-        for (const auto &[column, value] : entries)
-          {
-            indices[next]  = column;
-            values[next++] = value;
-          }
-      }
-    starts[n] = next;
-    check(result.ExpertMakeUniqueCrsGraphData());
-    check(result.ExpertStaticFillComplete(rows, rows));
-    auto copy = std::make_unique<Matrix>();
-    copy->reinit(result);
-    return copy;
-  }
-
-
-
   struct TruncatedMultigrid::Level
   {
     /// Of the size of the matrix.
@@ -510,17 +442,6 @@ namespace Debond
   TruncatedMultigrid::n_levels() const
   {
     return static_cast<unsigned int>(levels.size());
-  }
-
-
-
-  double
-  TruncatedMultigrid::operator_complexity() const
-  {
-    double n_entries = 0.;
-    for (const auto &level : levels)
-      n_entries += static_cast<double>(level->matrix.n_nonzero_elements());
-    return n_entries / static_cast<double>(A.n_nonzero_elements());
   }
 
 

@@ -12,24 +12,14 @@
 
 namespace Debond
 {
-  /// The places of contact nodes in their order, the lexicographic one of their
-  /// positions. Rounding of the coordinates, as in a turned body, must not
-  /// change it: those that agree to 1e-10 of the body's @p diameter are the
-  /// same, and nodes at the same place stay as they are.
-  template <int dim>
-  std::vector<unsigned int>
-  contact_order(const std::vector<typename ContactBoundary<dim>::Node> &nodes,
-                const double diameter);
-
-
-
   /// The contact space of the faces of the contact boundary. Its nodes, where a
   /// normal displacement is unknown, get frames in @p node_supports, and what
   /// is tangential is constrained there where it has to be; other nodes of the
-  /// faces are vertices that are held. Their order is contact_order(). @p gap
-  /// gets the gaps at normal displacements; it has no entries if @p supports
-  /// have no gaps. Throws SupportError if a gap is negative or not finite or if
-  /// too much is prescribed at a node, and what contact_frame() does.
+  /// faces are vertices that are held. Their order is the lexicographic one of
+  /// their positions. @p gap gets the gaps at normal displacements; it has no
+  /// entries if @p supports have no gaps. Throws SupportError if a gap is
+  /// negative or not finite or if too much is prescribed at a node, and what
+  /// contact_frame() does.
   template <int dim>
   ContactSpace<dim>
   make_contact_space(const std::vector<BoundaryFace<dim>> &faces,

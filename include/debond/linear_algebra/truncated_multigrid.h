@@ -99,10 +99,6 @@ namespace Debond
     unsigned int
     n_levels() const;
 
-    /// The entries of the matrices of all levels, by those of the finest one.
-    double
-    operator_complexity() const;
-
   private:
     struct Level;
 
