@@ -92,7 +92,7 @@ namespace Debond
     double
     memory_with_multigrid(const unsigned int dim, const bool has_levels)
     {
-      return has_levels ? (dim == 2 ? 500. : 1300.) :
+      return has_levels ? (dim == 2 ? 900. : 1300.) :
                           (dim == 2 ? 1200. : 3700.);
     }
 
