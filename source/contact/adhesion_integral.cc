@@ -281,25 +281,14 @@ namespace Debond
 
 
   template <int dim>
-  void
-  AdhesionIntegral<dim>::scale_load(const double factor)
+  AdhesionIntegral<dim>
+  AdhesionIntegral<dim>::at(const double factor) const
   {
-    load_factor = factor;
+    AdhesionIntegral result(*this);
+    result.load_factor = factor;
     if (!boundary.held_vertices.empty())
-      update_points();
-  }
-
-
-
-  template <int dim>
-  double
-  AdhesionIntegral<dim>::energy_at_zero(const double factor) const
-  {
-    if (boundary.held_vertices.empty() && least_of_nodes.empty())
-      return 0.;
-    AdhesionIntegral other(*this);
-    other.scale_load(factor);
-    return other.phi_at_zero;
+      result.update_points();
+    return result;
   }
 
 

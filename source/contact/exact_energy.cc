@@ -54,8 +54,15 @@ namespace Debond
         const auto   trace = adhesion.trace_on(face, s);
         const double middle =
           boundary.degree == 2 ? trace[2] : 0.5 * (trace[0] + trace[1]);
+        const BondScale bonds =
+          adhesion.bonds_at(dealii::Point<2>(
+                              0.5 * (face.vertices[0] + face.vertices[1])),
+                            face.id);
+        std::vector<double> kinks = law.kinks();
+        for (double &kink : kinks)
+          kink *= bonds.stretch;
         const std::vector<double> ends =
-          pieces_between_kinks(trace[0], trace[1], middle, law.kinks());
+          pieces_between_kinks(trace[0], trace[1], middle, kinks);
         for (unsigned int i = 0; i + 1 < ends.size(); ++i)
           for (unsigned int q = 0; q < rule.size(); ++q)
             {
@@ -64,8 +71,8 @@ namespace Debond
               const double value  = (1. - t) * (1. - t) * trace[0] +
                                    2. * t * (1. - t) * middle +
                                    t * t * trace[1];
-              energy +=
-                face.measure * length * rule.weight(q) * law.value(value);
+              energy += face.measure * length * rule.weight(q) * bonds.energy *
+                        law.value(value / bonds.stretch);
             }
       }
     return energy;

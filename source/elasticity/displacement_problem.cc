@@ -28,11 +28,12 @@ namespace Debond
 
   template <int dim>
   DisplacementProblem::DisplacementProblem(const ElasticProblem<dim> &problem,
+                                           const DofVector           &load,
                                            const PiecewiseQuadratic  &nonsmooth,
                                            TruncatedMultigrid &multigrid_cycle,
                                            DistributedVector  &start)
     : A(problem.trilinos_matrix())
-    , f(distribute(problem.load(),
+    , f(distribute(load,
                    start.locally_owned_elements(),
                    start.get_mpi_communicator()))
     , diagonal(distribute(problem.diagonal(),
@@ -273,10 +274,12 @@ namespace Debond
 
 
   template DisplacementProblem::DisplacementProblem(const ElasticProblem<2> &,
+                                                    const DofVector &,
                                                     const PiecewiseQuadratic &,
                                                     TruncatedMultigrid &,
                                                     DistributedVector &);
   template DisplacementProblem::DisplacementProblem(const ElasticProblem<3> &,
+                                                    const DofVector &,
                                                     const PiecewiseQuadratic &,
                                                     TruncatedMultigrid &,
                                                     DistributedVector &);

@@ -56,21 +56,21 @@ namespace Debond
       constraints.set_zero(load);
       return load;
     };
-    load_without_factor.reinit(0);
-    load_of_displacements.reinit(0);
+    f_0.reinit(0);
+    f_2.reinit(0);
     if (elastic_unknowns.has_gap() || dead_forces.size() > 0)
-      load_without_factor = load_with(0.);
+      f_0 = load_with(0.);
     if (elastic_unknowns.has_prescribed_displacements())
       {
-        load_of_displacements = load_with(LoadFactors(0., 1.));
-        if (load_without_factor.size() > 0)
-          load_of_displacements -= load_without_factor;
+        f_2 = load_with(LoadFactors(0., 1.));
+        if (f_0.size() > 0)
+          f_2 -= f_0;
       }
     if (elastic_unknowns.has_lifting())
-      system_load = load_with(1.);
+      whole_load = load_with(1.);
     else
-      system_load = elastic_unknowns.in_frames(applied_forces);
-    constraints.set_zero(system_load);
+      whole_load = elastic_unknowns.in_frames(applied_forces);
+    constraints.set_zero(whole_load);
 
     // Cells of other ranks around the own ones make own rows complete.
     dealii::DynamicSparsityPattern               pattern(dofs.n_dofs(),
@@ -218,14 +218,14 @@ namespace Debond
 
   template <int dim>
   DofVector
-  ElasticProblem<dim>::load_at(const LoadFactors factors) const
+  ElasticProblem<dim>::load(const LoadFactors factors) const
   {
-    DofVector load = system_load;
+    DofVector load = whole_load;
     load *= factors.loads;
-    if (load_without_factor.size() > 0)
-      load.add(1. - factors.loads, load_without_factor);
-    if (load_of_displacements.size() > 0)
-      load.add(factors.displacements - factors.loads, load_of_displacements);
+    if (f_0.size() > 0)
+      load.add(1. - factors.loads, f_0);
+    if (f_2.size() > 0)
+      load.add(factors.displacements - factors.loads, f_2);
     return load;
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
+#include <debond/contact/field_value.h>
 #include <debond/elasticity/equilibrium_mesh.h>
 #include <debond/elasticity/side_moments.h>
 
@@ -117,6 +118,28 @@ namespace Debond
 
 
 
+    /// The unknowns of a side, see EquilibriumElement, of a linear function
+    /// with these values at the corners.
+    std::array<double, 2>
+    unknowns_of_linear(const std::array<double, 2> &values)
+    {
+      return {{0.5 * (values[0] + values[1]), 0.5 * (values[1] - values[0])}};
+    }
+
+
+
+    std::array<double, 3>
+    unknowns_of_linear(const std::array<double, 3> &values)
+    {
+      const double          sum = values[0] + values[1] + values[2];
+      std::array<double, 3> result;
+      for (unsigned int k = 0; k < 3; ++k)
+        result[k] = 0.25 * (sum + values[k]);
+      return result;
+    }
+
+
+
     /// The unit vectors of a side with this normal: the normal first.
     dealii::Tensor<2, 2>
     normal_frame(const dealii::Tensor<1, 2> &normal)
@@ -160,8 +183,6 @@ namespace Debond
     : mesh(mesh)
     , thermal_stresses(thermal_stresses)
   {
-    if (!supports.gaps.empty())
-      throw EquilibriumError("an initial gap is not done");
     find_elements();
     if (given_loads.body_force)
       find_body_forces(given_loads);
@@ -322,7 +343,38 @@ namespace Debond
           place.sides.push_back(entry->second);
         }
     fixed.assign(unknowns_of_a_side * all_sides.size(), 0);
-    loads = Eigen::VectorXd::Zero(fixed.size());
+    loads = prescribed = Eigen::VectorXd::Zero(fixed.size());
+  }
+
+
+
+  template <int dim>
+  std::array<double, dim>
+  EquilibriumMesh<dim>::linear_values(
+    const dealii::Function<dim>         &function,
+    const unsigned int                   component,
+    const std::array<unsigned int, dim> &side_vertices)
+  {
+    const std::array<dealii::Point<dim>, dim> points = corners(side_vertices);
+    std::array<double, dim>                   values;
+    double                                    largest = 0.;
+    for (unsigned int k = 0; k < dim; ++k)
+      {
+        values[k] = field_value(function, points[k], component);
+        largest   = std::max(largest, std::abs(values[k]));
+      }
+    for (unsigned int k = 0; k < dim; ++k)
+      for (unsigned int l = 0; l < k; ++l)
+        {
+          const double middle =
+            field_value(function,
+                        dealii::Point<dim>(0.5 * (points[k] + points[l])),
+                        component);
+          exact_loads =
+            exact_loads && std::abs(middle - 0.5 * (values[k] + values[l])) <=
+                             load_rounding * largest;
+        }
+    return values;
   }
 
 
@@ -366,6 +418,13 @@ namespace Debond
             for (unsigned int k = 0; k < dim; ++k)
               fixed[unknowns_of_a_side * number + dim * k + direction] = 1;
           };
+          const auto prescribe = [&](const unsigned int             direction,
+                                     const std::array<double, dim> &values) {
+            const std::array<double, dim> own = unknowns_of_linear(values);
+            for (unsigned int k = 0; k < dim; ++k)
+              prescribed(unknowns_of_a_side * number + dim * k + direction) =
+                own[k];
+          };
           const auto use_normal = [&]() {
             side.directions = normal_frame(normal);
           };
@@ -386,14 +445,9 @@ namespace Debond
                 for (unsigned int d = 0; d < dim; ++d)
                   if (!support.is_roller && support.components[d])
                     {
-                      for (const unsigned int vertex : side.vertices)
-                        if (field_value(*support.values,
-                                        mesh.get_vertices()[vertex],
-                                        d) != 0.)
-                          throw EquilibriumError(
-                            "a prescribed displacement "
-                            "that is not zero is not done");
                       fix(d);
+                      prescribe(
+                        d, linear_values(*support.values, d, side.vertices));
                     }
               }
           if (conditions.clamped.count(id) > 0)
@@ -415,7 +469,14 @@ namespace Debond
                                      element,
                                      cell,
                                      cell->material_id(),
+                                     id,
+                                     {},
                                      {}};
+              if (const auto gap = supports.gaps.find(id);
+                  gap != supports.gaps.end())
+                contact.gap =
+                  linear_values(*gap->second.value, 0, side.vertices);
+              prescribe(0, contact.gap);
               for (unsigned int k = 0; k < dim; ++k)
                 contact.unknowns[k] = unknowns_of_a_side * number + dim * k;
               sides_in_contact.push_back(contact);

@@ -206,8 +206,9 @@ namespace Debond
     dealii::SparsityPattern sparsity;
     sparsity.copy_from(pattern);
 
+    const Eigen::VectorXd       &lifting = mesh.lifting();
     dealii::SparseMatrix<double> A(sparsity);
-    double                       constant = 0.;
+    double                       constant = -loads.dot(lifting);
     for (unsigned int element = 0; element < all_elements.size(); ++element)
       {
         const EquilibriumElement<dim>  &own      = all_elements[element];
@@ -220,20 +221,28 @@ namespace Debond
         for (unsigned int i = 0; i < unknowns.size(); ++i)
           for (unsigned int j = 0; j < unknowns.size(); ++j)
             A.add(unknowns[i], unknowns[j], weight * matrix(i, j));
+        Eigen::VectorXd force = Eigen::VectorXd::Zero(unknowns.size());
         for_each_coefficient(place,
                              [&](const unsigned int row,
                                  const unsigned int column,
                                  const double       c) {
-                               f(unknowns[column]) += c * F(row);
+                               force(column) += c * F(row);
                              });
+        const Eigen::VectorXd own_lifting = lifting(unknowns);
+        if (!own_lifting.isZero(0.))
+          {
+            const Eigen::VectorXd of_lifting = weight * matrix * own_lifting;
+            constant += own_lifting.dot(0.5 * of_lifting - force);
+            force -= of_lifting;
+          }
+        for (unsigned int i = 0; i < unknowns.size(); ++i)
+          f(unknowns[i]) += force(i);
       }
 
     std::vector<unsigned int> kept;
     for (unsigned int k = 0; k < dim; ++k)
       for (const ContactSide &side : mesh.contact_sides())
         kept.push_back(side.unknowns[k]);
-    OtherParts others;
-    others.energy = [constant](double, double) { return constant; };
     try
       {
         return std::make_unique<Condensation>(
@@ -241,7 +250,7 @@ namespace Debond
           f,
           kept,
           [this](const unsigned int i) { return mesh.is_fixed(i); },
-          others,
+          constant,
           /*is_semidefinite=*/true);
       }
     catch (const std::runtime_error &)
@@ -272,7 +281,9 @@ namespace Debond
                              [&](const unsigned int row,
                                  const unsigned int column,
                                  const double       c) {
-                               own(row) += c * unknowns(numbers[column]);
+                               own(row) +=
+                                 c * (unknowns(numbers[column]) +
+                                      mesh.lifting()(numbers[column]));
                              });
         result.push_back(all_elements[element].stress(
           own, weights.empty() ? 1. : weights[element]));
@@ -448,13 +459,47 @@ namespace Debond
 
   template <int dim>
   double
-  EquilibriumProblem<dim>::rounding_of(
-    const Condensation                 &condensed,
-    const Eigen::VectorXd              &kept,
-    const std::vector<Eigen::VectorXd> &stresses,
-    const std::vector<double>          &weights) const
+  EquilibriumProblem<dim>::work_of_lifting(
+    const DofVector           &unknowns,
+    const std::vector<double> &weights) const
   {
-    double energy = 0.;
+    const Eigen::VectorXd &lifting = mesh.lifting();
+    double                 work    = -mesh.loads_on_sides().dot(lifting);
+    for (unsigned int element = 0; element < all_elements.size(); ++element)
+      {
+        const std::vector<unsigned int> numbers =
+          mesh.unknowns_of(mesh.places()[element]);
+        const Eigen::VectorXd own_lifting = lifting(numbers);
+        if (own_lifting.isZero(0.))
+          continue;
+        Eigen::VectorXd own = own_lifting;
+        for (unsigned int i = 0; i < numbers.size(); ++i)
+          own(i) += unknowns(numbers[i]);
+        work += (weights.empty() ? 1. : weights[element]) *
+                own_lifting.dot(matrix_of(element) * own);
+        const Eigen::VectorXd F = all_elements[element].F();
+        for_each_coefficient(mesh.places()[element],
+                             [&](const unsigned int row,
+                                 const unsigned int column,
+                                 const double       c) {
+                               work -= own_lifting(column) * c * F(row);
+                             });
+      }
+    return work;
+  }
+
+
+
+  template <int dim>
+  double
+  EquilibriumProblem<dim>::rounding_of(const Condensation        &condensed,
+                                       const Eigen::VectorXd     &kept,
+                                       const std::vector<double> &weights) const
+  {
+    const DofVector                    unknowns = condensed.expand(kept);
+    const std::vector<Eigen::VectorXd> stresses =
+      this->stresses(unknowns, weights);
+    double energy = -work_of_lifting(unknowns, weights);
     for (unsigned int element = 0; element < mesh.places().size(); ++element)
       {
         const Place           &place  = mesh.places()[element];

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/ranks.h>
 #include <debond/elasticity/prolongations.h>
-#include <debond/mesh/owned_cells.h>
 
 #include <boost/serialization/array.hpp>
 #include <boost/serialization/utility.hpp>
@@ -228,16 +227,15 @@ namespace Debond
     finer.begin = own.n_elements() == 0 ? 0 : own.nth_index_in_set(0) / dim;
     finer.end   = finer.begin + own.n_elements() / dim;
 
-    std::vector<dealii::Point<dim>> points(finer.end - finer.begin);
-    for (const auto &cell : owned_cells(dofs))
-      for (const unsigned int v : cell->vertex_indices())
-        if (const unsigned int node = cell->vertex_dof_index(v, 0) / dim;
-            finer.begin <= node && node < finer.end)
-          points[node - finer.begin] = cell->vertex(v);
+    const std::vector<dealii::Point<dim>> of_unknowns = unknowns.positions();
+    std::vector<dealii::Point<dim>>       points;
+    for (unsigned int node = finer.begin; node < finer.end; ++node)
+      points.push_back(of_unknowns[node * dim]);
 
     std::vector<TruncatedMultigrid::Prolongation> result;
     NodeFrames<dim>                               fine = node_frames(unknowns);
-    for (const CoarseLevel<dim> &level : body.coarse_levels(points))
+    for (const CoarseLevel<dim> &level :
+         body.coarse_levels(points, unknowns.degree() > 1))
       {
         // Of the first one there are only own rows.
         Interpolation rows =

@@ -409,7 +409,7 @@ namespace Debond
       {
         // <A u, u> = <f, u> - <xi, s> at a minimum: contact forces do no work.
         const Eigen::VectorXd s = problem.unknowns().contact().trace(u);
-        energy = problem.load_at(factors) * u - phi.subgradient(s).dot(s);
+        energy = problem.load(factors) * u - phi.subgradient(s).dot(s);
       }
     // Where nothing of the energy is known there is every reason to refine.
     const double rounding = energy > 0. ?

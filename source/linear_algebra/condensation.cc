@@ -4,28 +4,17 @@
 #include <debond/linear_algebra/mumps_factor.h>
 
 #include <memory>
+#include <utility>
 
 namespace Debond
 {
   namespace
   {
-    Elimination
-    all_but(const std::vector<unsigned int>         &kept,
-            const unsigned int                       n,
-            const std::function<bool(unsigned int)> &is_excluded,
-            const bool                               is_semidefinite)
+    std::shared_ptr<const EliminationFactor>
+    factorise(const MatrixOnRanks &A, const Elimination &elimination)
     {
-      Elimination       result{{},
-                         static_cast<unsigned int>(kept.size()),
-                         is_semidefinite};
-      std::vector<char> is_kept(n, 0);
-      for (const unsigned int i : kept)
-        is_kept[i] = 1;
-      for (unsigned int i = 0; i < n; ++i)
-        if (is_kept[i] == 0 && !is_excluded(i))
-          result.unknowns.push_back(i);
-      result.unknowns.insert(result.unknowns.end(), kept.begin(), kept.end());
-      return result;
+      return A.is_shared() ? make_mumps_factor(A, elimination) :
+                             make_cholmod_factor(A.A, elimination);
     }
   } // namespace
 
@@ -36,37 +25,34 @@ namespace Debond
     const DofVector                         &f,
     const std::vector<unsigned int>         &kept,
     const std::function<bool(unsigned int)> &is_excluded,
-    const OtherParts                        &others,
+    const double                             other_energy,
     const bool                               is_semidefinite)
-    : other_energy(others.energy)
+    : Condensation(factorise(A,
+                             eliminate_all_but(kept,
+                                               f.size(),
+                                               is_excluded,
+                                               is_semidefinite)),
+                   f,
+                   other_energy)
+  {}
+
+
+
+  Condensation::Condensation(std::shared_ptr<const EliminationFactor> factor,
+                             const DofVector                         &f,
+                             const double other_energy)
+    : factor(std::move(factor))
+    , reduced(this->factor->reduce(f))
+    , other_energy(other_energy)
+    , g(this->factor->condensed_load(reduced))
+  {}
+
+
+
+  Condensation
+  Condensation::with_load(const DofVector &f, const double energy) const
   {
-    const Elimination elimination =
-      all_but(kept, f.size(), is_excluded, is_semidefinite);
-    factor = A.is_shared() ? make_mumps_factor(A, elimination) :
-                             make_cholmod_factor(A.A, elimination);
-
-    given = factor->reduce(f);
-    if (others.constant_load.size() > 0)
-      constant = factor->reduce(others.constant_load);
-    if (others.second_load.size() > 0)
-      second = factor->reduce(others.second_load);
-    scale_load(1.);
-  }
-
-
-
-  void
-  Condensation::scale_load(const double factor_of_load,
-                           const double second_factor)
-  {
-    constant_part =
-      other_energy ? other_energy(factor_of_load, second_factor) : 0.;
-    reduced = factor_of_load * given;
-    if (constant.size() > 0)
-      reduced += (1. - factor_of_load) * constant;
-    if (second.size() > 0 && second_factor != factor_of_load)
-      reduced += (second_factor - factor_of_load) * second;
-    g = factor->condensed_load(reduced);
+    return Condensation(factor, f, energy);
   }
 
 
@@ -87,7 +73,7 @@ namespace Debond
   double
   Condensation::energy_at_zero() const
   {
-    return factor->energy_at_zero(reduced, constant_part);
+    return factor->energy_at_zero(reduced, other_energy);
   }
 
 

@@ -17,6 +17,27 @@ namespace Debond
 
 
 
+  Elimination
+  eliminate_all_but(const std::vector<unsigned int>         &kept,
+                    const unsigned int                       n,
+                    const std::function<bool(unsigned int)> &is_excluded,
+                    const bool                               is_semidefinite)
+  {
+    Elimination       result{{},
+                       static_cast<unsigned int>(kept.size()),
+                       is_semidefinite};
+    std::vector<char> is_kept(n, 0);
+    for (const unsigned int i : kept)
+      is_kept[i] = 1;
+    for (unsigned int i = 0; i < n; ++i)
+      if (is_kept[i] == 0 && !is_excluded(i))
+        result.unknowns.push_back(i);
+    result.unknowns.insert(result.unknowns.end(), kept.begin(), kept.end());
+    return result;
+  }
+
+
+
   double
   EliminationFactor::condition_estimate() const
   {

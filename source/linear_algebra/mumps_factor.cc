@@ -5,9 +5,9 @@
 
 #include <debond/base/memory.h>
 #include <debond/base/ranks.h>
+#include <debond/linear_algebra/block_factor.h>
 #include <debond/linear_algebra/mumps_factor.h>
 
-#include <Eigen/SparseCore>
 #include <dmumps_c.h>
 
 #include <new>
@@ -80,30 +80,6 @@ namespace Debond
 
 
 
-    /// The sum over the ranks, in place.
-    void
-    sum_over(const MPI_Comm ranks, Eigen::VectorXd &values)
-    {
-      const dealii::ArrayView<double> view(values.data(), values.size());
-      dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(view),
-                                  ranks,
-                                  view);
-    }
-
-
-
-    void
-    broadcast(const MPI_Comm ranks, dealii::FullMatrix<double> &matrix)
-    {
-      if (!matrix.empty())
-        dealii::Utilities::MPI::broadcast(&matrix(0, 0),
-                                          matrix.n_elements(),
-                                          0,
-                                          ranks);
-    }
-
-
-
     /// Whether this rank and those on the same machine can have as many bytes.
     bool
     fits_into_memory(const double bytes, const MPI_Comm ranks)
@@ -118,20 +94,14 @@ namespace Debond
 
 
 
-    class MumpsFactor : public EliminationFactor
+    class MumpsFactor : public BlockFactor
     {
     public:
       MumpsFactor(const MatrixOnRanks &matrix, const Elimination &elimination)
-        : elimination(elimination)
-        , ranks(matrix.ranks)
-        , is_first(rank_of_this(ranks) == 0)
-        , n_rows(matrix.A.m())
-        , n_eliminated(elimination.n_eliminated())
-        , n_kept(elimination.n_kept)
+        : BlockFactor(matrix, elimination)
         , mumps(ranks)
       {
         const OwnEntries own = own_entries(matrix);
-        S.reinit(n_kept, n_kept);
         if (n_eliminated > 0)
           factorize(own);
         else
@@ -141,75 +111,7 @@ namespace Debond
               S(own.rows[k] - 1, own.columns[k] - 1) = own.values[k];
             dealii::Utilities::MPI::sum(S, ranks, S);
           }
-        for (unsigned int i = 0; i < n_kept; ++i)
-          for (unsigned int j = 0; j < i; ++j)
-            S(j, i) = S(i, j);
-        broadcast(ranks, S);
-        factorize_S(matrix);
-      }
-
-      /// (f_i, x_i, g).
-      Eigen::VectorXd
-      reduce(const DofVector &f) const override
-      {
-        Eigen::VectorXd result(2 * n_eliminated + n_kept);
-        for (unsigned int i = 0; i < n_eliminated; ++i)
-          result(i) = f(elimination.unknowns[i]);
-        const Eigen::VectorXd x = solve(result.head(n_eliminated));
-        Eigen::VectorXd       g = -(A_is.transpose() * x);
-        sum_over(ranks, g);
-        for (unsigned int k = 0; k < n_kept; ++k)
-          g(k) += f(elimination.unknowns[n_eliminated + k]);
-        result.tail(n_eliminated + n_kept) << x, g;
-        return result;
-      }
-
-      Eigen::VectorXd
-      condensed_load(const Eigen::VectorXd &reduced) const override
-      {
-        return reduced.tail(n_kept);
-      }
-
-      double
-      energy_at_zero(const Eigen::VectorXd &reduced,
-                     const double           other) const override
-      {
-        return other -
-               0.5 * reduced.head(n_eliminated)
-                       .dot(reduced.segment(n_eliminated, n_eliminated));
-      }
-
-      double
-      energy_of_kept(const Eigen::VectorXd &reduced) const override
-      {
-        if (n_kept == 0)
-          return 0.;
-        using ByRows = Eigen::
-          Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-        const Eigen::Map<const ByRows> L(&L_ss(0, 0), n_kept, n_kept);
-        return 0.5 * L.triangularView<Eigen::Lower>()
-                       .solve(condensed_load(reduced))
-                       .squaredNorm();
-      }
-
-      double
-      energy_without_contact(const Eigen::VectorXd &reduced) const override
-      {
-        return energy_of_kept(reduced) - energy_at_zero(reduced, 0.);
-      }
-
-      DofVector
-      expand(const Eigen::VectorXd &reduced, const VectorView &s) const override
-      {
-        Eigen::VectorXd force = A_is * s;
-        sum_over(ranks, force);
-        Eigen::VectorXd x(n_eliminated + n_kept);
-        x << solve(reduced.head(n_eliminated) - force), s;
-
-        DofVector u(n_rows);
-        for (unsigned int i = 0; i < x.size(); ++i)
-          u(elimination.unknowns[i]) = x(i);
-        return u;
+        finish(matrix);
       }
 
     private:
@@ -222,13 +124,11 @@ namespace Debond
         std::vector<double>    values;
       };
 
-      /// Sets A_is, too.
       OwnEntries
-      own_entries(const MatrixOnRanks &matrix)
+      own_entries(const MatrixOnRanks &matrix) const
       {
         const std::vector<int> position = elimination.positions(n_rows);
         OwnEntries             own;
-        std::vector<Eigen::Triplet<double>> couplings;
         for (const auto row : matrix.own_rows)
           if (const int i = position[row]; i >= 0)
             for (auto entry = matrix.A.begin(row); entry != matrix.A.end(row);
@@ -241,12 +141,7 @@ namespace Debond
                     own.columns.push_back(j + 1);
                     own.values.push_back(entry->value());
                   }
-                const int k = j - static_cast<int>(n_eliminated);
-                if (i < static_cast<int>(n_eliminated) && k >= 0)
-                  couplings.emplace_back(i, k, entry->value());
               }
-        A_is.resize(n_eliminated, n_kept);
-        A_is.setFromTriplets(couplings.begin(), couplings.end());
         return own;
       }
 
@@ -277,37 +172,9 @@ namespace Debond
         mumps.run(2);
       }
 
-      /// Sets L_ss.
-      void
-      factorize_S(const MatrixOnRanks &matrix)
-      {
-        L_ss                     = S;
-        Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(n_kept);
-        for (unsigned int k = 0; k < n_kept; ++k)
-          if (const unsigned int row = elimination.unknowns[n_eliminated + k];
-              elimination.is_semidefinite && matrix.own_rows.is_element(row))
-            diagonal(k) = matrix.A.diag_element(row);
-        sum_over(ranks, diagonal);
-        for (unsigned int k = 0; k < n_kept; ++k)
-          L_ss(k, k) += diagonal(k);
-
-        dealii::types::blas_int info = 0;
-        if (is_first && n_kept > 0)
-          {
-            const auto n = static_cast<dealii::types::blas_int>(n_kept);
-            // The upper triangle by columns is the lower one by rows.
-            dealii::potrf("U", &n, &L_ss(0, 0), &n, &info);
-          }
-        info = dealii::Utilities::MPI::broadcast(ranks, info);
-        if (info != 0)
-          throw not_positive_definite("kept unknown " + std::to_string(info) +
-                                      " of " + std::to_string(n_kept));
-        broadcast(ranks, L_ss);
-      }
-
       /// A_ii^{-1} b.
       Eigen::VectorXd
-      solve(const Eigen::VectorXd &b) const
+      solve(const Eigen::VectorXd &b) const override
       {
         if (n_eliminated == 0)
           return b;
@@ -321,14 +188,7 @@ namespace Debond
         return x.head(n_eliminated);
       }
 
-      const Elimination           elimination;
-      const MPI_Comm              ranks;
-      const bool                  is_first;
-      const unsigned int          n_rows; ///< of A
-      const unsigned int          n_eliminated;
-      const unsigned int          n_kept;
-      mutable Mumps               mumps;
-      Eigen::SparseMatrix<double> A_is; ///< own rows only
+      mutable Mumps mumps;
     };
   } // namespace
 

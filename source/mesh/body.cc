@@ -180,23 +180,27 @@ namespace Debond
 
   template <int dim>
   std::vector<CoarseLevel<dim>>
-  Body<dim>::coarse_levels(const std::vector<dealii::Point<dim>> &points) const
+  Body<dim>::coarse_levels(const std::vector<dealii::Point<dim>> &points,
+                           const bool with_own) const
   {
     std::vector<CoarseLevel<dim>> levels;
     if (!has_coarse_levels())
       return levels;
-    for (auto body = coarser_whole(); body != nullptr;
-         body      = body->coarser_whole())
+    std::unique_ptr<const Body> coarse;
+    for (const Body *body = this; body != nullptr;
+         coarse = body->coarser_whole(), body = coarse.get())
       {
-             dealii::Triangulation<dim> mesh;
-             body->make_whole_mesh(mesh);
-             const CellSearch<dim> search(mesh);
-             CoarseLevel<dim>      level;
-             level.to_finer.n_nodes = mesh.n_vertices();
-             for (const dealii::Point<dim> &point :
+        if (body == this && !with_own)
+          continue;
+        dealii::Triangulation<dim> mesh;
+        body->make_whole_mesh(mesh);
+        const CellSearch<dim> search(mesh);
+        CoarseLevel<dim>      level;
+        level.to_finer.n_nodes = mesh.n_vertices();
+        for (const dealii::Point<dim> &point :
              levels.empty() ? points : levels.back().vertices)
           {
-                 // Beside the mesh, as on curved sides, next to it. What rounding
+            // Beside the mesh, as on curved sides, next to it. What rounding
             // makes of a zero is none.
             constexpr double noise = 1e-6;
             double           sum   = 0.;
@@ -206,15 +210,15 @@ namespace Debond
             for (const auto &[vertex, weight] : found)
               if (weight > noise)
                 {
-                       level.to_finer.nodes.push_back(vertex);
-                       level.to_finer.weights.push_back(
+                  level.to_finer.nodes.push_back(vertex);
+                  level.to_finer.weights.push_back(
                     static_cast<float>(weight / sum));
                 }
             level.to_finer.starts.push_back(level.to_finer.nodes.size());
           }
-             level.vertices = mesh.get_vertices();
-             levels.push_back(std::move(level));
-             if (body->n_vertices() < fewest_vertices_of_level)
+        level.vertices = mesh.get_vertices();
+        levels.push_back(std::move(level));
+        if (body->n_vertices() < fewest_vertices_of_level)
           break;
       }
     return levels;

@@ -282,10 +282,14 @@ namespace Debond
 
   template <int dim>
   std::vector<CoarseLevel<dim>>
-  Box<dim>::coarse_levels(const std::vector<dealii::Point<dim>> &points) const
+  Box<dim>::coarse_levels(const std::vector<dealii::Point<dim>> &points,
+                          const bool                             with_own) const
   {
     std::vector<CoarseLevel<dim>> levels;
-    for (const BoxParameters &box : coarse_boxes())
+    std::vector<BoxParameters>    boxes = coarse_boxes();
+    if (with_own)
+      boxes.insert(boxes.begin(), parameters);
+    for (const BoxParameters &box : boxes)
       levels.push_back(
         coarse_level(CrossedLattice<dim>(box),
                      levels.empty() ? points : levels.back().vertices));

@@ -118,8 +118,7 @@ namespace Debond
       if (!only_validate)
         return run<dim>(parameters, std::cout, isatty(STDOUT_FILENO) == 1);
 
-      MethodChoice choice =
-        choose_method(parameters, parameters.solver, parameters.accuracy);
+      MethodChoice     choice = choose_method(parameters, parameters.solver);
       const Scene<dim> scene(parameters,
                              parameters.solver.start,
                              MPI_COMM_WORLD);

@@ -94,15 +94,12 @@ namespace Debond
     const CertificateKind     certificate = parameters.certificate.kind;
     const OutputParameters   &output      = parameters.output;
     const AccuracyParameters &accuracy    = parameters.accuracy;
-    MethodChoice choice = choose_method(parameters, solver, accuracy);
+    MethodChoice              choice      = choose_method(parameters, solver);
     refuse_certificates_of_ranks(parameters);
     std::shared_ptr<const Scene<dim>> scene =
       make_first_scene<dim>(parameters, accuracy, parameters.solver.start);
     choose_linear_solver(*scene, solver, choice);
     check_supports_of_method(choice, solver, *scene);
-    // Trilinos needs MPI even in one process; others need not wait for it.
-    if (choice.linear_solver == LinearSolver::multigrid)
-      start_mpi();
     // Before the solve, so that nothing is lost if it is not finite somewhere.
     error_of(parameters.verification.exact_displacement,
              *scene,
@@ -146,9 +143,12 @@ namespace Debond
 
     result.times = {{"mesh", scene->mesh_seconds()},
                     {"assembly", scene->assembly_seconds()}};
-    dealii::Timer     timer;
-    std::string       shortfall;
-    FollowedPath<dim> path;
+    dealii::Timer       timer;
+    std::string         shortfall;
+    FollowedPath<dim>   path;
+    const SolveSettings settings = {choice,
+                                    solver,
+                                    parameters.verification.tolerance};
     if (accuracy.is_adaptive())
       {
         const auto report = [&](const AdaptiveLevel &level) {
@@ -158,17 +158,11 @@ namespace Debond
           record.print(out);
           result.levels.push_back(level);
         };
-        AdaptiveResult adaptive;
+        AdaptiveResult<dim> adaptive;
         try
           {
-            adaptive = solve_adaptively(choice,
-                                        solver,
-                                        accuracy,
-                                        certificate,
-                                        parameters.verification.tolerance,
-                                        report,
-                                        scene,
-                                        &path);
+            adaptive =
+              solve_adaptively(settings, accuracy, certificate, report, scene);
           }
         catch (const BadInput &)
           {
@@ -184,6 +178,7 @@ namespace Debond
         result.solve       = std::move(adaptive.solve);
         shortfall          = adaptive.shortfall;
         result.certificate = std::move(adaptive.certificate);
+        path               = std::move(adaptive.path);
         files              = output_files(output, *scene, result);
         add_path_output();
       }
@@ -197,22 +192,23 @@ namespace Debond
     // written of them.
     if (!load_path.factors.empty() &&
         result.solve.status != SolverStatus::interrupted)
-      result.solve = follow_load_path<dim>(
-        load_path,
-        solver,
-        parameters.verification.tolerance,
-        *scene,
-        [&](const LoadPathStep<dim>     &step,
-            const DofVector             &u,
-            const Verification<dim>     &verification,
-            const AdhesionIntegral<dim> &bonds) {
-          result.verification = verification;
-          path.bonds = std::make_shared<const AdhesionIntegral<dim>>(bonds);
-          path_output->add(step, u, verification);
-        },
-        record.has_details() ? &out : nullptr,
-        result.path,
-        result.arc);
+      {
+        path = follow_load_path<dim>(
+          load_path,
+          settings,
+          *scene,
+          [&](const LoadPathStep<dim> &step,
+              const DofVector         &u,
+              const Verification<dim> &verification,
+              const AdhesionIntegral<dim> &) {
+            result.verification = verification;
+            path_output->add(step, u, verification);
+          },
+          record.has_details() ? &out : nullptr);
+        result.solve = std::move(path.result);
+        result.path  = path.steps;
+        result.arc   = path.arc;
+      }
     else if (!path.steps.empty())
       {
         result.path         = path.steps;

@@ -159,25 +159,14 @@ namespace Debond
 
 
 
-    /// Estimate in bytes of what factorising @p n unknowns takes: mesh, A and
-    /// the fill of minimum degree orderings, about n log n in 2D and n^(4/3) in
-    /// 3D.
-    double
-    memory_of_factorisation(const double n, const int dim)
-    {
-      return dim == 2 ? (900. + 29. * std::log2(n)) * n :
-                        600. * n + 125. * std::pow(n, 4. / 3.);
-    }
-
-
-
     /// Why there can be no mesh as large as that of @p body; empty if there
-    /// can. @p memory_limit: 0 for what is there.
+    /// can. @p limit: of memory in bytes.
     template <int dim>
     std::string
     too_large(const ProblemParameters  &problem,
               const AccuracyParameters &accuracy,
-              const double              memory_limit,
+              const MethodChoice       &wanted,
+              const double              limit,
               const Body<dim>          &body)
     {
       // Of degree 2 edges have unknowns as well, their number by Euler's
@@ -188,15 +177,14 @@ namespace Debond
       const double n_unknowns = dim * n_nodes;
       // Four unknowns on each of 3/2 sides a triangle, or nine on each of two
       // faces a tetrahedron, for stresses.
-      const double n =
+      const double memory =
         accuracy.certified_width > 0. ?
-          std::max(n_unknowns, (dim == 2 ? 6. : 18.) * body.n_cells()) :
-          n_unknowns;
-      const double       memory = memory_of_factorisation(n, dim);
+          memory_of_factorisation(
+            dim, std::max(n_unknowns, (dim == 2 ? 6. : 18.) * body.n_cells())) :
+          least_memory(wanted, dim, n_unknowns);
       std::ostringstream text;
       text << "the next mesh would have " << std::fixed << std::setprecision(0)
            << n_unknowns << " unknowns, ";
-      const double limit = memory_left(memory_limit);
       if (accuracy.maximum_unknowns > 0 &&
           n_unknowns > accuracy.maximum_unknowns)
         text << "Accuracy/Maximum unknowns is " << accuracy.maximum_unknowns;
@@ -245,46 +233,6 @@ namespace Debond
                             functional,
                             factors,
                             &scene.dead_loads());
-    }
-
-
-
-    /// The states that the load path leads to; @p largest becomes the estimate
-    /// of the one that has the largest error relative to its J, @p functional.
-    template <int dim>
-    SolveResult
-    follow(const SolverParameters &solver,
-           const double            tolerance,
-           const Scene<dim>       &scene,
-           ErrorEstimate          &largest,
-           double                 &functional,
-           FollowedPath<dim>      &path)
-    {
-      LoadPathParameters followed = scene.parameters().load_path;
-      followed.global_branch      = GlobalBranch::none;
-      followed.arc                = false;
-      std::vector<LoadPathStep<dim>> arc;
-      return follow_load_path<dim>(
-        followed,
-        solver,
-        tolerance,
-        scene,
-        [&](const LoadPathStep<dim> &step,
-            const DofVector         &u,
-            const Verification<dim> &,
-            const AdhesionIntegral<dim> &bonds) {
-          path.bonds = std::make_shared<const AdhesionIntegral<dim>>(bonds);
-          ErrorEstimate own =
-            estimate_of(scene, bonds, u, step.state.functional, step.factors());
-          if (largest.cells.empty() || own.relative() > largest.relative())
-            {
-              largest    = std::move(own);
-              functional = step.state.functional;
-            }
-        },
-        nullptr,
-        path.steps,
-        arc);
     }
 
 
@@ -356,13 +304,329 @@ namespace Debond
 
 
 
-    /// What is left of a loop that a signal ends on the way to the next mesh.
-    void
-    interrupt(SolveResult &solve)
+    template <int dim>
+    class AdaptiveLoop
     {
-      solve.status  = SolverStatus::interrupted;
-      solve.message = "The result is that of the last mesh that was finished.";
-    }
+    public:
+      using Report = std::function<void(const AdaptiveLevel &)>;
+
+      AdaptiveLoop(const SolveSettings               &settings,
+                   const AccuracyParameters          &accuracy,
+                   const CertificateKind              kind,
+                   const Report                      &report,
+                   std::shared_ptr<const Scene<dim>> &scene)
+        : settings(settings)
+        , accuracy(accuracy)
+        , kind(kind)
+        , width(accuracy.certified_width)
+        , report(report)
+        , scene(scene)
+        , problem(scene->parameters())
+        , ranks(scene->ranks())
+        , wanted(choose_method(problem, settings.parameters))
+        , growth(accuracy, dim, problem.degree)
+      {}
+
+      AdaptiveResult<dim>
+      run()
+      {
+        seconds = scene->mesh_seconds() + scene->assembly_seconds();
+        solve_on(scene, settings);
+        while (!is_finished())
+          {
+            timer.restart();
+            seconds = 0.;
+            std::string                                    limit;
+            const std::shared_ptr<const BisectedBody<dim>> body =
+              next_body(limit);
+            if (!limit.empty() || estimate.functional == 0.)
+              {
+                say_what_is_missing(limit);
+                break;
+              }
+            const auto next =
+              std::make_shared<const Scene<dim>>(problem, body, "", ranks);
+            SolveSettings on_next = settings;
+            on_next.choice        = wanted;
+            try
+              {
+                choose_linear_solver(*next,
+                                     settings.parameters,
+                                     on_next.choice);
+              }
+            catch (const BadInput &error)
+              {
+                say_what_is_missing(error.what());
+                break;
+              }
+            if (guard.requested())
+              {
+                interrupt();
+                break;
+              }
+            start = std::make_unique<const DofVector>(
+              divided_displacement(scene->problem(),
+                                   result.solve.u,
+                                   body->ancestors(),
+                                   next->problem()));
+            // Its memory is for the next mesh; the state of a path knows it.
+            const std::shared_ptr<const Body<dim>> finished = latest;
+            latest                                          = body;
+            if (finished && result.path.steps.empty())
+              scene.reset();
+            if (!solve_on(next, on_next))
+              {
+                if (!scene)
+                  scene = std::make_shared<const Scene<dim>>(problem,
+                                                             finished,
+                                                             "",
+                                                             ranks);
+                break;
+              }
+          }
+        return std::move(result);
+      }
+
+    private:
+      /// Whether there is a result on this mesh that a finer one may replace,
+      /// or the last word; if a signal came before, that of the mesh before
+      /// stays.
+      bool
+      solve_on(const std::shared_ptr<const Scene<dim>> &here,
+               const SolveSettings                     &on_mesh)
+      {
+        estimate = {};
+        FollowedPath<dim> path;
+        SolveResult       solution;
+        try
+          {
+            if (problem.load_path.factors.empty())
+              {
+                solution   = solve(on_mesh.choice,
+                                 settings.parameters,
+                                 *here,
+                                 nullptr,
+                                 false,
+                                 start.get());
+                functional = solution.functional;
+                if (can_be_verified(solution.status) &&
+                    !solution.minimum.interrupted)
+                  estimate = estimate_of(*here,
+                                         here->adhesion(),
+                                         solution.u,
+                                         solution.functional,
+                                         1.);
+              }
+            else
+              {
+                path     = follow(*here, on_mesh);
+                solution = std::move(path.result);
+              }
+          }
+        catch (const std::invalid_argument &error)
+          {
+            result.shortfall =
+              std::string("The error of the mesh is not known, ") +
+              error.what() + '.';
+          }
+        const bool is_first = !start;
+        if (!is_first && solution.status == SolverStatus::interrupted)
+          {
+            interrupt();
+            return false;
+          }
+        result.solve = std::move(solution);
+        result.path  = std::move(path);
+        scene        = here;
+        // Where the body comes off on the way, the factors before that count.
+        const bool comes_off_later =
+          result.solve.status == SolverStatus::comes_off &&
+          !result.path.steps.empty();
+        const bool is_usable =
+          (can_be_verified(result.solve.status) || comes_off_later) &&
+          !result.solve.minimum.interrupted;
+        if (is_usable && result.shortfall.empty() && width > 0.)
+          certify(false);
+        ended = !is_usable || !result.shortfall.empty();
+        if (!ended)
+          {
+            const ElasticUnknowns<dim> &unknowns = scene->problem().unknowns();
+            report({scene->n_cells(),
+                    unknowns.n_free_dofs(),
+                    unknowns.contact().size(),
+                    result.solve.iterations,
+                    functional,
+                    estimate.relative(),
+                    own_width(),
+                    seconds + timer.wall_time()});
+            growth.add(unknowns.n_free_dofs(), estimate.relative());
+          }
+        return true;
+      }
+
+      /// The states that the load path leads to, with the estimate of the one
+      /// that has the largest error relative to its J.
+      FollowedPath<dim>
+      follow(const Scene<dim> &here, const SolveSettings &on_mesh)
+      {
+        LoadPathParameters followed = problem.load_path;
+        followed.global_branch      = GlobalBranch::none;
+        followed.arc                = false;
+        return follow_load_path<dim>(
+          followed,
+          on_mesh,
+          here,
+          [&](const LoadPathStep<dim> &step,
+              const DofVector         &u,
+              const Verification<dim> &,
+              const AdhesionIntegral<dim> &bonds) {
+            ErrorEstimate own = estimate_of(
+              here, bonds, u, step.state.functional, step.factors());
+            if (estimate.cells.empty() || own.relative() > estimate.relative())
+              {
+                estimate   = std::move(own);
+                functional = step.state.functional;
+              }
+          },
+          nullptr);
+      }
+
+      void
+      certify(const bool is_last)
+      {
+        result.certificate.reset();
+        try
+          {
+            result.certificate =
+              certify_level<dim>(kind,
+                                 width,
+                                 settings.parameters.proof,
+                                 scene,
+                                 result.solve.u,
+                                 is_last,
+                                 narrowest,
+                                 [&]() { return !guard.requested(); });
+            result.certificate->include(result.solve.functional);
+          }
+        catch (const std::exception &error)
+          {
+            result.shortfall = no_certificate(error);
+          }
+      }
+
+      double
+      own_width() const
+      {
+        return result.certificate ? result.certificate->width() : 0.;
+      }
+
+      bool
+      is_accurate() const
+      {
+        return estimate.relative() <= accuracy.target;
+      }
+
+      bool
+      is_finished()
+      {
+        if (ended)
+          return true;
+        if (width > 0. && guard.requested())
+          {
+            interrupt();
+            return true;
+          }
+        return width > 0. ? own_width() <= width &&
+                              (is_accurate() || accuracy.target == 0.) :
+                            is_accurate();
+      }
+
+      /// @p limit becomes why there can be none.
+      std::shared_ptr<const BisectedBody<dim>>
+      next_body(std::string &limit)
+      {
+        const bool by_gaps =
+          own_width() > width && !result.certificate->gaps.empty();
+        double times = by_gaps || width > 0. ? growth_for_gaps : growth.next();
+        while (true)
+          {
+            std::shared_ptr<const BisectedBody<dim>> body =
+              bisected(*scene).refined(
+                divisions(by_gaps ? result.certificate->gaps :
+                                    of_whole_mesh(*scene, estimate.cells),
+                          dim,
+                          times));
+            limit =
+              too_large<dim>(problem,
+                             accuracy,
+                             wanted,
+                             memory_left(settings.parameters.memory_limit),
+                             *body);
+            if (limit.empty() || times <= least_growth(problem.degree))
+              return body;
+            times = std::max(least_growth(problem.degree), 0.75 * times);
+          }
+      }
+
+      void
+      say_what_is_missing(const std::string &limit)
+      {
+        if (width > 0.)
+          {
+            if (kind == CertificateKind::global &&
+                result.certificate->minimum != CertifiedMinimum::global)
+              certify(true);
+            if (!result.shortfall.empty())
+              return;
+            if (own_width() > width)
+              result.shortfall =
+                too_wide(*result.certificate, width) + ": " + limit + '.';
+          }
+        if (!is_accurate() && accuracy.target > 0.)
+          {
+            std::ostringstream text;
+            text << (result.shortfall.empty() ? "" : " ")
+                 << "The estimated error of " << std::setprecision(2)
+                 << estimate.relative()
+                 << " is above Accuracy/Target = " << accuracy.target << ": "
+                 << limit << '.';
+            result.shortfall += text.str();
+          }
+      }
+
+      void
+      interrupt()
+      {
+        result.solve.status = SolverStatus::interrupted;
+        result.solve.message =
+          "The result is that of the last mesh that was finished.";
+      }
+
+      const SolveSettings               &settings;
+      const AccuracyParameters          &accuracy;
+      const CertificateKind              kind;
+      const double                       width; ///< Certificate/Target
+      const Report                      &report;
+      std::shared_ptr<const Scene<dim>> &scene;
+
+      // Of all meshes.
+      const ProblemParameters problem;
+      const MPI_Comm          ranks;
+      const MethodChoice      wanted; ///< the linear solver may be automatic
+      const InterruptGuard    guard;
+
+      AdaptiveResult<dim> result;
+      bool                ended = false; ///< by no result, or no estimate
+      ErrorEstimate       estimate;
+      double              functional = 0.; ///< that it is relative to
+      MeshGrowth          growth;
+      std::optional<Certificate> narrowest;
+      dealii::Timer              timer;
+      double                     seconds = 0.; ///< before the timer started
+
+      std::shared_ptr<const Body<dim>> latest;
+      std::unique_ptr<const DofVector> start; ///< on the next mesh
+    };
   } // namespace
 
 
@@ -401,192 +665,15 @@ namespace Debond
 
 
   template <int dim>
-  AdaptiveResult
-  solve_adaptively(const MethodChoice       &choice,
-                   const SolverParameters   &solver,
+  AdaptiveResult<dim>
+  solve_adaptively(const SolveSettings      &settings,
                    const AccuracyParameters &accuracy,
                    const CertificateKind     certificate,
-                   const double              tolerance,
                    const std::function<void(const AdaptiveLevel &)> &report,
-                   std::shared_ptr<const Scene<dim>>                &scene,
-                   FollowedPath<dim>                                *path)
+                   std::shared_ptr<const Scene<dim>>                &scene)
   {
-    // Of all meshes.
-    const ProblemParameters           problem = scene->parameters();
-    const MPI_Comm                    ranks   = scene->ranks();
-    AdaptiveResult                    result;
-    const InterruptGuard              guard;
-    dealii::Timer                     timer;
-    std::shared_ptr<const Scene<dim>> next;
-    std::shared_ptr<const Body<dim>>  finished, latest;
-    std::unique_ptr<const DofVector>  start;
-    MeshGrowth                        growth(accuracy, dim, problem.degree);
-    std::optional<Certificate>        narrowest;
-    while (true)
-      {
-        const bool        is_first = !next;
-        const Scene<dim> &here     = is_first ? *scene : *next;
-        ErrorEstimate     estimate;
-        FollowedPath<dim> path_here;
-        SolveResult       solution;
-        double            functional = 0.;
-        try
-          {
-            if (problem.load_path.factors.empty())
-              {
-                solution =
-                  solve(choice, solver, here, nullptr, false, start.get());
-                functional = solution.functional;
-                if (can_be_verified(solution.status) &&
-                    !solution.minimum.interrupted)
-                  estimate = estimate_of(
-                    here, here.adhesion(), solution.u, solution.functional, 1.);
-              }
-            else
-              solution = follow(
-                solver, tolerance, here, estimate, functional, path_here);
-          }
-        catch (const std::invalid_argument &error)
-          {
-            result.shortfall =
-              std::string("The error of the mesh is not known, ") +
-              error.what() + '.';
-          }
-        if (!is_first && solution.status == SolverStatus::interrupted)
-          {
-            if (!scene)
-              scene = std::make_shared<const Scene<dim>>(problem,
-                                                         finished,
-                                                         "",
-                                                         ranks);
-            interrupt(result.solve);
-            return result;
-          }
-        result.solve = std::move(solution);
-        if (!is_first)
-          scene = std::move(next);
-        const bool comes_off_later =
-          result.solve.status == SolverStatus::comes_off &&
-          !path_here.steps.empty();
-        if (path != nullptr)
-          *path = std::move(path_here);
-        if (!(can_be_verified(result.solve.status) || comes_off_later) ||
-            result.solve.minimum.interrupted)
-          return result;
-
-        if (!result.shortfall.empty())
-          return result;
-        const double target  = accuracy.certified_width;
-        const auto   certify = [&](const bool is_last) {
-          result.certificate.reset();
-          try
-            {
-              result.certificate =
-                certify_level<dim>(certificate,
-                                   target,
-                                   solver.proof,
-                                   scene,
-                                   result.solve.u,
-                                   is_last,
-                                   narrowest,
-                                   [&]() { return !guard.requested(); });
-              result.certificate->include(result.solve.functional);
-            }
-          catch (const std::exception &error)
-            {
-              result.shortfall = no_certificate(error);
-            }
-        };
-        if (target > 0.)
-          certify(false);
-        if (!result.shortfall.empty())
-          return result;
-        const double width =
-          result.certificate ? result.certificate->width() : 0.;
-        const ElasticUnknowns<dim> &unknowns = scene->problem().unknowns();
-        report({scene->n_cells(),
-                unknowns.n_free_dofs(),
-                unknowns.contact().size(),
-                result.solve.iterations,
-                functional,
-                estimate.relative(),
-                width,
-                timer.wall_time() + (is_first ? scene->mesh_seconds() +
-                                                  scene->assembly_seconds() :
-                                                0.)});
-        const bool is_accurate = estimate.relative() <= accuracy.target;
-        if (target > 0. && guard.requested())
-          {
-            interrupt(result.solve);
-            return result;
-          }
-        if (target > 0. ?
-              width <= target && (is_accurate || accuracy.target == 0.) :
-              is_accurate)
-          return result;
-
-        timer.restart();
-        const bool by_gaps =
-          width > target && !result.certificate->gaps.empty();
-        growth.add(unknowns.n_free_dofs(), estimate.relative());
-        double times = by_gaps || target > 0. ? growth_for_gaps : growth.next();
-        std::shared_ptr<const BisectedBody<dim>> body;
-        std::string                              limit;
-        while (true)
-          {
-            body = bisected(*scene).refined(
-              divisions(by_gaps ? result.certificate->gaps :
-                                  of_whole_mesh(*scene, estimate.cells),
-                        dim,
-                        times));
-            limit =
-              too_large<dim>(problem, accuracy, solver.memory_limit, *body);
-            if (limit.empty() || times <= least_growth(problem.degree))
-              break;
-            times = std::max(least_growth(problem.degree), 0.75 * times);
-          }
-        if (!limit.empty() || estimate.functional == 0.)
-          {
-            if (target > 0.)
-              {
-                if (certificate == CertificateKind::global &&
-                    result.certificate->minimum != CertifiedMinimum::global)
-                  certify(true);
-                if (!result.shortfall.empty())
-                  return result;
-                if (result.certificate->width() > target)
-                  result.shortfall =
-                    too_wide(*result.certificate, target) + ": " + limit + '.';
-              }
-            if (!is_accurate && accuracy.target > 0.)
-              {
-                std::ostringstream text;
-                text << (result.shortfall.empty() ? "" : " ")
-                     << "The estimated error of " << std::setprecision(2)
-                     << estimate.relative()
-                     << " is above Accuracy/Target = " << accuracy.target
-                     << ": " << limit << '.';
-                result.shortfall += text.str();
-              }
-            return result;
-          }
-        next = std::make_shared<const Scene<dim>>(problem, body, "", ranks);
-        if (guard.requested())
-          {
-            interrupt(result.solve);
-            return result;
-          }
-        start = std::make_unique<const DofVector>(
-          divided_displacement(scene->problem(),
-                               result.solve.u,
-                               body->ancestors(),
-                               next->problem()));
-        // Its memory is for the next mesh; the state of a path knows it.
-        finished = latest;
-        latest   = body;
-        if (finished && (path == nullptr || path->steps.empty()))
-          scene.reset();
-      }
+    return AdaptiveLoop<dim>(settings, accuracy, certificate, report, scene)
+      .run();
   }
 
 

@@ -14,7 +14,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <map>
 #include <new>
+#include <numeric>
 #include <sstream>
 
 namespace Debond
@@ -33,6 +35,9 @@ namespace Debond
     /// Of tractions, relative to the largest one, or that of the boundary if it
     /// were held.
     constexpr double traction_rounding = 1e-9;
+
+    /// Of bonds and gaps along a side, relative.
+    constexpr double bond_rounding = 1e-10;
 
     /// Of displacements in contact, relative to the largest one.
     constexpr double contact_rounding = 1e-9;
@@ -109,18 +114,122 @@ namespace Debond
 
 
 
+    /// The law of each side with its bonds, which must not vary along it.
+    template <int dim>
+    std::vector<BranchMinimum>
+    laws_of_sides(const std::vector<SideOf<dim>> &sides,
+                  const BranchMinimum            &law,
+                  const AdhesionIntegral<dim>    &bonds)
+    {
+      std::vector<BranchMinimum> laws;
+      for (const SideOf<dim> &side : sides)
+        {
+          if (!bonds.has_field())
+            {
+              laws.push_back(law);
+              continue;
+            }
+          std::vector<BondScale> scales;
+          for (const auto &[barycentric, weight] : side_rule<dim>())
+            {
+              dealii::Point<dim> position;
+              for (unsigned int k = 0; k < dim; ++k)
+                position += barycentric[k] * side.corners[k];
+              scales.push_back(bonds.bonds_at(position, side.id));
+              const auto differ = [](const double a, const double b) {
+                return std::abs(a - b) > bond_rounding * std::abs(b);
+              };
+              if (differ(scales.back().energy, scales[0].energy) ||
+                  differ(scales.back().stretch, scales[0].stretch))
+                throw EquilibriumError("bonds that vary along a side are not "
+                                       "done");
+            }
+          const auto &[energy, stretch] = scales[0];
+          laws.push_back(law.with_first_curvature(energy * law[0].curvature /
+                                                    (stretch * stretch),
+                                                  stretch));
+        }
+      return laws;
+    }
+
+
+
+    /// Throws EquilibriumError if the gap of @p boundary is not linear on its
+    /// faces as that of the sides is.
+    template <int dim>
+    void
+    check_gaps(const ContactBoundary<dim>     &boundary,
+               const std::vector<SideOf<dim>> &sides)
+    {
+      std::map<std::vector<double>, double> gaps; ///< by corner and normal
+      const auto key = [](const dealii::Point<dim>     &position,
+                          const dealii::Tensor<1, dim> &normal) {
+        std::vector<double> result;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            result.push_back(position[d]);
+            result.push_back(std::round(1e6 * normal[d]));
+          }
+        return result;
+      };
+      double largest = 0.;
+      for (const SideOf<dim> &side : sides)
+        for (unsigned int k = 0; k < dim; ++k)
+          {
+            gaps[key(side.corners[k], side.normal)] = side.gap[k];
+            largest = std::max(largest, std::abs(side.gap[k]));
+          }
+      const auto check = [&](const double gap, const double linear) {
+        if (std::abs(gap - linear) > bond_rounding * largest)
+          throw EquilibriumError("a gap that is not linear on each side, or "
+                                 "differs between sides, is not done");
+      };
+      for (const auto &face : boundary.faces)
+        {
+          const auto gap_of = [&](const unsigned int k) {
+            return face.is_held(k) ?
+                     (boundary.held_vertices.empty() ?
+                        0. :
+                        boundary.held_vertices[face.held_at(k)].gap) :
+                     boundary.nodes[face.node(k)].gap;
+          };
+          for (unsigned int k = 0; k < dim; ++k)
+            check(gap_of(k), gaps.at(key(face.vertices[k], face.normal)));
+          for (unsigned int k = dim; k < boundary.n_face_nodes(); ++k)
+            {
+              const auto &[a, b] = simplex_edges[k - dim];
+              check(gap_of(k), 0.5 * (gap_of(a) + gap_of(b)));
+            }
+        }
+    }
+
+
+
     std::vector<CertifiedLength>
     certified_lengths(const std::vector<CertifiedSide> &sides,
-                      const AdhesiveLaw                &law)
+                      const std::vector<BranchMinimum> &laws,
+                      const AdhesiveLaw                &whole)
     {
       std::vector<CertifiedLength> lengths;
-      for (unsigned int k = 0; k < law.branches().size(); ++k)
+      for (unsigned int k = 0; k < whole.branches().size(); ++k)
         {
-          CertifiedLength length = {law.name(k), 0., 0.};
-          for (const CertifiedSide &side : sides)
+          CertifiedLength length = {whole.name(k), 0., 0.};
+          for (unsigned int i = 0; i < sides.size(); ++i)
             {
-              const double   measure   = side.ends[0].distance(side.ends[1]);
-              const auto    &piece     = law.branches()[k];
+              const CertifiedSide &side = sides[i];
+              const BranchMinimum &law  = laws[i];
+              const double measure      = side.ends[0].distance(side.ends[1]);
+              // Without bonds all of them are broken.
+              if (law.size() < whole.branches().size())
+                {
+                  if (k + 1 == whole.branches().size())
+                    {
+                      length.largest += measure;
+                      length.least += measure;
+                    }
+                  continue;
+                }
+              const auto    &piece     = law[k];
               const Interval linear    = side.linear();
               const bool     is_likely = linear.upper > piece.lower &&
                                      (k == 0 || linear.lower < piece.upper);
@@ -162,7 +271,7 @@ namespace Debond
 
 
 
-    /// The normal displacement of a side, of degree 1 or 2.
+    /// The normal displacement of a side less the gap, of degree 1 or 2.
     template <int dim>
     class Trace
     {
@@ -190,11 +299,21 @@ namespace Debond
         double sum = 0.;
         for (const auto &[barycentric, weight] : side_rule<dim>())
           sum += weight * side.measure *
-                 function(barycentric, u(barycentric) * side.normal);
+                 function(barycentric,
+                          u(barycentric) * side.normal - gap_at(barycentric));
         return sum;
       }
 
     private:
+      double
+      gap_at(const std::array<double, dim> &barycentric) const
+      {
+        return std::inner_product(barycentric.begin(),
+                                  barycentric.end(),
+                                  side.gap.begin(),
+                                  0.);
+      }
+
       const SideOf<dim>          &side;
       const SideDisplacement<dim> u;
     };
@@ -221,11 +340,11 @@ namespace Debond
     /// The least J with given branches.
     template <int dim>
     void
-    bound_fixed_state(const EquilibriumProblem<dim> &equilibrium,
-                      const BranchMinimum           &law,
-                      const ElasticFields<dim>      &fields,
-                      const DofVector               &displacement,
-                      Certificate                   &certificate)
+    bound_fixed_state(const EquilibriumProblem<dim>    &equilibrium,
+                      const std::vector<BranchMinimum> &laws,
+                      const ElasticFields<dim>         &fields,
+                      const DofVector                  &displacement,
+                      Certificate                      &certificate)
     {
       const std::vector<SideOf<dim>> &sides = equilibrium.contact_sides();
       const Eigen::Index     n = static_cast<Eigen::Index>(sides.size());
@@ -252,7 +371,7 @@ namespace Debond
       for (Eigen::Index i = 0; i < n; ++i)
         {
           const Trace<dim> trace(sides[i], fields.unknowns(), displacement);
-          pieces.push_back(law[law.index(trace.mean())]);
+          pieces.push_back(laws[i][laws[i].index(trace.mean())]);
           // The integral of the square of the linear function with these means.
           const double weight =
             sides[i].measure * pieces.back().curvature / dim;
@@ -300,7 +419,7 @@ namespace Debond
       certificate.lower = condensed->energy_at_zero() - 0.5 * x.dot(S * x);
       const std::vector<Eigen::VectorXd> stresses =
         equilibrium.stresses(condensed->expand(x));
-      certificate.reserve = equilibrium.rounding_of(*condensed, x, stresses);
+      certificate.reserve = equilibrium.rounding_of(*condensed, x);
       certificate.upper = equilibrium.elastic_functional(fields, displacement);
       certificate.gaps =
         equilibrium.constitutive_gaps(fields, displacement, stresses);
@@ -401,9 +520,11 @@ namespace Debond
                 CertifiedMinimum::fixed_state)
     , equilibrium(equilibrium_problem(*scene))
   {
-    check_normals(scene->problem().unknowns().contact().boundary());
-    if (scene->adhesion().has_field())
-      throw EquilibriumError("bonds that vary are not done");
+    check_normals(scene->contact_boundary());
+    check_gaps<dim>(scene->contact_boundary(), equilibrium.contact_sides());
+    laws = laws_of_sides<dim>(equilibrium.contact_sides(),
+                              scene->law().branches(),
+                              scene->adhesion());
     if (!scene->conditions().tangential_exceptions.empty())
       throw EquilibriumError(
         "contact boundaries with different tangential displacements are not "
@@ -431,7 +552,6 @@ namespace Debond
     const bool is_own = &solved == scene.get();
     Assert(is_own || is_for_finer_meshes(), dealii::ExcInternalError());
     dealii::Timer             timer;
-    const BranchMinimum      &law    = scene->law().branches();
     const ElasticFields<dim> &fields = solved.problem().fields();
     const DofVector           displacement =
       solved.problem().unknowns().cartesian_displacement(u);
@@ -451,7 +571,7 @@ namespace Debond
       try
         {
           bound_fixed_state(
-            equilibrium, law, fields, displacement, certificate);
+            equilibrium, laws, fields, displacement, certificate);
           const double own = rounding();
           certificate.upper += own;
           certificate.lower -= certificate.reserve + own;
@@ -497,7 +617,7 @@ namespace Debond
                                             std::vector<CertifiedSide>()));
           GlobalBound bound        = bound_global(equilibrium,
                                            trace_constants,
-                                           law,
+                                           laws,
                                            side_means(equilibrium,
                                                       contact.boundary(),
                                                       contact.trace(u)),
@@ -517,7 +637,7 @@ namespace Debond
                                  .cell->active_cell_index()] += bound.losses[i];
           certificate.sides = std::move(bound.sides);
           certificate.lengths =
-            certified_lengths(certificate.sides, scene->law());
+            certified_lengths(certificate.sides, laws, scene->law());
         }
     if (!std::isfinite(certificate.lower))
       throw EquilibriumError("no bound was found (" +

@@ -10,7 +10,7 @@
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/condensed_methods.h>
-#include <debond/solve/method_choice.h>
+#include <debond/solve/multigrid_method.h>
 #include <debond/solve/refine_result.h>
 
 #include <algorithm>
@@ -121,13 +121,97 @@ namespace Debond
                           condensed.energy_at_zero(),
                           result);
     }
+
+
+
+    template <int dim>
+    class CondensedSolver : public ContactSolver<dim>
+    {
+    public:
+      using typename ContactSolver<dim>::MayGoOn;
+
+      CondensedSolver(const MethodChoice &choice, const Scene<dim> &scene)
+        : problem(scene.problem())
+        , whole(condense(choice, scene))
+        , free_motions(free_motions_of_contact(problem.unknowns()))
+        , s(problem.unknowns().contact().at_rest())
+      {}
+
+      MajoriseMinimiseResult
+      minimise(const LoadFactors                factors,
+               const AdhesionIntegral<dim>     &bonds,
+               const MajoriseMinimise          &method,
+               const MajoriseMinimise::Monitor &monitor,
+               const MayGoOn &) override
+      {
+        here = std::make_unique<const Condensation>(
+          at_factors(whole, problem, bonds, factors));
+        const Eigen::VectorXd g =
+          load_at_contact(problem, *here, factors, free_motions);
+        CondensedProblem       condensed(whole.schur_complement(),
+                                   g,
+                                   bonds,
+                                   s,
+                                   free_motions,
+                                   stiffness_at_contact(problem));
+        MajoriseMinimiseResult result = method.minimize(condensed, monitor);
+        result.functional += here->energy_at_zero();
+        for (MajoriseMinimiseIteration &iteration : result.history)
+          iteration.functional += here->energy_at_zero();
+        return result;
+      }
+
+      Eigen::VectorXd
+      point() const override
+      {
+        return s;
+      }
+
+      DofVector
+      displacement(const LoadFactors            factors,
+                   const AdhesionIntegral<dim> &bonds,
+                   const MayGoOn               &may_go_on,
+                   Refined                     &refined) override
+      {
+        DofVector           u = here->expand(s);
+        CondensedCorrection correction(whole);
+        refined = refine_where_needed(
+          problem, bonds, factors, correction, may_go_on, u);
+        return u;
+      }
+
+      const Condensation *
+      condensed() const override
+      {
+        return &whole;
+      }
+
+    private:
+      const ElasticProblem<dim> &problem;
+      const Condensation         whole;
+      const Eigen::MatrixXd      free_motions;
+      Eigen::VectorXd            s;
+
+      std::unique_ptr<const Condensation> here; ///< at the last factors
+    };
   } // namespace
 
 
 
   template <int dim>
+  Condensation
+  condense(const MethodChoice &choice, const Scene<dim> &scene)
+  {
+    return choice.linear_solver == LinearSolver::multigrid ?
+             condense_by_multigrid(scene, choice.has_levels) :
+             condense_to_contact(scene.problem(), scene.adhesion());
+  }
+
+
+
+  template <int dim>
   void
-  solve_condensed(const std::string      &method,
+  solve_condensed(const MethodChoice     &choice,
                   const SolverParameters &parameters,
                   const Scene<dim>       &scene,
                   const Vector           *start,
@@ -137,8 +221,7 @@ namespace Debond
     dealii::Timer              timer, whole;
     const ElasticProblem<dim> &problem = scene.problem();
     watch.announce("factorisation", problem.unknowns().n_free_dofs());
-    const Condensation condensed =
-      condense_to_contact(problem, scene.adhesion());
+    const Condensation condensed = condense(choice, scene);
     const bool is_held = problem.unknowns().held_by_contact().motions.empty();
     result.parts["condensation"] = timer.wall_time();
 
@@ -157,7 +240,7 @@ namespace Debond
     if (start != nullptr)
       s = problem.unknowns().contact().trace(*start).cwiseMin(0.);
     // If no contact node is free, there is no metric either.
-    if (method == SolverMethod::energy_bundle && s.size() > 0)
+    if (choice.method == SolverMethod::energy_bundle && s.size() > 0)
       solve_by_energy_bundle(
         parameters.energy_bundle, scene, condensed, watch, s, result);
     else
@@ -210,6 +293,19 @@ namespace Debond
 
 
 
-  template decltype(solve_condensed<2>) solve_condensed<2>;
-  template decltype(solve_condensed<3>) solve_condensed<3>;
+  template <int dim>
+  std::unique_ptr<ContactSolver<dim>>
+  make_condensed_solver(const MethodChoice &choice, const Scene<dim> &scene)
+  {
+    return std::make_unique<CondensedSolver<dim>>(choice, scene);
+  }
+
+
+
+  template decltype(condense<2>)              condense<2>;
+  template decltype(condense<3>)              condense<3>;
+  template decltype(make_condensed_solver<2>) make_condensed_solver<2>;
+  template decltype(make_condensed_solver<3>) make_condensed_solver<3>;
+  template decltype(solve_condensed<2>)       solve_condensed<2>;
+  template decltype(solve_condensed<3>)       solve_condensed<3>;
 } // namespace Debond

@@ -150,13 +150,11 @@ namespace Debond
     {
     public:
       StagedBounds(const MeanProblems             &problems,
-                   const BranchMinimum            &law,
                    const Eigen::VectorXd          &means,
                    const double                    upper,
                    const BranchAndBoundParameters &proof,
                    const std::function<bool()>    &may_go_on)
         : problems(problems)
-        , law(law)
         , given_means(means)
         , upper(upper)
         , proof(proof)
@@ -170,7 +168,6 @@ namespace Debond
 
     private:
       const MeanProblems             &problems;
-      const BranchMinimum            &law;
       const Eigen::VectorXd          &given_means;
       const double                    upper;
       const BranchAndBoundParameters &proof;
@@ -405,19 +402,19 @@ namespace Debond
 
 
   GlobalBound
-  bound_global(const EquilibriumProblem<2>    &equilibrium,
-               const std::vector<double>      &trace_constants,
-               const BranchMinimum            &law,
-               const Eigen::VectorXd          &means,
-               const std::vector<double>      &energies,
-               const double                    upper,
-               std::vector<CertifiedSide>      known,
-               const bool                      with_deviations,
-               const BranchAndBoundParameters &proof,
-               const std::function<bool()>    &may_go_on)
+  bound_global(const EquilibriumProblem<2>      &equilibrium,
+               const std::vector<double>        &trace_constants,
+               const std::vector<BranchMinimum> &laws,
+               const Eigen::VectorXd            &means,
+               const std::vector<double>        &energies,
+               const double                      upper,
+               std::vector<CertifiedSide>        known,
+               const bool                        with_deviations,
+               const BranchAndBoundParameters   &proof,
+               const std::function<bool()>      &may_go_on)
   {
-    const MeanProblems sides(equilibrium, trace_constants, law, energies);
-    StagedBounds       bounds(sides, law, means, upper, proof, may_go_on);
+    const MeanProblems sides(equilibrium, trace_constants, laws, energies);
+    StagedBounds       bounds(sides, means, upper, proof, may_go_on);
     Known              last;
     last.ranges = std::move(known);
     bounds.run(last);
@@ -446,8 +443,8 @@ namespace Debond
                       ranges);
       }
 
-    for (CertifiedSide &side : ranges)
-      side.piece = piece_of(side.linear(), law);
+    for (unsigned int i = 0; i < ranges.size(); ++i)
+      ranges[i].piece = piece_of(ranges[i].linear(), laws[i]);
     result.sides = std::move(ranges);
     return result;
   }

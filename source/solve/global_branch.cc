@@ -13,15 +13,11 @@ namespace Debond
     {
     public:
       BranchSearch(const SolverParameters      &solver_parameters,
-                   const Scene<dim>            &scene,
-                   const std::function<bool()> &may_go_on,
-                   AdhesionIntegral<dim>       &adhesion,
-                   Condensation                &condensed)
+                   const CondensedScene<dim>   &scene,
+                   const std::function<bool()> &may_go_on)
         : parameters(solver_parameters)
         , scene(scene)
         , may_go_on(may_go_on)
-        , adhesion(adhesion)
-        , condensed(condensed)
       {
         parameters.search = BondSearchChoice::full;
         parameters.prove  = false;
@@ -32,7 +28,7 @@ namespace Debond
       {
         point.which = improve(parameters, factor, point);
         // Without loads no energy is negative.
-        if (factor == 0. && !scene.problem().unknowns().has_gap())
+        if (factor == 0. && !scene.scene.problem().unknowns().has_gap())
           point.which.kind = MinimumKind::global;
       }
 
@@ -56,11 +52,12 @@ namespace Debond
                  const double       factor,
                  BranchPoint       &point)
       {
-        scale_load(factor);
-        Eigen::VectorXd              s = neighbour.s;
+        const AdhesionIntegral<dim>  bonds     = scene.bonds(factor);
+        const Condensation           condensed = scene.at(factor);
+        Eigen::VectorXd              s         = neighbour.s;
         CondensedProblem             problem(condensed.schur_complement(),
                                  condensed.load(),
-                                 adhesion,
+                                 bonds,
                                  s);
         const MajoriseMinimiseResult minimum =
           MajoriseMinimise(parameters.majorise_minimise)
@@ -75,31 +72,24 @@ namespace Debond
       }
 
     private:
-      void
-      scale_load(const double factor)
-      {
-        adhesion.scale_load(factor);
-        condensed.scale_load(factor);
-      }
-
       WhichMinimum
       improve(const SolverParameters &what,
               const double            factor,
               BranchPoint            &point)
       {
-        scale_load(factor);
-        WhichMinimum which =
-          find_better_minimum(what,
-                              scene.problem().unknowns().contact().boundary(),
-                              scene.law(),
-                              adhesion,
-                              condensed,
-                              may_go_on,
-                              point.s);
-        point.functional = condensed_functional(condensed, adhesion, point.s);
+        const AdhesionIntegral<dim> bonds     = scene.bonds(factor);
+        const Condensation          condensed = scene.at(factor);
+        WhichMinimum                which     = find_better_minimum(what,
+                                                 scene.scene.contact_boundary(),
+                                                 scene.scene.law(),
+                                                 bonds,
+                                                 condensed,
+                                                 may_go_on,
+                                                 point.s);
+        point.functional = condensed_functional(condensed, bonds, point.s);
         if (which.proof_attempted)
           round_outwards(point.functional + condensed.energy_at_zero(),
-                         rounding_of_energy(scene.problem(),
+                         rounding_of_energy(scene.scene.problem(),
                                             factor,
                                             condensed.expand(point.s)),
                          which);
@@ -107,10 +97,8 @@ namespace Debond
       }
 
       SolverParameters             parameters;
-      const Scene<dim>            &scene;
+      const CondensedScene<dim>   &scene;
       const std::function<bool()> &may_go_on;
-      AdhesionIntegral<dim>       &adhesion;
-      Condensation                &condensed;
     };
   } // namespace
 
@@ -136,14 +124,12 @@ namespace Debond
   Branch
   global_branch(const GlobalBranch           wanted,
                 const SolverParameters      &parameters,
-                const Scene<dim>            &scene,
+                const CondensedScene<dim>   &scene,
                 const Branch                &start,
                 const std::function<bool()> &may_go_on,
-                const BranchMonitor         &monitor,
-                AdhesionIntegral<dim>       &adhesion,
-                Condensation                &condensed)
+                const BranchMonitor         &monitor)
   {
-    BranchSearch<dim> search(parameters, scene, may_go_on, adhesion, condensed);
+    BranchSearch<dim> search(parameters, scene, may_go_on);
     const bool        proves = wanted == GlobalBranch::prove;
 
     Branch             branch;

@@ -6,15 +6,17 @@
 #include <debond/base/text.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/elasticity/refinement.h>
-#include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/stationary_path.h>
+#include <debond/solve/condensed_methods.h>
 #include <debond/solve/global_branch.h>
 #include <debond/solve/load_path.h>
+#include <debond/solve/multigrid_method.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <limits>
+#include <memory>
 #include <sstream>
 
 namespace Debond
@@ -22,29 +24,44 @@ namespace Debond
   namespace
   {
     template <int dim>
+    std::unique_ptr<ContactSolver<dim>>
+    make_contact_solver(const MethodChoice &choice, const Scene<dim> &scene)
+    {
+      const Stage stage("factorisation");
+      if (choice.is_condensed)
+        return make_condensed_solver(choice, scene);
+      return make_multigrid_solver(scene, choice.has_levels);
+    }
+
+
+
+    template <int dim>
     class PathFollower
     {
     public:
-      PathFollower(const LoadPathParameters       &parameters,
-                   const SolverParameters         &solver,
-                   const double                    tolerance,
-                   const Scene<dim>               &scene,
-                   std::ostream                   *out,
-                   std::vector<LoadPathStep<dim>> &steps)
+      PathFollower(const LoadPathParameters &parameters,
+                   const SolveSettings      &settings,
+                   const Scene<dim>         &scene,
+                   std::ostream             *out)
         : parameters(parameters)
-        , solver_parameters(solver)
-        , tolerance(tolerance)
+        , solver_parameters(settings.parameters)
+        , tolerance(settings.tolerance)
         , scene(scene)
         , out(out)
-        , steps(steps)
-        , adhesion(scene.adhesion())
-        , condensed(condense_to_contact(scene.problem(), adhesion))
-        , free_motions(free_motions_of_contact(scene.problem().unknowns()))
-        , s(scene.problem().unknowns().contact().at_rest())
+        , bonds(std::make_unique<AdhesionIntegral<dim>>(scene.adhesion()))
+        , solver(make_contact_solver(settings.choice, scene))
+        , condensed(solver->condensed())
       {
-        if (free_motions.cols() == 0)
-          result.condition_estimate = condensed.condition_estimate();
+        if (condensed != nullptr &&
+            scene.problem().unknowns().held_by_contact().motions.empty())
+          result.condition_estimate = condensed->condition_estimate();
         result.parts["condensation"] = timer.wall_time();
+      }
+
+      bool
+      has_condensed() const
+      {
+        return condensed != nullptr;
       }
 
       void
@@ -73,7 +90,7 @@ namespace Debond
         result.parts["followed path"] = timer.wall_time();
       }
 
-      /// Of a path without failures.
+      /// Of a path without failures, condensed.
       void
       find_global_branch()
       {
@@ -85,16 +102,17 @@ namespace Debond
           }
         const Stage stage("global branch");
         timer.restart();
-        Branch followed;
+        const CondensedScene<dim> condensed_scene = {scene, *condensed};
+        Branch                    followed;
         for (unsigned int k = 0; k < steps.size(); ++k)
           {
-            const double factor = steps[k].factor;
-            scale_load(factor);
-            const BranchPoint point    = {points[k],
-                                          condensed_functional(condensed,
-                                                            adhesion,
-                                                            points[k]),
-                                          {}};
+            const double      factor = steps[k].factor;
+            const BranchPoint point  = {
+               points[k],
+               condensed_functional(condensed_scene.at(factor),
+                                   condensed_scene.bonds(factor),
+                                   points[k]),
+               {}};
             const auto [entry, is_new] = followed.emplace(factor, point);
             if (!is_new && point.functional < entry->second.functional)
               entry->second = point;
@@ -107,20 +125,18 @@ namespace Debond
         const Branch branch = global_branch(
           parameters.global_branch,
           solver_parameters,
-          scene,
+          condensed_scene,
           followed,
-          [this]() { return !guard.requested(); },
+          may_go_on,
           [&](const double factor, const BranchPoint &point) {
-            scale_load(factor);
             print(factor,
-                  point.functional + condensed.energy_at_zero(),
+                  point.functional +
+                    condensed_scene.at(factor).energy_at_zero(),
                   proves ?
                     std::stod(scientific_above(point.which.relative_gap, 2)) :
                     point.which.search_trials,
                   to_string(point.which.kind));
-          },
-          adhesion,
-          condensed);
+          });
         for (const auto &[factor, point] : branch)
           add_global(factor, point);
         if (guard.requested())
@@ -128,7 +144,7 @@ namespace Debond
         result.parts["global branch"] = timer.wall_time();
       }
 
-      /// From the state of the first factor.
+      /// From the state of the first factor, condensed.
       void
       find_arc(std::vector<LoadPathStep<dim>> &arc)
       {
@@ -163,39 +179,35 @@ namespace Debond
         const auto   ends  = std::minmax_element(varied.begin(), varied.end());
         const double lower = std::min(sign * *ends.first, sign * *ends.second),
                      upper = std::max(sign * *ends.first, sign * *ends.second);
-        AdhesionIntegral<dim> bonds(scene.adhesion());
+        auto memory = std::make_unique<AdhesionIntegral<dim>>(scene.adhesion());
         const Eigen::VectorXd load = load_at(factors_at(varied[0]));
         const Eigen::VectorXd slope =
           (load_at(factors_at(*other)) - load) / std::abs(*other - varied[0]);
-        StationaryPath path(condensed.schur_complement(),
+        StationaryPath path(condensed->schur_complement(),
                             load,
                             slope,
                             scene.law().branches(),
-                            bonds_of_nodes(bonds),
+                            bonds_of_nodes(*memory),
                             parameters.bonds_heal,
                             points[0],
                             sign * varied[0]);
         const auto     add = [&](const bool is_stable) {
           const LoadFactors factors = factors_at(sign * path.t() + 0.); // no -0
-          bonds.scale_load(factors.displacements);
+          memory = std::make_unique<AdhesionIntegral<dim>>(
+            memory->at(factors.displacements));
+          const AdhesionIntegral<dim> &here = *memory;
           if (!parameters.bonds_heal)
-            bonds.break_for_good(path.point_before_kinks());
-          scale_load(factors);
-          const DofVector         u = condensed.expand(path.point());
-          const Verification<dim> verification =
-            Debond::verify(scene.problem(), bonds, scene.law(), u, factors);
-          LoadPathStep<dim> step = {};
+            memory->break_for_good(path.point_before_kinks());
+          const DofVector u =
+            at_factors(*condensed, scene.problem(), here, factors)
+              .expand(path.point());
+          const Verification<dim> verification = verify(factors, here, u);
+          LoadPathStep<dim>       step         = {};
           step.step   = static_cast<unsigned int>(arc.size() + 1);
           step.factor = factors.loads;
           step.displacement_factor = factors.displacements;
           step.status              = is_stable ? "stable" : "unstable";
-          step.state               = load_path_state(scene.problem(),
-                                       bonds,
-                                       scene.means(),
-                                       scene.probes(),
-                                       factors,
-                                       u,
-                                       verification);
+          step.state               = state(factors, here, u, verification);
           if (!is_verified(verification))
             {
               step.status = "not verified";
@@ -208,7 +220,7 @@ namespace Debond
 
         using Event                 = StationaryPath::Event;
         Event              last     = Event::contact;
-        const Eigen::Index most     = 100 + 20 * s.size();
+        const Eigen::Index most     = 100 + 20 * load.size();
         bool               is_going = add(true);
         for (unsigned int k = 0; is_going && last != Event::end; ++k)
           {
@@ -250,59 +262,37 @@ namespace Debond
             result.functional = std::numeric_limits<double>::quiet_NaN();
             return result;
           }
-        const LoadFactors factors = steps.back().factors();
-        scale_load(factors);
-        result.load_factor  = factors;
-        result.u            = displacement(factors, points.back());
+        result.load_factor  = steps.back().factors();
         result.functional   = steps.back().state.functional;
         result.minimum.kind = kinds.back();
         return result;
       }
 
-    private:
-      void
-      scale_load(const LoadFactors factors)
-      {
-        adhesion.scale_load(factors.displacements);
-        condensed.scale_load(factors.loads, factors.displacements);
-      }
+      std::vector<LoadPathStep<dim>> steps;
 
+    private:
       /// Returns whether there is a next step: not if the body comes off.
       bool
       solve(const LoadFactors factors, const LoadPathObserver<dim> &observer)
       {
-        const Stage           stage("load path, step " +
+        const Stage stage("load path, step " +
                           std::to_string(steps.size() + 1) + ", " +
                           parameters.name(factors));
-        const Eigen::VectorXd last = s;
-
-        scale_load(factors);
-        const Eigen::VectorXd load =
-          load_at_contact(scene.problem(), condensed, factors, free_motions);
-        CondensedProblem             problem(condensed.schur_complement(),
-                                 load,
-                                 adhesion,
-                                 s,
-                                 free_motions,
-                                 stiffness_at_contact(scene.problem()));
-        const MajoriseMinimiseResult minimum =
-          MajoriseMinimise(solver_parameters.majorise_minimise)
-            .minimize(problem,
-                      [this](const auto &) { return !guard.requested(); });
+        bonds = std::make_unique<AdhesionIntegral<dim>>(
+          bonds->at(factors.displacements));
+        const MajoriseMinimiseResult minimum = solver->minimise(
+          factors,
+          *bonds,
+          MajoriseMinimise(solver_parameters.majorise_minimise),
+          [this](const auto &) { return may_go_on(); },
+          may_go_on);
         if (minimum.status == SolverStatus::interrupted && !steps.empty())
           {
-            s = last;
             interrupt("the path is not complete");
             return false;
           }
-        result.status    = minimum.status;
-        result.criterion = minimum.residual;
-        for (MajoriseMinimiseIteration iteration : minimum.history)
-          {
-            iteration.iteration = ++result.iterations;
-            iteration.functional += condensed.energy_at_zero();
-            result.majorise_history.push_back(iteration);
-          }
+        add_majorise_result(minimum, 0., result);
+        result.message.clear();
 
         if (minimum.status == SolverStatus::comes_off)
           {
@@ -324,17 +314,18 @@ namespace Debond
         step.iterations = static_cast<unsigned int>(minimum.history.size());
         if (!steps.empty())
           step.change_factor =
-            change_factor(steps.back().factors(), last, factors);
+            change_factor(steps.back().factors(), points.back(), factors);
+        const Eigen::VectorXd s = solver->point();
         if (!parameters.bonds_heal)
-          {
-            adhesion.break_for_good(s);
-            scale_load(factors);
-          }
-        const DofVector         u            = displacement(factors, s);
-        const Verification<dim> verification = verify(factors, u);
-        step.state                           = state(factors, u, verification);
-        step.status                          = to_string(minimum.status);
-        kinds.push_back(kind_without_search(scene.law(), adhesion, s));
+          bonds->break_for_good(s);
+        Refined refined;
+        result.u = solver->displacement(factors, *bonds, may_go_on, refined);
+        note(refined);
+        const Verification<dim> verification =
+          verify(factors, *bonds, result.u);
+        step.state  = state(factors, *bonds, result.u, verification);
+        step.status = to_string(minimum.status);
+        kinds.push_back(kind_without_search(scene.law(), *bonds, s));
         if (!can_be_verified(minimum.status))
           step.message = result.message = location(step) + minimum.message;
         else if (!is_verified(verification))
@@ -359,43 +350,35 @@ namespace Debond
         points.push_back(s);
         steps.push_back(step);
         RunWatch::has_result = true;
-        observer(step, u, verification, adhesion);
+        observer(step, result.u, verification, *bonds);
         return true;
       }
 
-      /// Of all unknowns, refined where rounding has a say in it.
-      DofVector
-      displacement(const LoadFactors factors, const VectorView &point)
+      void
+      note(const Refined &refined)
       {
-        DofVector           u = condensed.expand(point);
-        CondensedCorrection solver(condensed);
-        const Refined       refined = refine_where_needed(
-          scene.problem(),
-          adhesion,
-          factors,
-          solver,
-          [this]() { return !guard.requested(); },
-          u);
         result.is_refined = refined.is_refined;
         if (!refined.note.empty() && result.notes.empty())
           result.notes.push_back(refined.note);
-        return u;
       }
 
       Verification<dim>
-      verify(const LoadFactors factors, const DofVector &u) const
+      verify(const LoadFactors            factors,
+             const AdhesionIntegral<dim> &bonds_there,
+             const DofVector             &u) const
       {
         return Debond::verify(
-          scene.problem(), adhesion, scene.law(), u, factors);
+          scene.problem(), bonds_there, scene.law(), u, factors);
       }
 
       LoadPathState<dim>
-      state(const LoadFactors        factors,
-            const DofVector         &u,
-            const Verification<dim> &verification) const
+      state(const LoadFactors            factors,
+            const AdhesionIntegral<dim> &bonds_there,
+            const DofVector             &u,
+            const Verification<dim>     &verification) const
       {
         return load_path_state(scene.problem(),
-                               adhesion,
+                               bonds_there,
                                scene.means(),
                                scene.probes(),
                                factors,
@@ -424,10 +407,9 @@ namespace Debond
 
       /// g of the condensed problem.
       Eigen::VectorXd
-      load_at(const LoadFactors factors)
+      load_at(const LoadFactors factors) const
       {
-        condensed.scale_load(factors.loads, factors.displacements);
-        return condensed.load();
+        return condensed->with_load(scene.problem().load(factors)).load();
       }
 
       std::vector<StationaryPath::Bond>
@@ -452,6 +434,8 @@ namespace Debond
                     const VectorView &last,
                     const LoadFactors factors)
       {
+        if (condensed == nullptr)
+          return {};
         const BranchMinimum &branches  = scene.law().branches();
         bool                 has_slope = false;
         for (unsigned int k = 0; k < branches.size(); ++k)
@@ -464,7 +448,7 @@ namespace Debond
                                      !scene.problem().unknowns().has_gap() &&
                                      parameters.displacement_factors.empty() &&
                                      parameters.dead_loads.empty();
-        if (!adhesion.is_separable())
+        if (!bonds->is_separable())
           return change_between_nodes(is_proportional,
                                       last_factors,
                                       last,
@@ -474,11 +458,11 @@ namespace Debond
 
         const Eigen::VectorXd load  = load_at(last_factors);
         const Eigen::VectorXd slope = load_at(factors) - load;
-        StationaryPath        path(condensed.schur_complement(),
+        StationaryPath        path(condensed->schur_complement(),
                             load,
                             slope,
                             branches,
-                            bonds_of_nodes(adhesion),
+                            bonds_of_nodes(*bonds),
                             parameters.bonds_heal,
                             last,
                             0.);
@@ -486,7 +470,7 @@ namespace Debond
         using Event = StationaryPath::Event;
         Event event = Event::contact;
         for (unsigned int k = 0;
-             event == Event::contact && k < 2 * s.size() && !guard.requested();
+             event == Event::contact && k < 2 * load.size() && may_go_on();
              ++k)
           event = path.advance(0., 1. + 1e-10);
         if (event != Event::bond)
@@ -526,20 +510,20 @@ namespace Debond
           {
             const double whole        = factors.loads / last_factors.loads - 1.;
             const Eigen::VectorXd way = whole * start;
-            const double          part = adhesion.first_change(start, way, 1.);
+            const double          part = bonds->first_change(start, way, 1.);
             if (part == 1.)
               return {};
             return factor_between(last_factors, factors, part);
           }
 
-        const Eigen::VectorXd             load  = load_at(last_factors);
-        const Eigen::VectorXd             slope = load_at(factors) - load;
-        const Eigen::SparseMatrix<double> bonds = adhesion.curvature(start);
-        Eigen::MatrixXd stiffness               = condensed.schur_complement();
-        stiffness += bonds;
+        const Eigen::VectorXd             load    = load_at(last_factors);
+        const Eigen::VectorXd             slope   = load_at(factors) - load;
+        const Eigen::SparseMatrix<double> springs = bonds->curvature(start);
+        Eigen::MatrixXd stiffness = condensed->schur_complement();
+        stiffness += springs;
         const BranchMinimum   no_law({{0., 0., 0., ""}});
         const Eigen::VectorXd spring_load =
-          load - adhesion.subgradient(start) + bonds * start;
+          load - bonds->subgradient(start) + springs * start;
         StationaryPath path(stiffness,
                             spring_load,
                             slope,
@@ -552,7 +536,7 @@ namespace Debond
         using Event = StationaryPath::Event;
         Event event = Event::contact;
         for (unsigned int k = 0;
-             event == Event::contact && k < 2 * s.size() && !guard.requested();
+             event == Event::contact && k < 2 * load.size() && may_go_on();
              ++k)
           {
             const Eigen::VectorXd before = path.point();
@@ -561,7 +545,7 @@ namespace Debond
             if (event != Event::contact && event != Event::end)
               return {};
             const double part =
-              adhesion.first_change(before, path.point() - before, 1.);
+              bonds->first_change(before, path.point() - before, 1.);
             if (part < 1.)
               return factor_between(last_factors,
                                     factors,
@@ -583,10 +567,10 @@ namespace Debond
         for (unsigned int i = 0; i < last.size(); ++i)
           if (last(i) < 0.)
             {
-              const double       stretch = adhesion.bonds_at(i).stretch;
+              const double       stretch = bonds->bonds_at(i).stretch;
               const unsigned int k       = branches.index(last(i) / stretch);
               if (increases ? k + 1 == branches.size() :
-                              k <= adhesion.least_piece(i))
+                              k <= bonds->least_piece(i))
                 continue;
               const double reached =
                 stretch * (increases ? branches[k].lower : branches[k].upper) /
@@ -605,11 +589,15 @@ namespace Debond
       void
       add_global(const double factor, const BranchPoint &point)
       {
-        scale_load(factor);
-        const DofVector         u            = displacement(factor, point.s);
-        const Verification<dim> verification = verify(factor, u);
-        LoadPathState<dim>      global       = state(factor, u, verification);
-        const bool              verified     = is_verified(verification);
+        const CondensedScene<dim>   condensed_scene = {scene, *condensed};
+        const AdhesionIntegral<dim> bonds_there = condensed_scene.bonds(factor);
+        DofVector           u = condensed_scene.at(factor).expand(point.s);
+        CondensedCorrection correction(*condensed);
+        note(refine_where_needed(
+          scene.problem(), bonds_there, factor, correction, may_go_on, u));
+        const Verification<dim> verification = verify(factor, bonds_there, u);
+        LoadPathState<dim> global = state(factor, bonds_there, u, verification);
+        const bool         verified = is_verified(verification);
         if (verified)
           global.minimum = to_string(point.which.kind);
         for (unsigned int k = 0; k < steps.size(); ++k)
@@ -677,19 +665,24 @@ namespace Debond
              << std::endl;
       }
 
-      const LoadPathParameters       &parameters;
-      const SolverParameters         &solver_parameters;
-      const double                    tolerance; ///< of the verification
-      const Scene<dim>               &scene;
-      std::ostream                   *out;
-      std::vector<LoadPathStep<dim>> &steps;
-      const InterruptGuard            guard;
-      dealii::Timer                   timer;
-      AdhesionIntegral<dim>           adhesion;
-      Condensation                    condensed;
-      const Eigen::MatrixXd           free_motions;
-      Eigen::VectorXd                 s;
-      SolveResult                     result;
+      const LoadPathParameters &parameters;
+      const SolverParameters   &solver_parameters;
+      const double              tolerance; ///< of the verification
+      const Scene<dim>         &scene;
+      std::ostream             *out;
+      const InterruptGuard      guard;
+      dealii::Timer             timer;
+      SolveResult               result;
+
+      const std::function<bool()> may_go_on = [this]() {
+        return !guard.requested();
+      };
+
+      /// At the last factors, with what broke for good.
+      std::unique_ptr<AdhesionIntegral<dim>> bonds;
+
+      const std::unique_ptr<ContactSolver<dim>> solver;
+      const Condensation *const condensed; ///< null with multigrid
 
       /// By step.
       std::vector<Eigen::VectorXd> points;
@@ -700,35 +693,41 @@ namespace Debond
 
 
   template <int dim>
-  SolveResult
-  follow_load_path(const LoadPathParameters       &parameters,
-                   const SolverParameters         &solver,
-                   const double                    verification_tolerance,
-                   const Scene<dim>               &scene,
-                   const LoadPathObserver<dim>    &observer,
-                   std::ostream                   *out,
-                   std::vector<LoadPathStep<dim>> &steps,
-                   std::vector<LoadPathStep<dim>> &arc)
+  FollowedPath<dim>
+  follow_load_path(const LoadPathParameters    &parameters,
+                   const SolveSettings         &settings,
+                   const Scene<dim>            &scene,
+                   const LoadPathObserver<dim> &observer,
+                   std::ostream                *out)
   {
-    PathFollower<dim> path(
-      parameters, solver, verification_tolerance, scene, out, steps);
-    path.follow(observer);
-    const bool is_wanted = parameters.global_branch != GlobalBranch::none;
+    FollowedPath<dim> followed;
+    PathFollower<dim> path(parameters, settings, scene, out);
+    path.follow([&](const LoadPathStep<dim>     &step,
+                    const DofVector             &u,
+                    const Verification<dim>     &verification,
+                    const AdhesionIntegral<dim> &bonds) {
+      followed.bonds = std::make_shared<const AdhesionIntegral<dim>>(bonds);
+      observer(step, u, verification, bonds);
+    });
     // Where only bonds hold the body J may fall without end.
     const bool has_branch =
-      parameters.has_global_branch() &&
+      path.has_condensed() && parameters.has_global_branch() &&
       scene.problem().unknowns().held_by_contact().motions.empty();
-    if (is_wanted && has_branch && !steps.empty() &&
-        steps.back().message.empty())
+    const bool is_whole =
+      !path.steps.empty() && path.steps.back().message.empty();
+    const bool wants_branch = parameters.global_branch != GlobalBranch::none;
+    if (wants_branch && has_branch && is_whole)
       path.find_global_branch();
-    if (parameters.arc && !steps.empty() && steps.back().message.empty())
-      path.find_arc(arc);
-    SolveResult result = path.take_result();
-    if (is_wanted && !has_branch)
-      result.notes.push_back(
-        "There is no global branch: it is for one factor, bonds that heal and "
-        "bodies that not only bonds and the foundation hold.");
-    return result;
+    if (parameters.arc && is_whole)
+      path.find_arc(followed.arc);
+    followed.result = path.take_result();
+    if (wants_branch && !has_branch)
+      followed.result.notes.push_back(
+        "There is no global branch: it is for one factor, bonds that heal, a "
+        "direct linear solver and bodies that not only bonds and the "
+        "foundation hold.");
+    followed.steps = std::move(path.steps);
+    return followed;
   }
 
 

@@ -109,14 +109,14 @@ namespace Debond
 
 
 
-  MeanProblems::MeanProblems(const EquilibriumProblem<2> &equilibrium,
-                             const std::vector<double>   &trace_constants,
-                             const BranchMinimum         &law,
-                             const std::vector<double>   &energies)
+  MeanProblems::MeanProblems(const EquilibriumProblem<2>      &equilibrium,
+                             const std::vector<double>        &trace_constants,
+                             const std::vector<BranchMinimum> &laws,
+                             const std::vector<double>        &energies)
     : equilibrium(equilibrium)
     , trace_constants(trace_constants)
     , energies(energies)
-    , law(law)
+    , laws(laws)
     , sides(equilibrium.contact_sides())
     , n(static_cast<unsigned int>(sides.size()))
     , sharers(equilibrium.elements().size(), 0)
@@ -131,11 +131,12 @@ namespace Debond
   MeanProblems::shifts_for_means(const Eigen::VectorXd &means,
                                  const double           multiple) const
   {
-    const double        largest = multiple * law[0].curvature;
     std::vector<double> shifts;
     for (unsigned int i = 0; i < n; ++i)
       {
-        double D = 0.02 * law[0].curvature;
+        const BranchMinimum &law     = laws[i];
+        const double         largest = multiple * law[0].curvature;
+        double               D       = 0.02 * law[0].curvature;
         while (D < largest && RoundedBranches(law, D).is_rounded_near(means(i)))
           D *= 1.25;
         shifts.push_back(std::min({D, largest, available(i)}));
@@ -151,10 +152,11 @@ namespace Debond
                                   const Eigen::VectorXd            &slopes,
                                   const double least_multiple) const
   {
-    const double        a = law[0].curvature;
     std::vector<double> shifts;
     for (unsigned int i = 0; i < n; ++i)
       {
+        const BranchMinimum &law  = laws[i];
+        const double         a    = law[0].curvature;
         const double of_stiffness = 0.5 * energies[i] / trace_constants[i];
         const double of_slope = sides[i].measure * slopes(i) * slopes(i) / 6.;
         double       best     = least_shift * a;
@@ -199,10 +201,11 @@ namespace Debond
                          energies[i]);
         if (problem.pieces[i])
           continue;
-        const double s       = std::min(means_and_slopes(i), 0.);
-        const double k       = means_and_slopes(n + i);
-        const double rounded = RoundedBranches(law, D).minimum().value(s);
-        const double c       = law[law.index(s)].curvature;
+        const BranchMinimum &law = laws[i];
+        const double         s   = std::min(means_and_slopes(i), 0.);
+        const double         k   = means_and_slopes(n + i);
+        const double rounded     = RoundedBranches(law, D).minimum().value(s);
+        const double c           = law[law.index(s)].curvature;
         result.back() +=
           sides[i].measure * (law.value(s) - rounded + (c + D) * k * k / 6.);
       }
@@ -256,11 +259,12 @@ namespace Debond
     result.shifts   = D;
     result.rests    = rests;
     result.constant = condensed->energy_at_zero();
-    std::vector<BranchMinimum> laws;
+    std::vector<BranchMinimum> kept_laws;
     const BranchMinimum        zero({{0., 0., 0.L, ""}});
     for (unsigned int i = 0; i < n; ++i)
       {
         const double             length = sides[i].measure;
+        const BranchMinimum     &law    = laws[i];
         const RoundedBranches    rounded(law, D[i]);
         std::optional<Quadratic> quadratic;
         result.pieces.push_back(rounded.exact_piece(ranges[i].linear()));
@@ -280,7 +284,7 @@ namespace Debond
             quadratic = own.quadratic;
             if (!quadratic)
               {
-                laws.push_back(own.minimum);
+                kept_laws.push_back(own.minimum);
                 result.constant += own.constant;
               }
           }
@@ -295,7 +299,7 @@ namespace Debond
                 result.eliminated.push_back(i);
                 continue;
               }
-            laws.push_back(zero);
+            kept_laws.push_back(zero);
           }
         result.kept.push_back(i);
       }
@@ -304,7 +308,7 @@ namespace Debond
       {
         result.kept.push_back(result.eliminated.back());
         result.eliminated.pop_back();
-        laws.push_back(zero);
+        kept_laws.push_back(zero);
       }
 
     std::vector<unsigned int> others = result.eliminated;
@@ -327,15 +331,10 @@ namespace Debond
     if (!is_safely_positive_definite(result.S))
       return {};
     result.g   = b(result.kept) + result.to_others.transpose() * b_others;
-    result.phi = std::make_unique<SeparableBranches>(laws);
+    result.phi = std::make_unique<SeparableBranches>(kept_laws);
 
     const Eigen::VectorXd at = result.all(result.kept_of(means));
-    result.rounding =
-      equilibrium.rounding_of(*condensed,
-                              at,
-                              equilibrium.stresses(condensed->expand(at),
-                                                   weights),
-                              weights);
+    result.rounding          = equilibrium.rounding_of(*condensed, at, weights);
     return result;
   }
 

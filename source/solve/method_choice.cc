@@ -65,14 +65,16 @@ namespace Debond
     /// Of the solve of @p n unknowns, within a factor of about 3 on the bodies
     /// measured.
     double
-    seconds_with_multigrid(const ProblemParameters &problem, const double n)
+    seconds_with_multigrid(const ProblemParameters &problem,
+                           const bool               has_levels,
+                           const double             n)
     {
       const auto  &lengths = problem.body->shape().lengths;
       const double slenderness =
         *std::max_element(lengths.begin(),
                           lengths.begin() + problem.dimension) /
         *std::min_element(lengths.begin(), lengths.begin() + problem.dimension);
-      if (problem.body->has_coarse_levels())
+      if (has_levels)
         return (problem.dimension == 2 ? 0.3 + 4e-6 * n : 1.5 + 1.2e-5 * n) *
                more_cycles(problem) * std::max(1., slenderness / 50.);
       if (problem.dimension == 2)
@@ -88,6 +90,23 @@ namespace Debond
 
 
 
+    /// Whether the scene needs the problem condensed onto the contact normals.
+    template <int dim>
+    bool
+    needs_condensed(const Scene<dim>       &scene,
+                    const SolverParameters &solver,
+                    const std::string      &method)
+    {
+      const LoadPathParameters &path = scene.parameters().load_path;
+      return method == SolverMethod::energy_bundle || solver.prove ||
+             solver.search == BondSearchChoice::full || path.arc ||
+             (!path.factors.empty() &&
+              path.global_branch == GlobalBranch::prove) ||
+             !scene.problem().unknowns().held_by_contact().motions.empty();
+    }
+
+
+
     /// Bytes for each unknown, beside mesh and A.
     double
     memory_with_multigrid(const unsigned int dim, const bool has_levels)
@@ -98,7 +117,6 @@ namespace Debond
 
 
 
-    /// A path needs S for its many loads.
     void
     check_load_path(const ProblemParameters &problem,
                     const bool               proves,
@@ -106,16 +124,12 @@ namespace Debond
     {
       const auto refuse = [&problem](const std::string &entry,
                                      const std::string &reason) {
-        throw BadInput({problem.scene + ": Load path/" + entry + " " + reason});
+        throw BadInput({problem.scene + ": Load path/" + entry + ' ' + reason});
       };
       if (choice.method != SolverMethod::majorise_minimise)
         refuse("Factors",
                "needs Solver/Method = majorise minimise or automatic, not " +
                  choice.method);
-      if (choice.linear_solver != LinearSolver::direct)
-        refuse("Factors",
-               "needs Solver/Linear solver = direct, not " +
-                 choice.linear_solver);
       if (proves)
         refuse("Factors",
                "follows minima that need not be global: in place of "
@@ -135,10 +149,37 @@ namespace Debond
 
 
 
+  double
+  memory_of_factorisation(const unsigned int dim, const double n)
+  {
+    // The fill of minimum degree orderings is about n log n in 2D, n^(4/3) in
+    // 3D.
+    return dim == 2 ?
+             (900. + 29. * std::log2(n)) * n :
+             bytes_of_mesh_and_matrix * n + 125. * std::pow(n, 4. / 3.);
+  }
+
+
+
+  double
+  least_memory(const MethodChoice &wanted,
+               const unsigned int  dim,
+               const double        n)
+  {
+    const double with_multigrid =
+      (bytes_of_mesh_and_matrix + memory_with_multigrid(dim, false)) * n;
+    return wanted.linear_solver == LinearSolver::direct ?
+             memory_of_factorisation(dim, n) :
+           wanted.linear_solver == LinearSolver::multigrid ?
+             with_multigrid :
+             std::min(memory_of_factorisation(dim, n), with_multigrid);
+  }
+
+
+
   MethodChoice
-  choose_method(const ProblemParameters  &problem,
-                const SolverParameters   &solver,
-                const AccuracyParameters &accuracy)
+  choose_method(const ProblemParameters &problem,
+                const SolverParameters  &solver)
   {
     // What would end the machine before anything is known of the factor.
     const double n     = problem.dimension * problem.body->n_vertices();
@@ -161,31 +202,14 @@ namespace Debond
           "it is exact after finitely many steps, at the price of about "
           "one linear solve";
       }
-    const bool searches     = solver.search == BondSearchChoice::full;
-    const bool needs_factor = choice.method == SolverMethod::energy_bundle ||
-                              accuracy.is_adaptive() || problem.degree == 2 ||
-                              !problem.load_path.factors.empty() || searches ||
-                              solver.prove;
-    if (choice.method == SolverMethod::energy_bundle &&
-        choice.linear_solver == LinearSolver::multigrid)
-      throw BadInput(
-        {problem.scene +
-         ": Solver/Method = energy bundle needs the Schur complement "
-         "of a factorisation; Solver/Linear solver must be direct or "
-         "automatic"});
-    if (choice.linear_solver == LinearSolver::automatic && needs_factor)
-      choice.linear_solver = LinearSolver::direct;
-    choice.has_levels = choice.linear_solver == LinearSolver::multigrid &&
-                        problem.body->has_coarse_levels();
-
+    const bool searches = solver.search == BondSearchChoice::full;
     if (!problem.load_path.factors.empty())
       check_load_path(problem, solver.prove, choice);
     if ((searches || solver.prove) &&
-        choice.linear_solver != LinearSolver::direct)
-      throw BadInput(
-        {problem.scene + ": Solver/" + (searches ? "Search" : "Prove") +
-         " needs a method with a direct linear solver, not " + choice.method +
-         " with the linear solver " + choice.linear_solver});
+        choice.linear_solver == LinearSolver::none)
+      throw BadInput({problem.scene + ": Solver/" +
+                      (searches ? "Search" : "Prove") +
+                      " needs another method than " + choice.method});
     if (solver.prove &&
         problem.quadrature.rule != ContactQuadratureParameters::Rule::nodal)
       throw BadInput({problem.scene +
@@ -203,12 +227,14 @@ namespace Debond
                        const SolverParameters &solver,
                        MethodChoice           &choice)
   {
-    const ProblemParameters    &problem      = scene.parameters();
-    const ElasticUnknowns<dim> &unknowns     = scene.problem().unknowns();
-    const double                n            = unknowns.n_dofs();
-    const double                n_c          = unknowns.contact().size();
-    const double                left         = memory_left(solver.memory_limit);
-    double                      direct_bytes = 0.;
+    const ProblemParameters    &problem    = scene.parameters();
+    const ElasticUnknowns<dim> &unknowns   = scene.problem().unknowns();
+    const double                n          = unknowns.n_dofs();
+    const double                n_c        = unknowns.contact().size();
+    const double                left       = memory_left(solver.memory_limit);
+    const bool                  has_levels = scene.body().has_coarse_levels();
+    const bool needs_S      = needs_condensed(scene, solver, choice.method);
+    double     direct_bytes = 0.;
     if (choice.linear_solver == LinearSolver::automatic ||
         choice.linear_solver == LinearSolver::direct)
       {
@@ -226,8 +252,12 @@ namespace Debond
             const double direct_seconds =
               seconds_per_operation(dim) *
               (cost.operations + 3. * std::pow(n_c, 3));
-            const double multigrid_seconds = seconds_with_multigrid(problem, n);
-            std::string  reason;
+            const double multigrid_seconds =
+              seconds_with_multigrid(problem, has_levels, n) *
+              (needs_S ? n_c : 1.) *
+              static_cast<double>(
+                std::max<std::size_t>(1, problem.load_path.factors.size()));
+            std::string reason;
             // CHOLMOD counts in 31 bits.
             if (direct_bytes > left || 8. * cost.entries > 1e12)
               reason = "a factorisation would take about " +
@@ -238,8 +268,6 @@ namespace Debond
               reason = "it takes less time";
             choice.linear_solver =
               reason.empty() ? LinearSolver::direct : LinearSolver::multigrid;
-            choice.has_levels =
-              !reason.empty() && problem.body->has_coarse_levels();
             if (!reason.empty())
               choice.reason += (choice.reason.empty() ? "" : "; ") +
                                ("by multigrid, since " + reason);
@@ -253,11 +281,17 @@ namespace Debond
           }
       }
 
+    choice.has_levels =
+      choice.linear_solver == LinearSolver::multigrid && has_levels;
+    choice.is_condensed =
+      choice.linear_solver == LinearSolver::direct ||
+      (choice.linear_solver == LinearSolver::multigrid && needs_S);
     const double bytes = choice.linear_solver == LinearSolver::none ?
                            8. * solver.bundle.bundle_size * n :
                          choice.linear_solver == LinearSolver::direct ?
                            direct_bytes :
-                           memory_with_multigrid(dim, choice.has_levels) * n;
+                           memory_with_multigrid(dim, choice.has_levels) * n +
+                             (needs_S ? 4. * 8. * n_c * n_c : 0.);
     choice.memory      = used_memory() + bytes;
     if (bytes > left)
       throw BadInput({problem.scene + ": about " + rounded(n) +

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/processes.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/elasticity/displacement_problem.h>
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/elasticity/prolongations.h>
+#include <debond/linear_algebra/multigrid_factor.h>
 #include <debond/solve/condensed_methods.h>
 #include <debond/solve/multigrid_method.h>
 #include <debond/solve/refine_result.h>
@@ -28,7 +30,6 @@ namespace Debond
     DofVector
     start_from_coarser_mesh(const SolverParameters &parameters,
                             const Scene<dim>       &scene,
-                            const InterruptGuard   &guard,
                             const Watch            &fine_watch,
                             SolveResult            &result)
     {
@@ -40,9 +41,11 @@ namespace Debond
       const Scene<dim> coarse_scene(scene.parameters(), body);
       SolverParameters coarse = parameters;
       coarse.prove            = false;
-      Watch       watch(guard, fine_watch);
+      Watch       watch(fine_watch.without_iterations());
       SolveResult start;
-      solve_condensed(SolverMethod::majorise_minimise,
+      solve_condensed({SolverMethod::majorise_minimise,
+                       LinearSolver::direct,
+                       ""},
                       coarse,
                       coarse_scene,
                       nullptr,
@@ -55,13 +58,10 @@ namespace Debond
         result.notes.push_back(
           "start on the mesh of " + std::to_string(coarse_scene.n_cells()) +
           (dim == 2 ? " triangles: " : " tetrahedra: ") + start.message);
-      DofVector                u = interpolate_displacement(coarse_scene.body(),
-                                             coarse_scene.problem(),
-                                             start.u,
-                                             scene.problem());
-      const ContactSpace<dim> &contact = scene.problem().unknowns().contact();
-      contact.add_normal(-contact.trace(u).cwiseMax(0.), u);
-      return u;
+      return interpolate_displacement(coarse_scene.body(),
+                                      coarse_scene.problem(),
+                                      start.u,
+                                      scene.problem());
     }
 
 
@@ -71,6 +71,8 @@ namespace Debond
     std::unique_ptr<TruncatedMultigrid>
     make_cycle(const Scene<dim> &scene, const bool has_levels)
     {
+      // Trilinos needs MPI even in one process; others need not wait for it.
+      start_mpi();
       const auto &unknowns = scene.problem().unknowns();
       const auto &A        = scene.problem().trilinos_matrix();
       if (has_levels)
@@ -84,6 +86,79 @@ namespace Debond
                                    scene.ranks()));
       return std::make_unique<TruncatedMultigrid>(A, dim, modes);
     }
+
+
+
+    template <int dim>
+    class MultigridSolver : public ContactSolver<dim>
+    {
+    public:
+      using typename ContactSolver<dim>::MayGoOn;
+
+      MultigridSolver(const Scene<dim> &scene,
+                      const bool        has_levels,
+                      const DofVector  &start)
+        : problem(scene.problem())
+        , cycle(make_cycle(scene, has_levels))
+        , u(distribute(start,
+                       problem.unknowns().dof_handler().locally_owned_dofs(),
+                       scene.ranks()))
+      {}
+
+      MajoriseMinimiseResult
+      minimise(const LoadFactors                factors,
+               const AdhesionIntegral<dim>     &bonds,
+               const MajoriseMinimise          &method,
+               const MajoriseMinimise::Monitor &monitor,
+               const MayGoOn                   &may_go_on) override
+      {
+        DisplacementProblem minimised(
+          problem, problem.load(factors), bonds, *cycle, u);
+        minimised.may_go_on           = may_go_on;
+        MajoriseMinimiseResult result = method.minimize(minimised, monitor);
+        const double energy = prescribed_energy(problem, bonds, factors);
+        result.functional += energy;
+        for (MajoriseMinimiseIteration &iteration : result.history)
+          iteration.functional += energy;
+        return result;
+      }
+
+      Eigen::VectorXd
+      point() const override
+      {
+        return ContactUnknowns(problem).trace(u);
+      }
+
+      DofVector
+      displacement(const LoadFactors            factors,
+                   const AdhesionIntegral<dim> &bonds,
+                   const MayGoOn               &may_go_on,
+                   Refined                     &refined) override
+      {
+        DofVector           result = gather(u);
+        MultigridCorrection correction(problem, *cycle);
+        refined = refine_where_needed(
+          problem, bonds, factors, correction, may_go_on, result);
+        return result;
+      }
+
+      const DistributedVector &
+      displacements() const
+      {
+        return u;
+      }
+
+      TruncatedMultigrid &
+      preconditioner()
+      {
+        return *cycle;
+      }
+
+    private:
+      const ElasticProblem<dim>                &problem;
+      const std::unique_ptr<TruncatedMultigrid> cycle;
+      DistributedVector                         u;
+    };
   } // namespace
 
 
@@ -93,7 +168,7 @@ namespace Debond
   solve_by_multigrid(const MethodChoice     &choice,
                      const SolverParameters &parameters,
                      const Scene<dim>       &scene,
-                     const InterruptGuard   &guard,
+                     const DofVector        *start,
                      Watch                  &watch,
                      SolveResult            &result)
   {
@@ -101,7 +176,11 @@ namespace Debond
     watch.add_energy(prescribed_energy(problem, scene.adhesion()));
     watch.announce("multigrid", scene.n_unknowns());
     dealii::Timer timer;
-    result.u = start_from_coarser_mesh(parameters, scene, guard, watch, result);
+    result.u                         = start != nullptr ?
+                                         *start :
+                                         start_from_coarser_mesh(parameters, scene, watch, result);
+    const ContactSpace<dim> &contact = problem.unknowns().contact();
+    contact.add_normal(-contact.trace(result.u).cwiseMax(0.), result.u);
     result.parts["coarser meshes"] = timer.wall_time();
     if (!watch.may_go_on())
       {
@@ -112,35 +191,75 @@ namespace Debond
       }
 
     timer.restart();
-    const std::unique_ptr<TruncatedMultigrid> cycle =
-      make_cycle(scene, choice.has_levels);
+    MultigridSolver<dim> solver(scene, choice.has_levels, result.u);
     result.parts["multigrid setup"] = timer.wall_time();
 
     timer.restart();
-    DistributedVector u =
-      distribute(result.u,
-                 problem.unknowns().dof_handler().locally_owned_dofs(),
-                 scene.ranks());
-    DisplacementProblem minimised(problem, scene.adhesion(), *cycle, u);
-    minimised.may_go_on = [&watch]() { return watch.may_go_on(); };
-    add_majorise_result(MajoriseMinimise(parameters.majorise_minimise)
-                          .minimize(minimised, std::ref(watch)),
-                        prescribed_energy(problem, scene.adhesion()),
+    const auto may_go_on = [&watch]() { return watch.may_go_on(); };
+    add_majorise_result(solver.minimise(1.,
+                                        scene.adhesion(),
+                                        MajoriseMinimise(
+                                          parameters.majorise_minimise),
+                                        std::ref(watch),
+                                        may_go_on),
+                        0.,
                         result);
-    result.u = gather(u);
+    result.u = gather(solver.displacements());
     result.parts["contact"] += timer.wall_time();
     // The search was done on a coarser mesh.
-    if (choice.has_levels && wants_search(parameters) &&
+    if (choice.has_levels && start == nullptr && wants_search(parameters) &&
         scene.law().branches().size() > 1)
       result.notes.push_back(
         "fronts of bonds are as the search on coarser meshes left them; with "
         "Solver/Linear solver = direct it is done on the finest one");
-    MultigridCorrection correction(problem, *cycle);
+    MultigridCorrection correction(problem, solver.preconditioner());
     refine_result(scene, correction, watch, result);
   }
 
 
 
-  template decltype(solve_by_multigrid<2>) solve_by_multigrid<2>;
-  template decltype(solve_by_multigrid<3>) solve_by_multigrid<3>;
+  template <int dim>
+  Condensation
+  condense_by_multigrid(const Scene<dim> &scene, const bool has_levels)
+  {
+    const Stage                 stage("condensation by multigrid");
+    const ElasticProblem<dim>  &problem  = scene.problem();
+    const ElasticUnknowns<dim> &unknowns = problem.unknowns();
+    const auto                 &normals  = unknowns.contact().normals();
+    return Condensation(
+      make_multigrid_factor({problem.matrix(),
+                             unknowns.dof_handler().locally_owned_dofs(),
+                             scene.ranks()},
+                            eliminate_all_but(
+                              {normals.begin(), normals.end()},
+                              unknowns.n_dofs(),
+                              [&](const unsigned int i) {
+                                return unknowns.is_constrained(i);
+                              },
+                              !unknowns.held_by_contact().motions.empty()),
+                            make_cycle(scene, has_levels)),
+      problem.load(),
+      prescribed_energy(problem, scene.adhesion()));
+  }
+
+
+
+  template <int dim>
+  std::unique_ptr<ContactSolver<dim>>
+  make_multigrid_solver(const Scene<dim> &scene, const bool has_levels)
+  {
+    const ContactSpace<dim> &contact = scene.problem().unknowns().contact();
+    DofVector                u(scene.problem().unknowns().n_dofs());
+    contact.add_normal(contact.at_rest(), u);
+    return std::make_unique<MultigridSolver<dim>>(scene, has_levels, u);
+  }
+
+
+
+  template decltype(solve_by_multigrid<2>)    solve_by_multigrid<2>;
+  template decltype(solve_by_multigrid<3>)    solve_by_multigrid<3>;
+  template decltype(condense_by_multigrid<2>) condense_by_multigrid<2>;
+  template decltype(condense_by_multigrid<3>) condense_by_multigrid<3>;
+  template decltype(make_multigrid_solver<2>) make_multigrid_solver<2>;
+  template decltype(make_multigrid_solver<3>) make_multigrid_solver<3>;
 } // namespace Debond

@@ -72,9 +72,6 @@ namespace Debond
     };
     if (choice.method != SolverMethod::majorise_minimise)
       refuse("Method", "majorise minimise or automatic");
-    if (choice.linear_solver != LinearSolver::direct)
-      refuse("Linear solver",
-             "the Schur complement of a factorisation: direct");
     if (parameters.prove)
       refuse("Prove",
              "false: J may fall without end, and then there is no global "
@@ -110,13 +107,12 @@ namespace Debond
                                      std::make_unique<Watch>(guard);
       if (choice.method == SolverMethod::euclidean_bundle)
         solve_by_euclidean_bundle(parameters.bundle, scene, *watch, result);
-      else if (choice.linear_solver == LinearSolver::multigrid)
-        solve_by_multigrid(choice, parameters, scene, guard, *watch, result);
+      else if (choice.is_condensed)
+        solve_condensed(choice, parameters, scene, start, *watch, result);
       else
-        solve_condensed(
-          choice.method, parameters, scene, start, *watch, result);
+        solve_by_multigrid(choice, parameters, scene, start, *watch, result);
     }
-    if (choice.linear_solver != LinearSolver::direct)
+    if (!choice.is_condensed)
       result.minimum.kind = kind_without_search(scene.law(),
                                                 scene.adhesion(),
                                                 scene.contact_trace(result.u));
@@ -128,7 +124,7 @@ namespace Debond
                      rounding_of_energy(scene.problem(), 1., result.u),
                      result.minimum);
     // Where nothing lower was found one integral over the cells does.
-    if (choice.linear_solver == LinearSolver::direct && !result.is_replaced &&
+    if (choice.is_condensed && !result.is_replaced &&
         (result.minimum.search_trials > 0 || result.minimum.proof_attempted))
       result.functional_from_start = result.functional;
     return result;

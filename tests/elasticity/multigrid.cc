@@ -185,8 +185,9 @@ namespace
         const double     J     = exact.functional + condensed.energy_at_zero();
 
         u = 0.;
-        DisplacementProblem large(*body.problem, adhesion, cycle, u);
-        const auto          iterated = MajoriseMinimise({}).minimize(large);
+        DisplacementProblem large(
+          *body.problem, body.problem->load(), adhesion, cycle, u);
+        const auto iterated = MajoriseMinimise({}).minimize(large);
         std::cout << "  " << rule << ": "
                   << to_string(exact.status) + ", " + to_string(iterated.status)
                   << '\n';
@@ -213,7 +214,8 @@ namespace
             u                         = 0.;
             unsigned int        asked = 0;
             DofVector           last(u.size());
-            DisplacementProblem stopped(*body.problem, adhesion, cycle, u);
+            DisplacementProblem stopped(
+              *body.problem, body.problem->load(), adhesion, cycle, u);
             stopped.may_go_on = [&]() { return ++asked <= allowed; };
             const auto result = MajoriseMinimise({}).minimize(
               stopped, [&](const MajoriseMinimiseIteration &) {

@@ -25,11 +25,7 @@ namespace
   using Steps = std::vector<LoadPathStep<dim>>;
 
   template <int dim>
-  struct Path
-  {
-    Steps<dim>  steps, arc;
-    SolveResult result;
-  };
+  using Path = FollowedPath<dim>;
 
 
 
@@ -37,17 +33,12 @@ namespace
   Path<dim>
   follow(const Parameters &parameters, const Scene<dim> &scene)
   {
-    Path<dim> path;
-    path.result = follow_load_path<dim>(
+    return follow_load_path<dim>(
       parameters.load_path,
-      parameters.solver,
-      parameters.verification.tolerance,
+      settings_of(parameters, scene),
       scene,
       [](const auto &...) {},
-      nullptr,
-      path.steps,
-      path.arc);
-    return path;
+      nullptr);
   }
 
 
@@ -853,13 +844,11 @@ namespace
         const auto   estimate = [&](const Values &others) {
           const Parameters parameters =
             parameters_of(benchmark(scene) + others);
-          const Scene<2>               here = scene_of<2>(parameters);
-          std::vector<LoadPathStep<2>> steps, arc;
-          double                       result = 0.;
+          const Scene<2> here   = scene_of<2>(parameters);
+          double         result = 0.;
           follow_load_path<2>(
             parameters.load_path,
-            parameters.solver,
-            parameters.verification.tolerance,
+            settings_of(parameters, here),
             here,
             [&](const auto &step,
                 const auto &u,
@@ -876,9 +865,7 @@ namespace
                                       &here.dead_loads())
                          .functional;
             },
-            nullptr,
-            steps,
-            arc);
+            nullptr);
           return result;
         };
         const double for_good =
@@ -912,10 +899,9 @@ namespace
                  "Load path/Factors=0.5, 1, 10",
                  "Accuracy/Target=1e-4",
                  "Solver/Method=automatic"}));
-    FollowedPath<2> path;
-    const auto [mesh, levels, result] = refined<2>(parameters, &path);
+    const auto [mesh, levels, result] = refined<2>(parameters);
     check("  it comes off", result.solve.status == SolverStatus::comes_off);
-    check("  after two factors", path.steps.size() == 2);
+    check("  after two factors", result.path.steps.size() == 2);
     check("  several meshes", levels.size() > 2);
     check("  the estimate is below the target",
           levels.back().estimated_error,

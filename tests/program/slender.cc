@@ -214,11 +214,12 @@ namespace
     };
 
     // Refinement: products from strains, of differences of displacements.
-    VectorX x = VectorX::Zero(n_unknowns);
-    VectorX f(n_unknowns);
+    VectorX         x = VectorX::Zero(n_unknowns);
+    VectorX         f(n_unknowns);
+    const DofVector load = problem.load();
     for (unsigned int i = 0; i < n; ++i)
       if (place[i] >= 0)
-        f(place[i]) = problem.load()(i);
+        f(place[i]) = load(i);
     const auto x_of = [&](const unsigned int i) {
       return place[i] < 0 ? Real(0) : x(place[i]);
     };
@@ -256,8 +257,7 @@ namespace
       }
     for (unsigned int i = 0; i < n; ++i)
       {
-        result.value_at_u +=
-          spring[i] / 2 * u(i) * u(i) - Real(problem.load()(i)) * u(i);
+        result.value_at_u += spring[i] / 2 * u(i) * u(i) - Real(load(i)) * u(i);
         result.minimiser(i) = static_cast<double>(x_of(i));
       }
     return result;
@@ -350,9 +350,10 @@ namespace
     const auto        error   = [&](const Real value) {
       return static_cast<double>(std::abs(value / minimum.value - 1));
     };
-    Real work = exact_work(scene.problem(), q, result.u);
+    Real            work = exact_work(scene.problem(), q, result.u);
+    const DofVector load = scene.problem().load();
     for (unsigned int i = 0; i < result.u.size(); ++i)
-      work -= Real(scene.problem().load()(i)) * result.u(i);
+      work -= Real(load(i)) * result.u(i);
     section("J, ", name);
     check("success", result.status == SolverStatus::success);
     check("J", error(result.functional), 1e-12);

@@ -13,9 +13,7 @@
 inline Debond::MethodChoice
 choice_of(const Debond::Parameters &parameters)
 {
-  return Debond::choose_method(parameters,
-                               parameters.solver,
-                               parameters.accuracy);
+  return Debond::choose_method(parameters, parameters.solver);
 }
 
 
@@ -29,6 +27,18 @@ scene_of(const Debond::Parameters &parameters)
 
 
 
+template <int dim>
+Debond::SolveSettings
+settings_of(const Debond::Parameters &parameters,
+            const Debond::Scene<dim> &scene)
+{
+  Debond::MethodChoice choice = choice_of(parameters);
+  Debond::choose_linear_solver(scene, parameters.solver, choice);
+  return {choice, parameters.solver, parameters.verification.tolerance};
+}
+
+
+
 /// From rest or from @p start.
 template <int dim>
 Debond::SolveResult
@@ -36,9 +46,12 @@ solved(const Debond::Parameters &parameters,
        const Debond::Scene<dim> &scene,
        const Debond::DofVector  *start = nullptr)
 {
-  Debond::MethodChoice choice = choice_of(parameters);
-  Debond::choose_linear_solver(scene, parameters.solver, choice);
-  return Debond::solve(choice, parameters.solver, scene, nullptr, false, start);
+  return Debond::solve(settings_of(parameters, scene).choice,
+                       parameters.solver,
+                       scene,
+                       nullptr,
+                       false,
+                       start);
 }
 
 
@@ -49,31 +62,26 @@ struct Refined
 {
   std::shared_ptr<const Debond::Scene<dim>> scene;
   std::vector<Debond::AdaptiveLevel>        levels;
-  Debond::AdaptiveResult                    result;
+  Debond::AdaptiveResult<dim>               result;
 };
 
 
 
 template <int dim>
 Refined<dim>
-refined(const Debond::Parameters  &parameters,
-        Debond::FollowedPath<dim> *path = nullptr)
+refined(const Debond::Parameters &parameters)
 {
-  const Debond::MethodChoice choice = choice_of(parameters);
-  Refined<dim>               refined;
+  Refined<dim> refined;
   refined.scene =
     Debond::make_first_scene<dim>(parameters, parameters.accuracy);
   refined.result = Debond::solve_adaptively<dim>(
-    choice,
-    parameters.solver,
+    settings_of(parameters, *refined.scene),
     parameters.accuracy,
     parameters.certificate.kind,
-    parameters.verification.tolerance,
     [&](const Debond::AdaptiveLevel &level) {
       refined.levels.push_back(level);
     },
-    refined.scene,
-    path);
+    refined.scene);
   return refined;
 }
 

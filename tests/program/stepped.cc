@@ -54,9 +54,9 @@ namespace
                    const double    factor,
                    const Place    &times = as_it_is)
   {
-    Condensation condensed =
-      condense_to_contact(scene.problem(), scene.adhesion());
-    condensed.scale_load(factor);
+    const Condensation condensed =
+      condense_to_contact(scene.problem(), scene.adhesion())
+        .with_load(scene.problem().load(factor));
     const unsigned int n = static_cast<unsigned int>(condensed.load().size());
     LongMatrix         S(n, n);
     LongVector         g(n), where(n);
@@ -249,17 +249,15 @@ namespace
       parameters_of(with(small,
                          {"Load path/Factors=0:0.1:2, 2:-0.1:0.5",
                           "Load path/Global branch=prove"}));
-    const Scene<2>               scene = scene_of<2>(parameters);
-    std::vector<LoadPathStep<2>> steps, arc;
-    const SolveResult            result = follow_load_path<2>(
+    const Scene<2>        scene = scene_of<2>(parameters);
+    const FollowedPath<2> path  = follow_load_path<2>(
       parameters.load_path,
-      parameters.solver,
-      parameters.verification.tolerance,
+      settings_of(parameters, scene),
       scene,
       [](const auto &...) {},
-      nullptr,
-      steps,
-      arc);
+      nullptr);
+    const auto        &steps  = path.steps;
+    const SolveResult &result = path.result;
 
     double       gap = 0., sum = 0.;
     bool         all_global = true, partly_broken = false, named = true;

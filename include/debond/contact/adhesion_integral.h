@@ -34,10 +34,11 @@ namespace Debond
     unsigned int
     n_nodes() const;
 
-    /// From now on the prescribed displacements are @p factor times those for
-    /// the whole load. Throws as BondField does, and so does the constructor.
-    void
-    scale_load(const double factor);
+    /// These bonds where the prescribed displacements are @p factor times those
+    /// for the whole load. Throws as BondField does, and so does the
+    /// constructor.
+    AdhesionIntegral
+    at(const double factor) const;
 
     /// From now on bonds do not return to pieces of the law that they have left
     /// at @p s or before: those of each point of the rule.
@@ -117,9 +118,11 @@ namespace Debond
       return energy(s) - phi_at_zero;
     }
 
-    /// Phi(0) for @p load_factor times the whole load.
     double
-    energy_at_zero(const double load_factor) const;
+    energy_at_zero() const
+    {
+      return phi_at_zero;
+    }
 
     /// One element of the Clarke subdifferential of Phi at s (at a kink the
     /// derivative of the branch on the side of 0), a force for each node.
@@ -179,6 +182,13 @@ namespace Debond
 
     /// The bonds at a node. Where boundaries with bonds of their own meet they
     /// have the mean stiffness and fracture energy.
+    BondScale
+    bonds_at(const dealii::Point<dim>        &position,
+             const dealii::types::boundary_id id) const
+    {
+      return field == nullptr ? BondScale() : field->at(position, id);
+    }
+
     BondScale
     bonds_at(const unsigned int node) const
     {

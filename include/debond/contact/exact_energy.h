@@ -7,9 +7,9 @@
 namespace Debond
 {
   /// int_{Gamma_C} j_1(s) dGamma but for rounding, of the trace that
-  /// @p adhesion has for s on the faces of @p boundary, and the bonds of
-  /// @p law everywhere: in place of points on each face, points between the
-  /// kinks that the trace crosses there. For upper bounds of J.
+  /// @p adhesion has for s on the faces of @p boundary, where bonds of @p law
+  /// do not vary along a face: in place of points on each face, points between
+  /// the kinks that the trace crosses there. For upper bounds of J.
   double
   exact_energy(const AdhesionIntegral<2> &adhesion,
                const ContactBoundary<2>  &boundary,

@@ -16,22 +16,20 @@ namespace Debond
 {
   /// What J is more than 1/2 <A w, w> - <load, w> and the change of @p
   /// adhesion: the energy of w = 0, of what is prescribed. It is zero if
-  /// nothing is.
+  /// nothing is. @p adhesion is that at these factors.
   template <int dim>
   double
   prescribed_energy(const ElasticProblem<dim>   &problem,
                     const AdhesionIntegral<dim> &adhesion,
                     const LoadFactors            factors = 1.)
   {
-    return problem.lifting_energy(factors) +
-           adhesion.energy_at_zero(factors.displacements);
+    return problem.lifting_energy(factors) + adhesion.energy_at_zero();
   }
 
 
 
   /// The problem condensed onto the normal displacements of its contact nodes,
-  /// in their order. Keeps references to both for the energy of what is
-  /// prescribed.
+  /// in their order, under its whole load.
   template <int dim>
   Condensation
   condense_to_contact(const ElasticProblem<dim>   &problem,
@@ -48,14 +46,22 @@ namespace Debond
       [&](const unsigned int i) {
         return problem.unknowns().is_constrained(i);
       },
-      {problem.constant_load(),
-       problem.displacement_load(),
-       [&problem, &adhesion](const double loads, const double displacements) {
-         return prescribed_energy(problem,
-                                  adhesion,
-                                  LoadFactors(loads, displacements));
-       }},
+      prescribed_energy(problem, adhesion),
       !problem.unknowns().held_by_contact().motions.empty());
+  }
+
+
+
+  /// The same at other @p factors, at which @p adhesion is.
+  template <int dim>
+  Condensation
+  at_factors(const Condensation          &condensed,
+             const ElasticProblem<dim>   &problem,
+             const AdhesionIntegral<dim> &adhesion,
+             const LoadFactors            factors)
+  {
+    return condensed.with_load(problem.load(factors),
+                               prescribed_energy(problem, adhesion, factors));
   }
 
 
@@ -138,10 +144,10 @@ namespace Debond
 
 
 
-  /// The load of the condensed problem at these @p factors, which it has to be
-  /// scaled to already. What it does along @p free_motions is the work of the
-  /// applied forces: of what is prescribed, gaps too, elimination leaves
-  /// rounding there, which would lift the body or press it on the foundation.
+  /// The load of the problem condensed at these @p factors. What it does along
+  /// @p free_motions is the work of the applied forces: of what is prescribed,
+  /// gaps too, elimination leaves rounding there, which would lift the body or
+  /// press it on the foundation.
   template <int dim>
   Eigen::VectorXd
   load_at_contact(const ElasticProblem<dim> &problem,

@@ -28,10 +28,11 @@ namespace Debond
   class DisplacementProblem : public MajorantProblem
   {
   public:
-    /// Keeps references; @p start is the current point, of which the normal
-    /// displacements have to be <= 0, @p cycle that of A.
+    /// Keeps references but to @p load; @p start is the current point, of which
+    /// the normal displacements have to be <= 0, @p cycle that of A.
     template <int dim>
     DisplacementProblem(const ElasticProblem<dim> &problem,
+                        const DofVector           &load,
                         const PiecewiseQuadratic  &nonsmooth,
                         TruncatedMultigrid        &cycle,
                         DistributedVector         &start);

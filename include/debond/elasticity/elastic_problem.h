@@ -90,32 +90,10 @@ namespace Debond
     trilinos_matrix() const;
 
     /// f - A G, what is applied together with what the lifting makes of it, at
-    /// the free degrees of freedom.
-    const DofVector &
-    load() const
-    {
-      return system_load;
-    }
-
-    /// The part of load() that has no factor, from the gap and dead loads;
-    /// empty if there is none.
-    const DofVector &
-    constant_load() const
-    {
-      return load_without_factor;
-    }
-
-    /// The part of load() that grows with prescribed displacements; empty if
-    /// there are none.
-    const DofVector &
-    displacement_load() const
-    {
-      return load_of_displacements;
-    }
-
-    /// For @p factors times what is applied and prescribed.
+    /// the free degrees of freedom, for @p factors times what is applied and
+    /// prescribed: f_0 + t f_1 + d f_2, f_0 being that of gaps and dead loads.
     DofVector
-    load_at(const LoadFactors factors) const;
+    load(const LoadFactors factors = 1.) const;
 
     /// J of w = 0 without bonds, 1/2 <A G, G> - <f, G>: what J is
     /// more than 1/2 <A w, w> - <load, w>.
@@ -134,10 +112,9 @@ namespace Debond
     // An empty one would need MPI already.
     mutable std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix>
                              distributed_matrix;
-    DofVector                system_load;
-    DofVector                load_without_factor;
     std::vector<std::string> notes;
-    DofVector                load_of_displacements;
+    DofVector                whole_load; ///< that for the factors 1
+    DofVector                f_0, f_2;   ///< empty for none
   };
 } // namespace Debond
 

@@ -101,6 +101,8 @@ namespace Debond
       unsigned int                        element;  ///< above it
       Cell                                cell;     ///< above it, active
       dealii::types::material_id          material;
+      dealii::types::boundary_id          id;
+      std::array<double, dim>             gap; ///< initial one, at the corners
 
       /// The unknowns of the normal displacement. In 2D its mean and its slope,
       /// the coefficient of xi from -1 at the first to 1 at the second end; in
@@ -119,8 +121,8 @@ namespace Debond
 
     /// @p thermal_stresses: of each active cell, see mean_thermal_stresses();
     /// none if empty. Keeps a reference to the mesh. Throws EquilibriumError
-    /// for what is not done: displacements that are prescribed and not zero,
-    /// gaps, and contact sides that are supported as well.
+    /// for what is not done: contact sides that are supported as well, and
+    /// sides with several supports.
     EquilibriumMesh(const dealii::Triangulation<dim> &mesh,
                     const BoundaryConditions         &conditions,
                     const Supports<dim>              &supports,
@@ -187,8 +189,17 @@ namespace Debond
       return loads;
     }
 
-    /// Whether tractions are linear on each side, and body forces and
-    /// temperatures constant on each element, to rounding.
+    /// The gaps and the prescribed displacements by unknown, zero for all
+    /// others: linear on each side, as they are at its corners.
+    const Eigen::VectorXd &
+    lifting() const
+    {
+      return prescribed;
+    }
+
+    /// Whether tractions, gaps and prescribed displacements are linear on each
+    /// side, and body forces and temperatures constant on each element, to
+    /// rounding.
     bool
     loads_are_exact() const
     {
@@ -224,6 +235,12 @@ namespace Debond
               const Supports<dim>      &supports,
               const Loads<dim>         &given);
 
+    /// The values of a function at the corners of a side.
+    std::array<double, dim>
+    linear_values(const dealii::Function<dim>         &function,
+                  const unsigned int                   component,
+                  const std::array<unsigned int, dim> &side_vertices);
+
     std::array<dealii::Point<dim>, dim>
     corners(const std::array<unsigned int, dim> &side_vertices) const;
 
@@ -237,6 +254,7 @@ namespace Debond
     // By unknown.
     std::vector<char> fixed;
     Eigen::VectorXd   loads;
+    Eigen::VectorXd   prescribed;
 
     bool                  exact_loads = true;
     std::vector<LoadRest> all_rests;

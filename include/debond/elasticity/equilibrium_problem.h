@@ -77,9 +77,10 @@ namespace Debond
     /// The problem condensed onto the first unknowns of the contact sides in
     /// their order, the means in 2D, then the second ones (and the third ones):
     ///     max_sigma -1/2 int (sigma + p 1) : C^{-1} (sigma + p 1)
-    ///               + int_{Gamma_C} sigma_nu p
+    ///               + int_{Gamma_C} sigma_nu (p + gap)
+    ///               + the work of sigma along prescribed displacements
     ///         = c_0 + 1/2 s'S s - g's,
-    /// p the linear normal displacement that these unknowns s are of. Each
+    /// p + gap the linear normal displacement, s the unknowns of p. Each
     /// element is @p weights times as stiff (all as they are if empty).
     ///
     /// Throws std::runtime_error if the matrix of the other unknowns is not
@@ -121,13 +122,13 @@ namespace Debond
 
     /// What elimination may have lost of
     ///     c_0 - 1/2 s'S s = -1/2 int (sigma + p 1) : C^{-1} (sigma + p 1)
+    ///                       + the work of sigma along what is prescribed
     /// of a condensation with @p weights to rounding: four times by how much
-    /// this fails at @p kept for the @p stresses that belong to it.
+    /// this fails at @p kept for the stresses that belong to it.
     double
-    rounding_of(const Condensation                 &condensed,
-                const Eigen::VectorXd              &kept,
-                const std::vector<Eigen::VectorXd> &stresses,
-                const std::vector<double>          &weights = {}) const;
+    rounding_of(const Condensation        &condensed,
+                const Eigen::VectorXd     &kept,
+                const std::vector<double> &weights = {}) const;
 
     /// Of each active cell the mean of a stress without p.
     std::vector<dealii::SymmetricTensor<2, dim>>
@@ -146,6 +147,12 @@ namespace Debond
     template <typename Add>
     void
     for_each_coefficient(const Place &place, const Add &add) const;
+
+    /// Of the forces that belong to the unknowns along EquilibriumMesh's
+    /// lifting.
+    double
+    work_of_lifting(const DofVector           &unknowns,
+                    const std::vector<double> &weights) const;
 
     /// Of the unknowns of the element's sides.
     Eigen::MatrixXd

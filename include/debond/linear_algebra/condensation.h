@@ -13,18 +13,6 @@
 
 namespace Debond
 {
-  /// What Condensation::scale_load() does not scale by the first factor.
-  struct OtherParts
-  {
-    DofVector constant_load = {}; ///< a part of f, empty for none
-    DofVector second_load   = {}; ///< that has the second factor
-
-    /// A part of the energy, by both factors; none for null.
-    std::function<double(double, double)> energy = {};
-  };
-
-
-
   /**
    * The elastic problem condensed onto some of its unknowns s, here the normal
    * displacements of the contact nodes: with all others at equilibrium,
@@ -33,18 +21,20 @@ namespace Debond
    *
    * S being the Schur complement (discrete Steklov-Poincare operator) of A.
    *
-   * A direct factorisation gives everything: CHOLMOD's on one rank, MUMPS' on
-   * several. Then all functions but schur_complement(), load() and
-   * condition_estimate(), the constructor and the destructor too, are to be
-   * called by all ranks; what they get has to be the same on all, but for the
-   * matrix, and what they return and throw is.
+   * A direct factorisation gives everything, CHOLMOD's on one rank, MUMPS' on
+   * several, or multigrid (make_multigrid_factor()). On several ranks all
+   * functions but schur_complement(), load() and condition_estimate(), the
+   * constructor and the destructor too, are to be called by all ranks; what
+   * they get has to be the same on all, but for the matrix, and what they
+   * return and throw is.
    */
   class Condensation
   {
   public:
     /// @p kept: the unknowns s in their order. @p is_excluded says which rows
     /// of A are left out (u = 0 there); on the others A has to be symmetric and
-    /// positive definite. It is not kept.
+    /// positive definite. It is not kept. @p other_energy is a part of the
+    /// energy that does not depend on u.
     ///
     /// If @p is_semidefinite, A needs to be definite only where s is zero, and
     /// S is as singular as A; S_+ = S + diag(A_ss) is the Schur complement of A
@@ -56,23 +46,17 @@ namespace Debond
                  const DofVector                         &f,
                  const std::vector<unsigned int>         &kept,
                  const std::function<bool(unsigned int)> &is_excluded,
-                 const OtherParts                        &others = {},
-                 const bool is_semidefinite                      = false);
+                 const double                             other_energy = 0.,
+                 const bool is_semidefinite                            = false);
 
-    Condensation(const Condensation &) = delete;
+    /// With what eliminates the unknowns.
+    Condensation(std::shared_ptr<const EliminationFactor> factor,
+                 const DofVector                         &f,
+                 const double                             other_energy);
 
-    /// From now on f is @p factor times the load that the constructor got, but
-    /// for its constant part and the one that has the @p second factor; S and
-    /// the factorisation stay.
-    void
-    scale_load(const double factor, const double second);
-
-    /// With both factors the same.
-    void
-    scale_load(const double factor)
-    {
-      scale_load(factor, factor);
-    }
+    /// The same with another load and energy. Both share the factorisation.
+    Condensation
+    with_load(const DofVector &f, const double other_energy = 0.) const;
 
     /// S, symmetric, a row for each kept unknown. Valid as long as this object.
     MatrixView
@@ -120,17 +104,10 @@ namespace Debond
             &kept_unknowns) const;
 
   private:
-    std::unique_ptr<const EliminationFactor> factor;
-
-    // Loads as the factor reduces them; empty for none.
-    Eigen::VectorXd reduced; ///< that of now
-    Eigen::VectorXd given;
-    Eigen::VectorXd constant; ///< the given one's constant part
-    Eigen::VectorXd second;   ///< and the one that has the second factor
-
-    std::function<double(double, double)> other_energy;
-    double                                constant_part = 0.; ///< of the energy
-    Eigen::VectorXd                       g;
+    std::shared_ptr<const EliminationFactor> factor;
+    Eigen::VectorXd                          reduced; ///< f
+    double                                   other_energy;
+    Eigen::VectorXd                          g;
   };
 } // namespace Debond
 

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -35,6 +36,15 @@ namespace Debond
     std::vector<int>
     positions(const unsigned int n) const;
   };
+
+
+
+  /// Of a matrix with @p n rows, without those that @p is_excluded says.
+  Elimination
+  eliminate_all_but(const std::vector<unsigned int>         &kept,
+                    const unsigned int                       n,
+                    const std::function<bool(unsigned int)> &is_excluded,
+                    const bool                               is_semidefinite);
 
 
 

@@ -177,10 +177,13 @@ namespace Debond
 
     /// The meshes of the coarser bodies as far as they are good for multigrid,
     /// finest first, down to one that takes nothing to solve; empty unless
-    /// has_coarse_levels(). The first interpolation is to @p points of the
-    /// body, each next one to all vertices of the level before.
+    /// has_coarse_levels(). If @p with_own the body's own mesh comes first,
+    /// for displacements of a higher degree there. The first interpolation is
+    /// to @p points of the body, each next one to all vertices of the level
+    /// before.
     virtual std::vector<CoarseLevel<dim>>
-    coarse_levels(const std::vector<dealii::Point<dim>> &points) const;
+    coarse_levels(const std::vector<dealii::Point<dim>> &points,
+                  const bool with_own = false) const;
 
   private:
     /// The same of the body without its parts.

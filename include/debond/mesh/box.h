@@ -97,7 +97,8 @@ namespace Debond
                 const std::vector<dealii::Point<dim>> &points) const override;
 
     std::vector<CoarseLevel<dim>>
-    coarse_levels(const std::vector<dealii::Point<dim>> &points) const override;
+    coarse_levels(const std::vector<dealii::Point<dim>> &points,
+                  const bool with_own) const override;
 
     /// Those of coarse_levels().
     std::vector<BoxParameters>

@@ -5,7 +5,7 @@
 #include <debond/check/error_estimate.h>
 #include <debond/input/accuracy_parameters.h>
 #include <debond/solve/certificate.h>
-#include <debond/solve/load_path_steps.h>
+#include <debond/solve/load_path.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve.h>
 
@@ -32,21 +32,11 @@ namespace Debond
 
 
 
-  /// The states of a load path on a mesh.
   template <int dim>
-  struct FollowedPath
-  {
-    std::vector<LoadPathStep<dim>> steps;
-
-    /// As they are after the last step. Has references to the scene.
-    std::shared_ptr<const AdhesionIntegral<dim>> bonds;
-  };
-
-
-
   struct AdaptiveResult
   {
-    SolveResult solve; ///< on the last mesh
+    SolveResult       solve; ///< on the last mesh
+    FollowedPath<dim> path;  ///< if the scene has one
 
     /// Of the last mesh, with Certificate/Target.
     std::optional<Certificate> certificate;
@@ -67,23 +57,19 @@ namespace Debond
   /// Solves the scene of make_first_scene(), and again and again on a mesh that
   /// is refined where the estimate is large, or with Certificate/Target the
   /// parts of the gap, from the state before; with the search that the scene
-  /// wants on each. A load path is followed on each mesh, without its global
-  /// branch and its arc, for the estimate of the factor that has the largest
-  /// one relative to its J, verified with @p tolerance; the result is that of
-  /// the last factor, and @p path gets all, unless it is null; where the body
-  /// comes off on the way, the factors before that count. @p scene becomes that
-  /// of the result, the last mesh on which there is one. @p report gets each
-  /// level when it is done.
+  /// wants on each, and the linear solver that is best for each. A load path is
+  /// followed on each mesh, without its global branch and its arc, for the
+  /// estimate of the factor that has the largest one relative to its J; the
+  /// result is that of the last factor. @p scene becomes that of the result,
+  /// the last mesh on which there is one. @p report gets each level when it is
+  /// done.
   template <int dim>
-  AdaptiveResult
-  solve_adaptively(const MethodChoice       &choice,
-                   const SolverParameters   &solver,
+  AdaptiveResult<dim>
+  solve_adaptively(const SolveSettings      &settings,
                    const AccuracyParameters &accuracy,
                    const CertificateKind     certificate,
-                   const double              tolerance,
                    const std::function<void(const AdaptiveLevel &)> &report,
-                   std::shared_ptr<const Scene<dim>>                &scene,
-                   FollowedPath<dim> *path = nullptr);
+                   std::shared_ptr<const Scene<dim>>                &scene);
 } // namespace Debond
 
 #endif

@@ -118,8 +118,9 @@ namespace Debond
   {
   public:
     /// Throws EquilibriumError if there is no certificate for the scene: with
-    /// gaps, prescribed displacements, bonds that vary, contact boundaries
-    /// whose corners are rounded by a mean normal.
+    /// bonds that vary along a side, quadratic displacements over a gap that is
+    /// not linear there, contact boundaries whose corners are rounded by a mean
+    /// normal.
     Certifier(const CertificateKind                    kind,
               const std::shared_ptr<const Scene<dim>> &scene);
 
@@ -153,7 +154,10 @@ namespace Debond
     const CertifiedMinimum                  minimum;
     const EquilibriumProblem<dim>           equilibrium;
 
-    /// Of the contact sides, if branches are not fixed.
+    /// Of the contact sides.
+    std::vector<BranchMinimum> laws;
+
+    /// The same, if branches are not fixed.
     std::vector<double> trace_constants;
   };
 } // namespace Debond

@@ -52,16 +52,16 @@ namespace Debond
    * Throws EquilibriumError if there is no bound.
    */
   GlobalBound
-  bound_global(const EquilibriumProblem<2>    &equilibrium,
-               const std::vector<double>      &trace_constants,
-               const BranchMinimum            &law,
-               const Eigen::VectorXd          &means,
-               const std::vector<double>      &energies,
-               const double                    upper,
-               std::vector<CertifiedSide>      known,
-               const bool                      with_deviations,
-               const BranchAndBoundParameters &proof,
-               const std::function<bool()>    &may_go_on);
+  bound_global(const EquilibriumProblem<2>      &equilibrium,
+               const std::vector<double>        &trace_constants,
+               const std::vector<BranchMinimum> &laws,
+               const Eigen::VectorXd            &means,
+               const std::vector<double>        &energies,
+               const double                      upper,
+               std::vector<CertifiedSide>        known,
+               const bool                        with_deviations,
+               const BranchAndBoundParameters   &proof,
+               const std::function<bool()>      &may_go_on);
 } // namespace Debond
 
 #endif

@@ -2,9 +2,9 @@
 #ifndef debond_solve_global_branch_h
 #define debond_solve_global_branch_h
 
+#include <debond/elasticity/contact_condensation.h>
 #include <debond/input/load_path_parameters.h>
 #include <debond/input/solver_parameters.h>
-#include <debond/linear_algebra/condensation.h>
 #include <debond/linear_algebra/views.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/which_minimum.h>
@@ -21,6 +21,26 @@ namespace Debond
     Eigen::VectorXd s;
     double          functional; ///< without the energy at s = 0
     WhichMinimum    which;
+  };
+
+  /// A scene condensed onto its contact normals, under multiples of its loads.
+  template <int dim>
+  struct CondensedScene
+  {
+    const Scene<dim>   &scene;
+    const Condensation &condensed; ///< under the whole load
+
+    AdhesionIntegral<dim>
+    bonds(const LoadFactors factors) const
+    {
+      return scene.adhesion().at(factors.displacements);
+    }
+
+    Condensation
+    at(const LoadFactors factors) const
+    {
+      return at_factors(condensed, scene.problem(), bonds(factors), factors);
+    }
   };
 
   /// By the factor of the loads.
@@ -40,12 +60,10 @@ namespace Debond
   Branch
   global_branch(const GlobalBranch           wanted,
                 const SolverParameters      &parameters,
-                const Scene<dim>            &scene,
+                const CondensedScene<dim>   &scene,
                 const Branch                &start,
                 const std::function<bool()> &may_go_on,
-                const BranchMonitor         &monitor,
-                AdhesionIntegral<dim>       &adhesion,
-                Condensation                &condensed);
+                const BranchMonitor         &monitor);
 
   /// 1/2 s'S s - g's + Phi(s).
   double

@@ -10,11 +10,25 @@
 #include <debond/solve/solve.h>
 
 #include <functional>
+#include <memory>
 #include <ostream>
 #include <vector>
 
 namespace Debond
 {
+  /// The states of a load path on a mesh.
+  template <int dim>
+  struct FollowedPath
+  {
+    SolveResult                    result; ///< that of the last factor
+    std::vector<LoadPathStep<dim>> steps;
+    std::vector<LoadPathStep<dim>> arc;
+
+    /// As they are after the last step, with references to the scene; null if
+    /// there is none.
+    std::shared_ptr<const AdhesionIntegral<dim>> bonds;
+  };
+
   /// Called after each factor, with the displacement, its verification and the
   /// bonds as they are.
   template <int dim>
@@ -31,26 +45,24 @@ namespace Debond
    *
    * The path ends early with a factor that is not solved or whose result is not
    * verified, and after the current factor if a signal arrives. Then comes the
-   * global branch. The result is that of the last factor; its status is success
+   * global branch, if a factorisation gives the problem on the contact normals.
+   * The status of the result is success
    * if all factors were solved, whether or not all of them are verified. A
    * table of the factors is printed to @p out unless that is null.
    *
-   * If the scene wants it, @p arc gets the curve of stationary states on which
+   * If the scene wants it, `arc` gets the curve of stationary states on which
    * that of the first factor is, a step for each breakpoint (StationaryPath),
    * until the factor leaves the interval of those of the path: `status` is
    * "stable" if the states between the last breakpoint and this one are minima,
    * else "unstable".
    */
   template <int dim>
-  SolveResult
-  follow_load_path(const LoadPathParameters       &parameters,
-                   const SolverParameters         &solver,
-                   const double                    verification_tolerance,
-                   const Scene<dim>               &scene,
-                   const LoadPathObserver<dim>    &observer,
-                   std::ostream                   *out,
-                   std::vector<LoadPathStep<dim>> &steps,
-                   std::vector<LoadPathStep<dim>> &arc);
+  FollowedPath<dim>
+  follow_load_path(const LoadPathParameters    &parameters,
+                   const SolveSettings         &settings,
+                   const Scene<dim>            &scene,
+                   const LoadPathObserver<dim> &observer,
+                   std::ostream                *out);
 } // namespace Debond
 
 #endif

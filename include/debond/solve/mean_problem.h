@@ -85,13 +85,13 @@ namespace Debond
   class MeanProblems
   {
   public:
-    /// @p trace_constants: Lambda of each side; @p energies: of the strains in
-    /// the cells above the sides, of a good displacement, for the choice of
-    /// shifts. References to all are kept.
-    MeanProblems(const EquilibriumProblem<2> &equilibrium,
-                 const std::vector<double>   &trace_constants,
-                 const BranchMinimum         &law,
-                 const std::vector<double>   &energies);
+    /// @p trace_constants: Lambda of each side, @p laws: of each; @p energies:
+    /// of the strains in the cells above the sides, of a good displacement, for
+    /// the choice of shifts. References to all are kept.
+    MeanProblems(const EquilibriumProblem<2>      &equilibrium,
+                 const std::vector<double>        &trace_constants,
+                 const std::vector<BranchMinimum> &laws,
+                 const std::vector<double>        &energies);
 
     /// Large enough for the law not to be rounded at the mean, if that can be
     /// with the given multiple of the bonds' stiffness.
@@ -148,7 +148,7 @@ namespace Debond
     const EquilibriumProblem<2>                           &equilibrium;
     const std::vector<double>                             &trace_constants;
     const std::vector<double>                             &energies;
-    const BranchMinimum                                   &law;
+    const std::vector<BranchMinimum>                      &laws;
     const std::vector<EquilibriumProblem<2>::ContactSide> &sides;
     const unsigned int                                     n;
     std::vector<unsigned int> sharers; ///< of elements

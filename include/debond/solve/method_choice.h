@@ -45,15 +45,37 @@ namespace Debond
 
     /// Whether multigrid has the coarser meshes of the body, not only A.
     bool has_levels = false;
+
+    /// Whether the method sees the problem condensed onto the contact normals,
+    /// which multigrid does only where the method needs it.
+    bool is_condensed = false;
   };
+
+  /// How states are found, and verified.
+  struct SolveSettings
+  {
+    MethodChoice     choice;
+    SolverParameters parameters;
+    double           tolerance; ///< of the verification
+  };
+
+  /// Estimate in bytes of what mesh, A and its factors take for @p n unknowns.
+  double
+  memory_of_factorisation(const unsigned int dim, const double n);
+
+  /// The same with the linear solver of @p wanted, if it is automatic with the
+  /// one that takes less.
+  double
+  least_memory(const MethodChoice &wanted,
+               const unsigned int  dim,
+               const double        n);
 
   /// What the scene says of the method, or what follows from that; the linear
   /// solver may stay automatic. Throws BadInput if the scene asks for a method
   /// and a linear solver that do not go together.
   MethodChoice
-  choose_method(const ProblemParameters  &problem,
-                const SolverParameters   &solver,
-                const AccuracyParameters &accuracy = {});
+  choose_method(const ProblemParameters &problem,
+                const SolverParameters  &solver);
 
   /// Completes the choice by what a factorisation of A would take. Throws
   /// BadInput if the memory that is needed exceeds the limit.

@@ -25,11 +25,14 @@ namespace Debond
       , log(&out)
     {}
 
-    /// Prints no iterations, but what the other one announces.
-    Watch(const InterruptGuard &guard, const Watch &other)
-      : guard(guard)
-      , log(other.log)
-    {}
+    /// Prints no iterations, but what this one announces.
+    Watch
+    without_iterations() const
+    {
+      Watch result(guard);
+      result.log = log;
+      return result;
+    }
 
     /// Says what takes long now, if there are many unknowns.
     void
@@ -45,7 +48,7 @@ namespace Debond
         progress->finish();
     }
 
-    Watch(const Watch &) = delete;
+    Watch(Watch &&) = default;
 
     /// The difference between J and the functional that the method sees.
     void

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_linear_algebra_block_factor_h
+#define debond_linear_algebra_block_factor_h
+
+#include <debond/linear_algebra/elimination_factor.h>
+#include <debond/linear_algebra/matrix_on_ranks.h>
+
+#include <Eigen/SparseCore>
+
+namespace Debond
+{
+  /// An EliminationFactor by solutions with A_ii: x_i = A_ii^{-1} f_i has g =
+  /// f_s - A_si x_i and c_0 = -1/2 f_i'x_i, and u_i = A_ii^{-1} (f_i - A_is s).
+  class BlockFactor : public EliminationFactor
+  {
+  public:
+    /// (f_i, x_i, g).
+    Eigen::VectorXd
+    reduce(const DofVector &f) const override;
+
+    Eigen::VectorXd
+    condensed_load(const Eigen::VectorXd &reduced) const override
+    {
+      return reduced.tail(n_kept);
+    }
+
+    double
+    energy_at_zero(const Eigen::VectorXd &reduced,
+                   const double           other) const override;
+
+    double
+    energy_of_kept(const Eigen::VectorXd &reduced) const override;
+
+    double
+    energy_without_contact(const Eigen::VectorXd &reduced) const override
+    {
+      return energy_of_kept(reduced) - energy_at_zero(reduced, 0.);
+    }
+
+    DofVector
+    expand(const Eigen::VectorXd &reduced, const VectorView &s) const override;
+
+  protected:
+    /// S is to be set, and finish() to be called.
+    BlockFactor(const MatrixOnRanks &matrix, const Elimination &elimination);
+
+    /// From the lower triangle of S on the first rank makes all of it, on all
+    /// ranks, and L_ss.
+    void
+    finish(const MatrixOnRanks &matrix);
+
+    /// A_ii^{-1} b, on all ranks.
+    virtual Eigen::VectorXd
+    solve(const Eigen::VectorXd &b) const = 0;
+
+    /// The sum over the ranks, in place.
+    void
+    sum(Eigen::VectorXd &values) const;
+
+    const Elimination           elimination;
+    const MPI_Comm              ranks;
+    const bool                  is_first;
+    const unsigned int          n_rows; ///< of A
+    const unsigned int          n_eliminated;
+    const unsigned int          n_kept;
+    Eigen::SparseMatrix<double> A_is; ///< own rows only
+  };
+} // namespace Debond
+
+#endif

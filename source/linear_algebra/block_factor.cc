@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/array_view.h>
+#include <deal.II/base/mpi.h>
+#include <deal.II/lac/lapack_templates.h>
+
+#include <debond/linear_algebra/block_factor.h>
+
+#include <string>
+#include <vector>
+
+namespace Debond
+{
+  BlockFactor::BlockFactor(const MatrixOnRanks &matrix,
+                           const Elimination   &elimination)
+    : elimination(elimination)
+    , ranks(matrix.ranks)
+    , is_first(rank_of_this(ranks) == 0)
+    , n_rows(matrix.A.m())
+    , n_eliminated(elimination.n_eliminated())
+    , n_kept(elimination.n_kept)
+  {
+    S.reinit(n_kept, n_kept);
+    const std::vector<int> position = elimination.positions(n_rows);
+    std::vector<Eigen::Triplet<double>> couplings;
+    for (const auto row : matrix.own_rows)
+      if (const int i = position[row];
+          i >= 0 && i < static_cast<int>(n_eliminated))
+        for (auto entry = matrix.A.begin(row); entry != matrix.A.end(row);
+             ++entry)
+          if (const int k =
+                position[entry->column()] - static_cast<int>(n_eliminated);
+              k >= 0)
+            couplings.emplace_back(i, k, entry->value());
+    A_is.resize(n_eliminated, n_kept);
+    A_is.setFromTriplets(couplings.begin(), couplings.end());
+  }
+
+
+
+  void
+  BlockFactor::finish(const MatrixOnRanks &matrix)
+  {
+    for (unsigned int i = 0; i < n_kept; ++i)
+      for (unsigned int j = 0; j < i; ++j)
+        S(j, i) = S(i, j);
+    const auto broadcast = [this](dealii::FullMatrix<double> &whole) {
+      if (!whole.empty())
+        dealii::Utilities::MPI::broadcast(&whole(0, 0),
+                                          whole.n_elements(),
+                                          0,
+                                          ranks);
+    };
+    broadcast(S);
+
+    L_ss                     = S;
+    Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(n_kept);
+    for (unsigned int k = 0; k < n_kept; ++k)
+      if (const unsigned int row = elimination.unknowns[n_eliminated + k];
+          elimination.is_semidefinite && matrix.own_rows.is_element(row))
+        diagonal(k) = matrix.A.diag_element(row);
+    sum(diagonal);
+    for (unsigned int k = 0; k < n_kept; ++k)
+      L_ss(k, k) += diagonal(k);
+
+    dealii::types::blas_int info = 0;
+    if (is_first && n_kept > 0)
+      {
+        const auto n = static_cast<dealii::types::blas_int>(n_kept);
+        // The upper triangle by columns is the lower one by rows.
+        dealii::potrf("U", &n, &L_ss(0, 0), &n, &info);
+      }
+    info = dealii::Utilities::MPI::broadcast(ranks, info);
+    if (info != 0)
+      throw not_positive_definite("kept unknown " + std::to_string(info) +
+                                  " of " + std::to_string(n_kept));
+    broadcast(L_ss);
+  }
+
+
+
+  void
+  BlockFactor::sum(Eigen::VectorXd &values) const
+  {
+    const dealii::ArrayView<double> view(values.data(), values.size());
+    dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(view),
+                                ranks,
+                                view);
+  }
+
+
+
+  Eigen::VectorXd
+  BlockFactor::reduce(const DofVector &f) const
+  {
+    Eigen::VectorXd result(2 * n_eliminated + n_kept);
+    for (unsigned int i = 0; i < n_eliminated; ++i)
+      result(i) = f(elimination.unknowns[i]);
+    const Eigen::VectorXd x = solve(result.head(n_eliminated));
+    Eigen::VectorXd       g = -(A_is.transpose() * x);
+    sum(g);
+    for (unsigned int k = 0; k < n_kept; ++k)
+      g(k) += f(elimination.unknowns[n_eliminated + k]);
+    result.tail(n_eliminated + n_kept) << x, g;
+    return result;
+  }
+
+
+
+  double
+  BlockFactor::energy_at_zero(const Eigen::VectorXd &reduced,
+                              const double           other) const
+  {
+    return other - 0.5 * reduced.head(n_eliminated)
+                           .dot(reduced.segment(n_eliminated, n_eliminated));
+  }
+
+
+
+  double
+  BlockFactor::energy_of_kept(const Eigen::VectorXd &reduced) const
+  {
+    if (n_kept == 0)
+      return 0.;
+    using ByRows =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const Eigen::Map<const ByRows> L(&L_ss(0, 0), n_kept, n_kept);
+    return 0.5 * L.triangularView<Eigen::Lower>()
+                   .solve(condensed_load(reduced))
+                   .squaredNorm();
+  }
+
+
+
+  DofVector
+  BlockFactor::expand(const Eigen::VectorXd &reduced, const VectorView &s) const
+  {
+    Eigen::VectorXd force = A_is * s;
+    sum(force);
+    Eigen::VectorXd x(n_eliminated + n_kept);
+    x << solve(reduced.head(n_eliminated) - force), s;
+
+    DofVector u(n_rows);
+    for (unsigned int i = 0; i < x.size(); ++i)
+      u(elimination.unknowns[i]) = x(i);
+    return u;
+  }
+} // namespace Debond
