@@ -68,19 +68,8 @@ namespace Debond
   {
     Eigen::VectorXd s(size());
     for (unsigned int i = 0; i < size(); ++i)
-      s(i) = 0. - nodes_and_faces.nodes[i].gap;
+      s(i) = std::min(0., -nodes_and_faces.nodes[i].gap);
     return s;
-  }
-
-
-
-  template <int dim>
-  bool
-  ContactSpace<dim>::has_gap() const
-  {
-    return std::any_of(nodes_and_faces.nodes.begin(),
-                       nodes_and_faces.nodes.end(),
-                       [](const auto &node) { return node.gap > 0.; });
   }
 
 

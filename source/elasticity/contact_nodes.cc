@@ -49,7 +49,7 @@ namespace Debond
         return 0.;
       try
         {
-          return nonnegative_value(*gap->second.value, point);
+          return field_value(*gap->second.value, point);
         }
       catch (const std::invalid_argument &error)
         {
@@ -57,6 +57,24 @@ namespace Debond
                              gap->second.name,
                              error.what());
         }
+    }
+
+
+
+    /// The same at a node of a face, of an edge its coefficient (bernstein()).
+    template <int dim>
+    double
+    gap_at(const Supports<dim>     &supports,
+           const BoundaryFace<dim> &face,
+           const unsigned int       node)
+    {
+      const auto at = [&](const unsigned int k) {
+        return gap_value(supports, face.id, face.positions[k]);
+      };
+      if (node < dim)
+        return at(node);
+      const auto &[a, b] = simplex_edges[node - dim];
+      return 2. * at(node) - 0.5 * (at(a) + at(b));
     }
 
 
@@ -181,8 +199,7 @@ namespace Debond
                 places[f][v] = static_cast<unsigned int>(vertex.normals.size());
                 vertex.normals.push_back(faces[f].normal);
                 vertex.measures.push_back(faces[f].measure);
-                vertex.gaps.push_back(
-                  gap_value(supports, faces[f].id, vertex.position));
+                vertex.gaps.push_back(gap_at(supports, faces[f], v));
                 vertex.is_tangential_fixed =
                   vertex.is_tangential_fixed ||
                   conditions.fixes_tangential(faces[f].id);
@@ -252,7 +269,7 @@ namespace Debond
             vertex.nodes[k] = static_cast<unsigned int>(nodes.size());
             normal_dofs.push_back(vertex.dofs[directions.size()]);
             const double gap_here = gaps[k];
-            if (gap_here > 0.)
+            if (gap_here != 0.)
               gap(normal_dofs.back()) = gap_here;
             directions.push_back(normals[k]);
             nodes.push_back({vertex.position,
@@ -316,12 +333,11 @@ namespace Debond
                   {
                     // Clamped, as far from the foundation as at rest.
                     face_node = no_node;
-                    face_held = hold(
-                      {0.,
-                       gap_value(supports, faces[f].id, faces[f].positions[v]),
-                       support_of(faces[f].dofs[v][0]),
-                       faces[f].normal,
-                       faces[f].positions[v]});
+                    face_held = hold({0.,
+                                      gap_at(supports, faces[f], v),
+                                      support_of(faces[f].dofs[v][0]),
+                                      faces[f].normal,
+                                      faces[f].positions[v]});
                     continue;
                   }
                 const ContactVertex<dim> &vertex = entry->second;

@@ -341,12 +341,6 @@ namespace Debond
                "Contact law/Quadrature",
                "Mesh/Degree = 2 needs gauss N, N from 1 to " +
                  std::string(p.dimension == 2 ? "99" : "7")},
-              {!p.supports.gap.empty() || !p.supports.gaps.empty(),
-               "Contact law/Initial gap",
-               "there is none with Mesh/Degree = 2"},
-              {p.solver.linear_solver == "multigrid",
-               "Solver/Linear solver",
-               "Mesh/Degree = 2 needs a direct one"},
               {p.solver.prove, "Solver/Prove", no_bonds},
               {p.load_path.arc, "Load path/Arc", no_bonds}},
              {"Mesh/Degree"},
@@ -383,9 +377,6 @@ namespace Debond
                  "Solver/Method",
                  "meshes that are refined need automatic, energy bundle or "
                  "majorise minimise"},
-                {p.solver.linear_solver == "multigrid",
-                 "Solver/Linear solver",
-                 "meshes that are refined need a direct one"},
                 {p.solver.prove,
                  "Solver/Prove",
                  "nothing is proved on meshes that are refined"}},

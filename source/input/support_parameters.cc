@@ -28,7 +28,7 @@ namespace Debond
       "length");
     const Pattern     gap("nothing, or an expression");
     const std::string documentation =
-      "The distance g >= 0 between the body at rest and the foundation, an expression as in Loads: u_nu <= g, and bonds are stretched by g - u_nu";
+      "The distance g between the body at rest and the foundation, an expression as in Loads: u_nu <= g, and bonds are stretched by g - u_nu. Negative where the body is too large for its place (press fit)";
     table.bind(
       "Contact law/Initial gap", supports.gap, gap, documentation, "length");
     table.bind_family("Contact law/Initial gap",

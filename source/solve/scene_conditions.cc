@@ -2,6 +2,7 @@
 #include <deal.II/base/function.h>
 
 #include <debond/base/text.h>
+#include <debond/contact/field_value.h>
 #include <debond/input/expression.h>
 #include <debond/solve/scene_conditions.h>
 
@@ -230,11 +231,18 @@ namespace Debond
       for (const double factor : load_factors)
         {
           const double normal = factor * vertex.normal_displacement;
-          if (normal - vertex.gap > rounding * (std::abs(normal) + vertex.gap))
-            throw SupportError(SupportError::Subject::displacement,
-                               unknowns.support_names().at(vertex.support),
-                               "it pushes the body into the foundation at " +
+          if (normal - vertex.gap <=
+              rounding * (std::abs(normal) + std::abs(vertex.gap)))
+            continue;
+          if (vertex.normal_displacement == 0.)
+            throw SupportError(SupportError::Subject::gap,
+                               "",
+                               "it is negative where the body is held, at " +
                                  point_text(vertex.position));
+          throw SupportError(SupportError::Subject::displacement,
+                             unknowns.support_names().at(vertex.support),
+                             "it pushes the body into the foundation at " +
+                               point_text(vertex.position));
         }
   }
 

@@ -68,13 +68,10 @@ namespace Debond
     bool
     is_admissible(const DofVector &u) const;
 
-    /// s of the body at rest, where u = 0: minus the gaps.
+    /// s of the body at rest, where u = 0: minus the gaps, but zero where these
+    /// are negative.
     Eigen::VectorXd
     at_rest() const;
-
-    /// Whether bodies at rest have gaps.
-    bool
-    has_gap() const;
 
     /// The same nodes where s itself is the vector of all unknowns.
     ContactSpace
