@@ -152,6 +152,46 @@ namespace Debond
 
 
 
+  template <int dim>
+  std::vector<dealii::Point<dim>>
+  fronts(const ContactBoundary<dim>  &boundary,
+         const AdhesiveLaw           &law,
+         const AdhesionIntegral<dim> &adhesion,
+         const VectorView            &s)
+  {
+    std::vector<dealii::Point<dim>> result;
+    const unsigned int              last = law.branches().size() - 1;
+    if (dim != 2 || last == 0)
+      return result;
+    for (const auto &face : boundary.faces)
+      {
+        // How far bonds are from the last kink; below 0 they hold.
+        std::array<double, dim> beyond;
+        std::array<bool, dim>   are_gone, hold;
+        for (unsigned int k = 0; k < dim; ++k)
+          {
+            const BondScale bonds = adhesion.bonds_at(face, k);
+            are_gone[k] =
+              bonds.energy == 0. || adhesion.least_piece_at(face, k) == last;
+            beyond[k] = -adhesion.trace_at(face, k, s) -
+                        law.bond_threshold() * bonds.stretch;
+            hold[k] = !are_gone[k] && beyond[k] < 0.;
+          }
+        if (hold[0] == hold[1])
+          continue;
+        const double part = are_gone[0] || are_gone[1] ?
+                              0.5 :
+                              beyond[0] / (beyond[0] - beyond[1]);
+        result.push_back(face.vertices[0] +
+                         part * (face.vertices[1] - face.vertices[0]));
+      }
+    return result;
+  }
+
+
+
+  template decltype(fronts<2>)      fronts<2>;
+  template decltype(fronts<3>)      fronts<3>;
   template decltype(broken_zone<2>) broken_zone<2>;
   template decltype(broken_zone<3>) broken_zone<3>;
 } // namespace Debond

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/check/broken_zone.h>
 #include <debond/check/load_path_state.h>
 
 #include <algorithm>
@@ -127,7 +128,8 @@ namespace Debond
     state.equilibrium_residual = verification.equilibrium_residual;
     state.force_imbalance      = verification.force_imbalance;
     state.broken_zone          = verification.broken_zone;
-    state.dissipated_energy    = adhesion.dissipated_energy();
+    state.fronts = fronts(boundary, adhesion.adhesive_law(), adhesion, s);
+    state.dissipated_energy = adhesion.dissipated_energy();
     const auto add = [&state](const std::string &kind, const auto &vectors) {
       for (const auto &[name, vector] : vectors)
         state.vectors.emplace_back(kind + as_title(name), vector);

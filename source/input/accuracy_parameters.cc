@@ -25,7 +25,7 @@ namespace Debond
       "Accuracy/Target",
       accuracy.target,
       width,
-      "The mesh is refined where that lowers J most, from the one of Mesh on, until the estimated error of J relative to J is not larger than this; 0 for the mesh as it is. Needs a method with a direct linear solver");
+      "The mesh is refined where that lowers J most, from the one of Mesh on, until the estimated error of J relative to J is not larger than this; 0 for the mesh as it is. Needs another method than euclidean bundle");
     table.bind(
       "Certificate/Target",
       accuracy.certified_width,

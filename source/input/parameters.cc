@@ -372,18 +372,13 @@ namespace Debond
     void
     check_accuracy(const Parameters &p, ParameterTable &table)
     {
-      if (p.accuracy.is_adaptive())
-        refuse({{p.solver.method == "euclidean bundle",
-                 "Solver/Method",
-                 "meshes that are refined need automatic, energy bundle or "
-                 "majorise minimise"},
-                {p.solver.prove,
-                 "Solver/Prove",
-                 "nothing is proved on meshes that are refined"}},
-               {"Accuracy/Target",
-                "Accuracy/Maximum unknowns",
-                "Certificate/Target"},
-               table);
+      if (p.accuracy.is_adaptive() && p.solver.method == "euclidean bundle")
+        table.reject("Solver/Method",
+                     "meshes that are refined need automatic, energy bundle or "
+                     "majorise minimise",
+                     {"Accuracy/Target",
+                      "Accuracy/Maximum unknowns",
+                      "Certificate/Target"});
     }
   } // namespace
 

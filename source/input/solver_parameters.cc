@@ -136,7 +136,7 @@ namespace Debond
         {{"automatic", BondSearchChoice::automatic},
          {"none", BondSearchChoice::none},
          {"full", BondSearchChoice::full}},
-        "Whether a lower minimum than the one found is searched for by changing which bonds are broken, with a direct linear solver: full does what automatic does, and then starts from rest and from all bonds broken, moves the edges of the broken patches by up to four nodes and breaks, closes and splits patches; automatic is none unless the method is automatic, and then as much of this as it takes until a lower bound of J (with nodal quadrature) or the minimum on coarser contact nodes says that it is enough, with more than 200 contact nodes on coarser ones but for the starts from rest and from all bonds broken");
+        "Whether a lower minimum than the one found is searched for by changing which bonds are broken: full does what automatic does, and then starts from rest and from all bonds broken, moves the edges of the broken patches by up to four nodes and breaks, closes and splits patches; automatic is none unless the method is automatic, and then as much of this as it takes until a lower bound of J (with nodal quadrature) or the minimum on coarser contact nodes says that it is enough, with more than 200 contact nodes on coarser ones but for the starts from rest and from all bonds broken");
     }
 
 
@@ -149,7 +149,7 @@ namespace Debond
       table.bind(
         "Solver/Prove",
         prove,
-        "Whether the result is proved to be the global minimum, or replaced by it, by branch and bound on the broken bonds. Needs a direct linear solver and nodal quadrature");
+        "Whether the result is proved to be the global minimum, or replaced by it, by branch and bound on the broken bonds; of meshes that are refined on the last one. Needs nodal quadrature");
       const std::string section = "Solver/Proof/";
       table.bind(
         section + "Tolerance",
@@ -202,7 +202,7 @@ namespace Debond
       "Solver/Linear solver",
       solver.linear_solver,
       one_of({"automatic", "direct", "multigrid"}),
-      "How the linear systems of energy bundle and majorise minimise are solved: direct factorises A once and goes on with the contact normals alone, multigrid (majorise minimise only) iterates on all unknowns, starting from the solutions on coarser meshes, and takes less memory in large scenes; automatic chooses by size and memory. euclidean bundle needs none");
+      "How the linear systems of energy bundle and majorise minimise are solved: direct factorises A once and goes on with the contact normals alone, multigrid iterates on all unknowns, starting from the solutions on coarser meshes, and takes less memory in large scenes; what needs the contact normals alone (energy bundle, Search = full, Prove, an arc, bodies that only bonds hold) takes a solution for each of them then; automatic chooses by size and memory. euclidean bundle needs none");
     table.declare(
       "Solver/Memory limit",
       "available",

@@ -18,6 +18,23 @@ namespace Debond
 
 
 
+    /// "0.2 0; 0.31 0"
+    template <int dim>
+    std::string
+    fronts_of(const LoadPathState<dim> &state)
+    {
+      std::string text;
+      for (const dealii::Point<dim> &front : state.fronts)
+        for (unsigned int d = 0; d < dim; ++d)
+          text += (d > 0        ? " " :
+                   text.empty() ? "" :
+                                  "; ") +
+                  shortest_text(front[d]);
+      return text;
+    }
+
+
+
     /// The columns of the states that @p state_of finds in the steps, empty
     /// where it is null; @p first tells what states have names for.
     template <int dim, typename StateOf>
@@ -64,6 +81,7 @@ namespace Debond
         add(first.other_parts[k].first + "_part",
             [k](const State &state) { return state.other_parts[k].second; });
       add("broken_zone", &State::broken_zone);
+      add("fronts", &fronts_of<dim>);
       add("dissipated_energy", &State::dissipated_energy);
       for (std::size_t k = 0; k < first.vectors.size(); ++k)
         add_vector(first.vectors[k].first,
@@ -135,10 +153,17 @@ namespace Debond
                            const DofVector         &u,
                            const Verification<dim> &verification)
   {
-    if (!error.empty() || !(output.path_body_vtu || output.path_contact_vtu))
+    if (!error.empty())
       return;
     try
       {
+        // Of a run that is killed most is there; of long paths few are written
+        // more than sixty times.
+        so_far.push_back(step);
+        if (so_far.size() % (1 + so_far.size() / 64) == 0)
+          write_load_path(so_far, path("load_path.csv"));
+        if (!(output.path_body_vtu || output.path_contact_vtu))
+          return;
         std::filesystem::create_directories(path(directory_of_steps));
         // ParaView wants times that increase, which the factors need not do.
         if (output.path_body_vtu)

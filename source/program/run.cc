@@ -11,7 +11,9 @@
 #include <debond/input/bad_input.h>
 #include <debond/output/load_path_output.h>
 #include <debond/output/output_files.h>
+#include <debond/output/record.h>
 #include <debond/output/report.h>
+#include <debond/output/run_result.h>
 #include <debond/program/check_result.h>
 #include <debond/program/run.h>
 #include <debond/solve/load_path.h>
@@ -22,54 +24,16 @@
 
 namespace Debond
 {
-  std::string
-  output_path(const std::string &directory, const std::string &name)
-  {
-    return (std::filesystem::path(directory) / name).string();
-  }
-
-
-
-  std::string
-  write_effective_scene(const std::string &scene, const std::string &directory)
-  {
-    const std::string path = output_path(directory, "parameters.prm");
-    write_atomically(path, [&](std::ostream &file) { file << scene; });
-    return path;
-  }
-
-
-
-  template <int dim>
-  ExitCode
-  conclude(const RunResult<dim> &result, const std::string &output_error)
-  {
-    const bool interrupted = result.solve.minimum.interrupted;
-    const auto print       = [](const std::string &message) {
-      if (is_first_rank())
-        print_error(message);
-    };
-    if (!result.is_answer())
-      print("NOT CONVERGED (" + result.status + "): " + result.message);
-    else if (interrupted)
-      print(
-        "the search or the proof was interrupted; the result is what it had "
-        "found");
-    if (!output_error.empty())
-      {
-        print(output_error);
-        return ExitCode::output_not_saved;
-      }
-    if (result.solve.status == SolverStatus::interrupted ||
-        (result.is_success() && interrupted))
-      return ExitCode::interrupted;
-    return result.is_answer() ? ExitCode::success : ExitCode::not_converged;
-  }
-
-
-
   namespace
   {
+    std::string
+    output_path(const std::string &directory, const std::string &name)
+    {
+      return (std::filesystem::path(directory) / name).string();
+    }
+
+
+
     void
     refuse_certificates_of_ranks(const Parameters &parameters)
     {
@@ -80,89 +44,222 @@ namespace Debond
                         ": several ranks have no certificate; run the scene on "
                         "one rank"});
     }
-  } // namespace
 
 
 
-  template <int dim>
-  ExitCode
-  run(const Parameters &parameters, std::ostream &out, const bool terminal)
-  {
-    dealii::Timer             total;
-    const SolverParameters   &solver      = parameters.solver;
-    const LoadPathParameters &load_path   = parameters.load_path;
-    const CertificateKind     certificate = parameters.certificate.kind;
-    const OutputParameters   &output      = parameters.output;
-    const AccuracyParameters &accuracy    = parameters.accuracy;
-    MethodChoice              choice      = choose_method(parameters, solver);
-    refuse_certificates_of_ranks(parameters);
-    std::shared_ptr<const Scene<dim>> scene =
-      make_first_scene<dim>(parameters, accuracy, parameters.solver.start);
-    choose_linear_solver(*scene, solver, choice);
-    check_supports_of_method(choice, solver, *scene);
-    // Before the solve, so that nothing is lost if it is not finite somewhere.
-    error_of(parameters.verification.exact_displacement,
-             *scene,
-             DofVector(scene->problem().unknowns().n_dofs()));
-    const std::unique_ptr<const Certifier<dim>> certifier =
-      make_certifier(certificate, scene);
-
-    RunResult<dim>          result;
-    std::vector<OutputFile> files = output_files(output, *scene, result);
-    std::optional<LoadPathOutput<dim>> path_output;
-    const auto                         add_path_output = [&]() {
-      path_output.emplace(output, scene->problem(), result.path, result.arc);
-      append(path_output->files(), files);
-    };
-    add_path_output();
-    std::optional<DirectoryLock> lock;
-    std::vector<std::string>     written;
-    try
+    /// The steps of run(), in their order.
+    template <int dim>
+    class SceneRun
+    {
+    public:
+      /// Mesh, assembly and choice of the method.
+      SceneRun(const Parameters &parameters,
+               std::ostream     &out,
+               const bool        terminal)
+        : parameters(parameters)
+        , out(out)
+        , terminal(terminal)
+        , choice(choose_method(parameters, parameters.solver))
+        , record(parameters.output.machine_details)
       {
-        on_all_ranks(scene->ranks(), [&]() {
+        refuse_certificates_of_ranks(parameters);
+        scene = make_first_scene<dim>(parameters,
+                                      parameters.accuracy,
+                                      parameters.solver.start);
+        choose_linear_solver(*scene, parameters.solver, choice);
+        check_supports_of_method(choice, parameters.solver, *scene);
+        // Before the solve, so that nothing is lost if it is not finite
+        // somewhere.
+        error_of(parameters.verification.exact_displacement,
+                 *scene,
+                 DofVector(scene->problem().unknowns().n_dofs()));
+        certifier    = make_certifier(parameters.certificate.kind, scene);
+        result.times = {{"mesh", scene->mesh_seconds()},
+                        {"assembly", scene->assembly_seconds()}};
+      }
+
+      /// Locks the directory, removes what an earlier run left and writes the
+      /// effective scene. Returns false if it cannot.
+      bool
+      open_output()
+      {
+        list_files();
+        try
+          {
+            on_all_ranks(scene->ranks(), [&]() {
+              if (is_first_rank())
+                lock.emplace(parameters.output.directory);
+            });
+            remove_files(files, parameters.output.directory);
+            path_output->remove_steps();
+            written.push_back(
+              output_path(parameters.output.directory, "parameters.prm"));
+            write_atomically(written.back(), [&](std::ostream &file) {
+              file << parameters.effective_scene;
+            });
+          }
+        catch (const std::runtime_error &error)
+          {
+            if (is_first_rank())
+              print_error(error.what());
+            return false;
+          }
+        return true;
+      }
+
+      void
+      say_problem()
+      {
+        report_problem(*scene, choice, parameters.solver.bundle.u, record);
+        if (n_started_ranks() > 1 && record.has_details())
+          record.line("ranks", std::to_string(n_started_ranks()));
+        record.print(out);
+      }
+
+      /// The minimum, on meshes that are refined if the scene asks for it, or
+      /// the states of a load path.
+      void
+      solve()
+      {
+        dealii::Timer timer;
+        const bool    has_path = !parameters.load_path.factors.empty();
+        if (parameters.accuracy.is_adaptive())
+          refine();
+        else if (!has_path)
+          result.solve =
+            Debond::solve(choice, parameters.solver, *scene, log(), terminal);
+        // On a refined mesh the states are computed again, now with all that
+        // is written of them.
+        if (has_path && result.solve.status != SolverStatus::interrupted)
+          follow();
+        else if (!path.steps.empty())
+          {
+            result.path         = path.steps;
+            result.verification = verify(scene->problem(),
+                                         *path.bonds,
+                                         scene->law(),
+                                         result.solve.u,
+                                         result.solve.load_factor);
+          }
+        result.times.emplace_back("solve", timer.wall_time());
+      }
+
+      /// Verification, estimate and certificate.
+      void
+      check()
+      {
+        check_result(parameters.verification,
+                     parameters.notes,
+                     *scene,
+                     path.bonds ? *path.bonds : scene->adhesion(),
+                     shortfall,
+                     result);
+        if (parameters.certificate.kind != CertificateKind::none &&
+            result.is_success() && !result.certificate)
+          certify_result(certifier.get(),
+                         parameters.certificate.kind,
+                         parameters.accuracy.is_adaptive(),
+                         parameters.solver.proof,
+                         scene,
+                         result);
+        report_result(*scene, choice, result, record);
+      }
+
+      void
+      write()
+      {
+        dealii::Timer timer;
+        try
+          {
+            append(write_files(files, parameters.output.directory), written);
+            result.times.emplace_back("output", timer.wall_time());
+            result.times.emplace_back("total", total.wall_time());
+            report_cost(result,
+                        choice,
+                        -least_of_ranks(-peak_memory()),
+                        record);
+            const std::string summary =
+              output_path(parameters.output.directory, "summary.json");
+            record.write(summary);
+            written.push_back(summary);
+          }
+        catch (const std::runtime_error &error)
+          {
+            output_error = error.what();
+          }
+        report_files(written, record);
+        record.print(out);
+      }
+
+      /// Says on std::cerr what did not go well.
+      ExitCode
+      conclude() const
+      {
+        const bool interrupted = result.solve.minimum.interrupted;
+        const auto print       = [](const std::string &message) {
           if (is_first_rank())
-            lock.emplace(output.directory);
-        });
-        remove_files(files, output.directory);
-        path_output->remove_steps();
-        written.push_back(
-          write_effective_scene(parameters.effective_scene, output.directory));
-      }
-    catch (const std::runtime_error &error)
-      {
-        if (is_first_rank())
-          print_error(error.what());
-        return ExitCode::output_not_saved;
-      }
-
-    Record record(output.machine_details);
-    report_problem(*scene, choice, solver.bundle.u, record);
-    if (n_started_ranks() > 1 && record.has_details())
-      record.line("ranks", std::to_string(n_started_ranks()));
-    record.print(out);
-
-    result.times = {{"mesh", scene->mesh_seconds()},
-                    {"assembly", scene->assembly_seconds()}};
-    dealii::Timer       timer;
-    std::string         shortfall;
-    FollowedPath<dim>   path;
-    const SolveSettings settings = {choice,
-                                    solver,
-                                    parameters.verification.tolerance};
-    if (accuracy.is_adaptive())
-      {
-        const auto report = [&](const AdaptiveLevel &level) {
-          report_level(static_cast<unsigned int>(result.levels.size()),
-                       level,
-                       record);
-          record.print(out);
-          result.levels.push_back(level);
+            print_error(message);
         };
+        if (!result.is_answer())
+          print("NOT CONVERGED (" + result.status + "): " + result.message);
+        else if (interrupted)
+          print("the search or the proof was interrupted; the result is what "
+                "it had found");
+        if (!output_error.empty())
+          {
+            print(output_error);
+            return ExitCode::output_not_saved;
+          }
+        if (result.solve.status == SolverStatus::interrupted ||
+            (result.is_success() && interrupted))
+          return ExitCode::interrupted;
+        return result.is_answer() ? ExitCode::success : ExitCode::not_converged;
+      }
+
+    private:
+      /// Of the scene as it is.
+      void
+      list_files()
+      {
+        files = output_files(parameters.output, *scene, result);
+        path_output.emplace(parameters.output,
+                            scene->problem(),
+                            result.path,
+                            result.arc);
+        append(path_output->files(), files);
+      }
+
+      /// For the iterations; null if there is none.
+      std::ostream *
+      log() const
+      {
+        return record.has_details() ? &out : nullptr;
+      }
+
+      SolveSettings
+      settings() const
+      {
+        return {choice, parameters.solver, parameters.verification.tolerance};
+      }
+
+      void
+      refine()
+      {
         AdaptiveResult<dim> adaptive;
         try
           {
-            adaptive =
-              solve_adaptively(settings, accuracy, certificate, report, scene);
+            adaptive = solve_adaptively(
+              settings(),
+              parameters.accuracy,
+              parameters.certificate.kind,
+              [this](const AdaptiveLevel &level) {
+                report_level(static_cast<unsigned int>(result.levels.size()),
+                             level,
+                             record);
+                record.print(out);
+                result.levels.push_back(level);
+              },
+              scene);
           }
         catch (const BadInput &)
           {
@@ -179,88 +276,69 @@ namespace Debond
         shortfall          = adaptive.shortfall;
         result.certificate = std::move(adaptive.certificate);
         path               = std::move(adaptive.path);
-        files              = output_files(output, *scene, result);
-        add_path_output();
+        list_files();
       }
-    else if (load_path.factors.empty())
-      result.solve = solve(choice,
-                           solver,
-                           *scene,
-                           record.has_details() ? &out : nullptr,
-                           terminal);
-    // On a refined mesh the states are computed again, now with all that is
-    // written of them.
-    if (!load_path.factors.empty() &&
-        result.solve.status != SolverStatus::interrupted)
+
+      void
+      follow()
       {
         path = follow_load_path<dim>(
-          load_path,
-          settings,
+          parameters.load_path,
+          settings(),
           *scene,
-          [&](const LoadPathStep<dim> &step,
-              const DofVector         &u,
-              const Verification<dim> &verification,
-              const AdhesionIntegral<dim> &) {
+          [this](const LoadPathStep<dim> &step,
+                 const DofVector         &u,
+                 const Verification<dim> &verification,
+                 const AdhesionIntegral<dim> &) {
             result.verification = verification;
             path_output->add(step, u, verification);
           },
-          record.has_details() ? &out : nullptr);
+          log());
         result.solve = std::move(path.result);
         result.path  = path.steps;
         result.arc   = path.arc;
       }
-    else if (!path.steps.empty())
-      {
-        result.path         = path.steps;
-        result.verification = verify(scene->problem(),
-                                     *path.bonds,
-                                     scene->law(),
-                                     result.solve.u,
-                                     result.solve.load_factor);
-      }
-    result.times.emplace_back("solve", timer.wall_time());
-    check_result(parameters.verification,
-                 parameters.notes,
-                 *scene,
-                 path.bonds ? *path.bonds : scene->adhesion(),
-                 shortfall,
-                 result);
-    if (certificate != CertificateKind::none && result.is_success() &&
-        !result.certificate)
-      certify_result(certifier.get(),
-                     certificate,
-                     accuracy.is_adaptive(),
-                     solver.proof,
-                     scene,
-                     result);
-    report_result(*scene, choice, result, record);
 
-    std::string output_error;
-    timer.restart();
-    try
-      {
-        append(write_files(files, output.directory), written);
-        result.times.emplace_back("output", timer.wall_time());
-        result.times.emplace_back("total", total.wall_time());
-        report_cost(result, choice, -least_of_ranks(-peak_memory()), record);
-        const std::string summary =
-          output_path(output.directory, "summary.json");
-        record.write(summary);
-        written.push_back(summary);
-      }
-    catch (const std::runtime_error &error)
-      {
-        output_error = error.what();
-      }
-    report_files(written, record);
-    record.print(out);
-    return conclude(result, output_error);
+      const dealii::Timer total;
+      const Parameters   &parameters;
+      std::ostream       &out;
+      const bool          terminal; ///< whether out is one
+
+      MethodChoice                          choice;
+      Record                                record;
+      std::shared_ptr<const Scene<dim>>     scene;
+      std::unique_ptr<const Certifier<dim>> certifier;
+
+      RunResult<dim>    result;
+      FollowedPath<dim> path;      ///< of which result has the steps
+      std::string       shortfall; ///< of refinement
+
+      std::vector<OutputFile>            files;
+      std::optional<LoadPathOutput<dim>> path_output;
+      std::optional<DirectoryLock>       lock;
+      std::vector<std::string>           written;
+      std::string                        output_error;
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  ExitCode
+  run(const Parameters &parameters, std::ostream &out, const bool terminal)
+  {
+    SceneRun<dim> scene(parameters, out, terminal);
+    if (!scene.open_output())
+      return ExitCode::output_not_saved;
+    scene.say_problem();
+    scene.solve();
+    scene.check();
+    scene.write();
+    return scene.conclude();
   }
 
 
 
-  template decltype(run<2>)      run<2>;
-  template decltype(run<3>)      run<3>;
-  template decltype(conclude<2>) conclude<2>;
-  template decltype(conclude<3>) conclude<3>;
+  template decltype(run<2>) run<2>;
+  template decltype(run<3>) run<3>;
 } // namespace Debond

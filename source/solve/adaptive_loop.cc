@@ -331,7 +331,7 @@ namespace Debond
       run()
       {
         seconds = scene->mesh_seconds() + scene->assembly_seconds();
-        solve_on(scene, settings);
+        solve_on(scene, without_proof(settings.choice));
         while (!is_finished())
           {
             timer.restart();
@@ -346,8 +346,7 @@ namespace Debond
               }
             const auto next =
               std::make_shared<const Scene<dim>>(problem, body, "", ranks);
-            SolveSettings on_next = settings;
-            on_next.choice        = wanted;
+            SolveSettings on_next = without_proof(wanted);
             try
               {
                 choose_linear_solver(*next,
@@ -384,10 +383,28 @@ namespace Debond
                 break;
               }
           }
+        if (settings.parameters.prove &&
+            result.solve.status == SolverStatus::success)
+          result.solve = solve(choice,
+                               settings.parameters,
+                               *scene,
+                               nullptr,
+                               false,
+                               &result.solve.u);
         return std::move(result);
       }
 
     private:
+      /// Only the last mesh has a proof.
+      SolveSettings
+      without_proof(const MethodChoice &choice_of_mesh) const
+      {
+        SolveSettings result    = settings;
+        result.choice           = choice_of_mesh;
+        result.parameters.prove = false;
+        return result;
+      }
+
       /// Whether there is a result on this mesh that a finer one may replace,
       /// or the last word; if a signal came before, that of the mesh before
       /// stays.
@@ -403,7 +420,7 @@ namespace Debond
             if (problem.load_path.factors.empty())
               {
                 solution   = solve(on_mesh.choice,
-                                 settings.parameters,
+                                 on_mesh.parameters,
                                  *here,
                                  nullptr,
                                  false,
@@ -438,6 +455,7 @@ namespace Debond
         result.solve = std::move(solution);
         result.path  = std::move(path);
         scene        = here;
+        choice       = on_mesh.choice;
         // Where the body comes off on the way, the factors before that count.
         const bool comes_off_later =
           result.solve.status == SolverStatus::comes_off &&
@@ -624,6 +642,7 @@ namespace Debond
       dealii::Timer              timer;
       double                     seconds = 0.; ///< before the timer started
 
+      MethodChoice                     choice; ///< on the mesh of the result
       std::shared_ptr<const Body<dim>> latest;
       std::unique_ptr<const DofVector> start; ///< on the next mesh
     };

@@ -112,8 +112,12 @@ namespace Debond
                const MajoriseMinimise::Monitor &monitor,
                const MayGoOn                   &may_go_on) override
       {
-        DisplacementProblem minimised(
-          problem, problem.load(factors), bonds, *cycle, u);
+        const DofVector load = problem.load(factors);
+        // Then rest is the minimum, and residuals have nothing to be relative
+        // to on the way.
+        if (load.all_zero())
+          u = 0.;
+        DisplacementProblem minimised(problem, load, bonds, *cycle, u);
         minimised.may_go_on           = may_go_on;
         MajoriseMinimiseResult result = method.minimize(minimised, monitor);
         const double energy = prescribed_energy(problem, bonds, factors);

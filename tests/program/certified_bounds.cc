@@ -243,12 +243,25 @@ namespace
       }
     else
       sides = set_plane(random, length, height, scene);
+    const bool                      is_box = sides[0] == "left";
     const std::vector<unsigned int> clamps =
       random.choice<std::vector<unsigned int>>(
         {{0}, {is_solid ? 4u : 1u}, {0, 1}, {3}});
     std::string clamped = sides[clamps[0]];
-    if (clamps.size() > 1)
+    // What is prescribed is linear, too, and leads away from the foundation.
+    Generator  prescribed(number + 2000000);
+    const auto small = [&]() { return prescribed.magnitude(-5., -3.); };
+    if (clamps.size() > 1 && prescribed.uniform(0., 1.) < 0.5)
       clamped += ", " + sides[clamps[1]];
+    else if (clamps.size() > 1)
+      scene.values.push_back("Boundary conditions/Displacement " +
+                             sides[clamps[1]] + '=' + text(small() * unit) +
+                             '-' + text(small()) + "*y; " +
+                             text(small() * unit) + '+' + text(small()) + "*y" +
+                             (is_solid ? "; 0" : ""));
+    if (prescribed.uniform(0., 1.) < 0.3)
+      scene.values.push_back("Contact law/Initial gap=" + text(small() * unit) +
+                             '+' + text(small()) + "*x");
     const bool from_top = clamps[0] == 3;
     const auto load     = [&]() {
       return random.choice<double>({-1., 1.}) * random.magnitude(-3., 0.) *
@@ -297,7 +310,12 @@ namespace
                                 ',' + text(2. * M)};
     else if (law != "none")
       scene.values =
-        scene.values + Values{"Contact law/Bond stiffness=" + text(a),
+        scene.values + Values{"Contact law/Bond stiffness=" +
+                                (is_solid || law == "broken" || !is_box ||
+                                     prescribed.uniform(0., 1.) < 0.7 ?
+                                   text(a) :
+                                   "if(x < " + text(length / 2.) + ", " +
+                                     text(a) + ", " + text(a / 3.) + ')'),
                               "Contact law/Bond threshold=" +
                                 text(law == "unbreakable" ? 1e6 * unit :
                                      law == "broken"      ? 1e-9 * unit :

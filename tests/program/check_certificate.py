@@ -225,12 +225,54 @@ def main(debond):
 
     refused("is for plane bodies", ["Dimension=3", "Loads/Traction top=0;1;0"])
     refused("is for a single load", ["Load path/Factors=0.5, 1"])
-    refused("an initial gap is not done", ["Contact law/Initial gap=1e-3"])
-    refused("bonds that vary are not done",
+    refused("bonds that vary along a side are not done",
             ["Contact law/Bond stiffness=69*(1+x)"])
-    refused("a prescribed displacement that is not zero is not done",
-            ["Boundary conditions/Clamped boundaries=left",
-             "Boundary conditions/Displacement right=0; 1e-4"])
+    refused("a gap that is not linear on each side",
+            ["Contact law/Initial gap=x^2", "Mesh/Degree=2",
+             "Contact law/Quadrature=gauss 4"])
+
+    # What is prescribed, where the displacement is linear: J is known, and both
+    # numbers are J. A block that is too large for its place, one that is pushed
+    # over a gap onto the foundation, and one that bonds hold, of equal stiffness
+    # but with two thresholds.
+    block = ["Mesh/Lengths=1, 1", "Mesh/Cells=4, 4", "Loads/Traction top=",
+             "Material/Young modulus=100", "Material/Poisson ratio=0",
+             "Boundary conditions/Clamped boundaries=",
+             "Boundary conditions/Roller boundaries=left, right",
+             "Contact law/Tangential displacement=free"]
+    for name, J, settings in (
+            ("press fit", 0.005,
+             ["Contact law/Law=none", "Contact law/Initial gap=-0.01",
+              "Boundary conditions/Displacement top=free; 0"]),
+            ("gap", 0.02,
+             ["Contact law/Law=none", "Contact law/Initial gap=0.01",
+              "Boundary conditions/Displacement top=free; -0.03"]),
+            ("bonds", 2.5e-5,
+             ["Boundary conditions/Displacement top=free; 0.001",
+              "Contact law/Bond stiffness=100",
+              "Contact law/Bond threshold=if(x < 0.5, 1, 2)"])):
+        for kind in ("fixed state", "global"):
+            interval = run(debond, block + settings + [
+                f"Certificate/Kind={kind}"])[1]["certificate"]
+            tolerance = 1e-4 if name == "bonds" else 1e-8
+            if not all(abs(interval[end] / J - 1.) < tolerance
+                       for end in ("lower", "upper")):
+                failures.append(f"{name}, {kind}: {interval}, J is {J}")
+
+    # Finer meshes have higher lower numbers and lower upper ones.
+    both = ["Boundary conditions/Clamped boundaries=left",
+            "Boundary conditions/Displacement right=free; 0.002",
+            "Contact law/Initial gap=2e-4*x/0.4",
+            "Contact law/Bond stiffness=if(x<0.2,69,30)",
+            "Contact law/Bond threshold=if(x<0.3,0.002,0.001)"]
+    for kind in ("fixed state", "global"):
+        coarse, fine = (run(debond, both + [
+            f"Certificate/Kind={kind}", f"Mesh/Cells={cells}"])[1]["certificate"]
+            for cells in ("20, 2", "40, 4"))
+        if not (coarse["lower"] < fine["lower"] < fine["upper"] <
+                coarse["upper"] and
+                fine["relative_width"] < 0.4 * coarse["relative_width"]):
+            failures.append(f"all at once, {kind}: {coarse}, {fine}")
     for failure in failures:
         print(failure)
     return 1 if failures else 0

@@ -4,6 +4,8 @@
 
 #include <debond/contact/adhesion_integral.h>
 
+#include <vector>
+
 namespace Debond
 {
   /// The length (in 3D the area) of the contact boundary that is open and not
@@ -16,6 +18,18 @@ namespace Debond
               const AdhesiveLaw           &law,
               const AdhesionIntegral<dim> &adhesion,
               const VectorView            &s);
+
+  /// Of a plane body the places where bonds that hold meet bonds that do not,
+  /// or none, in the order of the faces: where s is at the last kink of the
+  /// law, or in the middle of a face at one end of which there are no bonds, or
+  /// they are broken for good. They stay where they are when a crack closes.
+  /// Of solids none.
+  template <int dim>
+  std::vector<dealii::Point<dim>>
+  fronts(const ContactBoundary<dim>  &boundary,
+         const AdhesiveLaw           &law,
+         const AdhesionIntegral<dim> &adhesion,
+         const VectorView            &s);
 } // namespace Debond
 
 #endif

@@ -54,7 +54,10 @@ namespace Debond
     double equilibrium_residual;
     double force_imbalance;
 
-    double broken_zone;       ///< see Verification
+    double broken_zone; ///< see Verification
+
+    std::vector<dealii::Point<dim>> fronts; ///< see fronts()
+
     double dissipated_energy; ///< by bonds that do not heal
 
     /// By the titles of their columns, without the axis.

@@ -34,6 +34,12 @@ namespace Debond
     unsigned int
     n_nodes() const;
 
+    const AdhesiveLaw &
+    adhesive_law() const
+    {
+      return law;
+    }
+
     /// These bonds where the prescribed displacements are @p factor times those
     /// for the whole load. Throws as BondField does, and so does the
     /// constructor.

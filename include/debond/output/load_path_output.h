@@ -37,8 +37,8 @@ namespace Debond
     void
     remove_steps() const;
 
-    /// Writes the files of one factor. A file that cannot be written ends
-    /// no path: the last of files() throws for it.
+    /// Writes the files of one factor, and the table as it is. A file that
+    /// cannot be written ends no path: the last of files() throws for it.
     void
     add(const LoadPathStep<dim> &step,
         const DofVector         &u,
@@ -66,6 +66,7 @@ namespace Debond
     const ElasticProblem<dim>            &problem;
     const std::vector<LoadPathStep<dim>> &steps;
     const std::vector<LoadPathStep<dim>> &arc;
+    std::vector<LoadPathStep<dim>>        so_far; ///< without a global branch
     Series                                bodies;
     Series                                contacts;
     std::string                           error;
