@@ -41,9 +41,6 @@ namespace Debond
     /// The same if parts of a certificate's gap are to become smaller.
     constexpr double growth_for_gaps = 1.7;
 
-    /// Of branch and bound for certificates that only later ones use.
-    constexpr unsigned int n_nodes_on_the_way = 100;
-
     /// The part of Accuracy/Target that a mesh is made for.
     constexpr double aim = 0.9;
 
@@ -255,13 +252,9 @@ namespace Debond
     {
       const auto certify = [&](const CertificateKind           kind_of_this,
                                const BranchAndBoundParameters &limits) {
-        Certificate certificate = Certifier<dim>(kind_of_this, scene)
-                                    .certify(*scene,
-                                             u,
-                                             limits,
-                                             may_go_on,
-                                             global ? &*global : nullptr,
-                                             !is_last);
+        Certificate certificate =
+          Certifier<dim>(kind_of_this, scene)
+            .certify(*scene, u, limits, may_go_on, global ? &*global : nullptr);
         if (certificate.minimum == CertifiedMinimum::global)
           global = certificate;
         return certificate;
@@ -271,16 +264,9 @@ namespace Debond
           {
             const Certificate first =
               certify(CertificateKind::fixed_state, proof);
-            if (first.minimum == CertifiedMinimum::global)
+            if (first.minimum == CertifiedMinimum::global ||
+                first.width() > target)
               return first;
-            if (first.width() > target)
-              {
-                BranchAndBoundParameters limits = proof;
-                limits.maximum_nodes =
-                  std::min(limits.maximum_nodes, n_nodes_on_the_way);
-                certify(kind, limits);
-                return first;
-              }
           }
         catch (const std::exception &)
           {

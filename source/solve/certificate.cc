@@ -546,8 +546,7 @@ namespace Debond
                           const DofVector                &u,
                           const BranchAndBoundParameters &proof,
                           const std::function<bool()>    &may_go_on,
-                          const Certificate              *earlier,
-                          const bool                      is_for_finer) const
+                          const Certificate              *earlier) const
   {
     const bool is_own = &solved == scene.get();
     Assert(is_own || is_for_finer_meshes(), dealii::ExcInternalError());
@@ -605,26 +604,19 @@ namespace Debond
                 side_energies[i] =
                   energies[equilibrium.contact_sides()[i].element];
             }
-          std::vector<CertifiedSide> known;
-          const bool is_known = earlier != nullptr && is_for_least(*earlier) &&
-                                is_for_least(certificate);
-          if (is_known)
+          // The value that is reached: that of the better displacement.
+          if (earlier != nullptr && is_for_least(*earlier) &&
+              is_for_least(certificate))
             certificate.upper = std::min(certificate.upper, earlier->upper);
-          for (const SideOf<2> &side : equilibrium.contact_sides())
-            known.push_back(known_between(side.corners,
-                                          is_known ?
-                                            earlier->sides :
-                                            std::vector<CertifiedSide>()));
-          GlobalBound bound        = bound_global(equilibrium,
-                                           trace_constants,
-                                           laws,
+          const MeanProblems problems(equilibrium,
+                                      trace_constants,
+                                      laws,
+                                      side_energies);
+          GlobalBound        bound = bound_global(problems,
                                            side_means(equilibrium,
                                                       contact.boundary(),
                                                       contact.trace(u)),
-                                           side_energies,
                                            certificate.upper,
-                                           known,
-                                           is_for_finer,
                                            proof,
                                            may_go_on);
           certificate.lower        = bound.lower - own;

@@ -26,7 +26,7 @@ namespace Debond
     constexpr double part_of_the_interval = 0.002;
     constexpr double first_interval       = 1e-2;
 
-    /// Nodes of each bound after the first of the first mesh: what is then not
+    /// Nodes of each bound after the first one: what is then not
     /// decided is left to the ranges.
     constexpr unsigned int n_later_nodes = 400;
 
@@ -183,7 +183,7 @@ namespace Debond
       add_bound_for_ranges(const double least_shift, Known &known);
 
       void
-      begin(const bool is_known, Known &known);
+      begin(Known &known);
 
       /// Makes the ranges narrower by the latest problem. If nothing was known
       /// it has all means: then quickly and without trials of single sides, as
@@ -209,10 +209,7 @@ namespace Debond
         parameters.maximum_nodes =
           std::min(parameters.maximum_nodes, n_later_nodes);
       const auto problem = std::make_shared<const MeanProblem>(
-        problems.mean_problem(known.ranges,
-                              given_means,
-                              D,
-                              std::vector<double>(known.ranges.size(), 0.)));
+        problems.mean_problem(known.ranges, given_means, D));
       const BranchAndBoundResult bound =
         branch_and_bound(parameters,
                          problem->S,
@@ -263,44 +260,24 @@ namespace Debond
 
 
     void
-    StagedBounds::begin(const bool is_known, Known &known)
+    StagedBounds::begin(Known &known)
     {
-      std::vector<std::vector<double>> trials;
-      if (is_known)
-        {
-          const auto shifts = [&]() {
-            return problems.shifts_for_ranges(known.ranges,
-                                              given_means,
-                                              Eigen::VectorXd::Zero(
-                                                given_means.size()),
-                                              least_shifts[0]);
-          };
-          const MeanProblem problem =
-            problems.mean_problem(known.ranges,
-                                  given_means,
-                                  shifts(),
-                                  std::vector<double>(known.ranges.size(), 0.));
-          exclude_pieces(problem, upper, given_means, may_go_on, known.ranges);
-          shrink_ranges(problem, upper, false, may_go_on, known.ranges);
-          trials.push_back(shifts());
-        }
-      for (const double multiple : first_shifts)
-        trials.push_back(problems.shifts_for_means(given_means, multiple));
       std::shared_ptr<const MeanProblem> best;
       Eigen::VectorXd                    best_values;
       double best_lower = -std::numeric_limits<double>::infinity();
-      for (const std::vector<double> &D : trials)
+      for (const double multiple : first_shifts)
         {
-          const bool is_first = !is_known && !std::isfinite(known.lower);
-          if (const double lower = add_bound(D, is_first, known);
+          if (const double lower =
+                add_bound(problems.shifts_for_means(given_means, multiple),
+                          !std::isfinite(known.lower),
+                          known);
               !best || lower > best_lower)
             {
               best        = known.problem;
               best_values = known.values;
               best_lower  = lower;
             }
-          if (known.status == ProofStatus::proved &&
-              (!is_known || !losses_matter(known, upper)))
+          if (known.status == ProofStatus::proved)
             break;
         }
       known.problem = best;
@@ -312,17 +289,11 @@ namespace Debond
     void
     StagedBounds::run(Known &known)
     {
-      const bool is_known =
-        std::any_of(known.ranges.begin(),
-                    known.ranges.end(),
-                    [](const CertifiedSide &side) {
-                      return std::isfinite(side.linear().upper);
-                    });
-      begin(is_known, known);
+      begin(known);
       unsigned int n_idle = 0;
       for (unsigned int stage = 0; stage < n_stages && may_go_on(); ++stage)
         {
-          look(stage == 0 && !is_known, known);
+          look(stage == 0, known);
           const double before = upper - known.lower;
           add_bound_for_ranges(least_shifts[stage % least_shifts.size()],
                                known);
@@ -402,50 +373,31 @@ namespace Debond
 
 
   GlobalBound
-  bound_global(const EquilibriumProblem<2>      &equilibrium,
-               const std::vector<double>        &trace_constants,
-               const std::vector<BranchMinimum> &laws,
-               const Eigen::VectorXd            &means,
-               const std::vector<double>        &energies,
-               const double                      upper,
-               std::vector<CertifiedSide>        known,
-               const bool                        with_deviations,
-               const BranchAndBoundParameters   &proof,
-               const std::function<bool()>      &may_go_on)
+  bound_global(const MeanProblems             &problems,
+               const Eigen::VectorXd          &means,
+               const double                    upper,
+               const BranchAndBoundParameters &proof,
+               const std::function<bool()>    &may_go_on)
   {
-    const MeanProblems sides(equilibrium, trace_constants, laws, energies);
-    StagedBounds       bounds(sides, means, upper, proof, may_go_on);
-    Known              last;
-    last.ranges = std::move(known);
+    StagedBounds bounds(problems, means, upper, proof, may_go_on);
+    Known        last;
+    for (const ContactSide &side : problems.contact_sides())
+      {
+        last.ranges.emplace_back();
+        last.ranges.back().ends = side.corners;
+      }
     bounds.run(last);
 
     GlobalBound result;
-    result.nodes                      = bounds.nodes;
-    result.lower                      = std::min(last.lower, upper);
-    result.rounding                   = last.rounding;
-    result.status                     = last.status;
-    result.losses                     = last.losses;
-    std::vector<CertifiedSide> ranges = last.ranges;
-    if (with_deviations && may_go_on())
-      {
-        const std::vector<double> D = sides.shifts_for_ranges(ranges,
-                                                              last.means(),
-                                                              last.slopes(),
-                                                              least_shifts[0]);
-        shrink_ranges(sides.mean_problem(ranges,
-                                         last.means(),
-                                         D,
-                                         sides.rests_for(upper - result.lower,
-                                                         D)),
-                      upper,
-                      false,
-                      may_go_on,
-                      ranges);
-      }
-
-    for (unsigned int i = 0; i < ranges.size(); ++i)
-      ranges[i].piece = piece_of(ranges[i].linear(), laws[i]);
-    result.sides = std::move(ranges);
+    result.nodes    = bounds.nodes;
+    result.lower    = std::min(last.lower, upper);
+    result.rounding = last.rounding;
+    result.status   = last.status;
+    result.losses   = last.losses;
+    result.sides    = std::move(last.ranges);
+    for (unsigned int i = 0; i < result.sides.size(); ++i)
+      result.sides[i].piece =
+        piece_of(result.sides[i].linear(), problems.laws_of_sides()[i]);
     return result;
   }
 } // namespace Debond

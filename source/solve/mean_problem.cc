@@ -197,8 +197,7 @@ namespace Debond
     for (unsigned int i = 0; i < n; ++i)
       {
         const double D = problem.shifts[i];
-        result.push_back(0.5 * (D + problem.rests[i]) / trace_constants[i] *
-                         energies[i]);
+        result.push_back(0.5 * D / trace_constants[i] * energies[i]);
         if (problem.pieces[i])
           continue;
         const BranchMinimum &law = laws[i];
@@ -214,35 +213,14 @@ namespace Debond
 
 
 
-  std::vector<double>
-  MeanProblems::rests_for(const double loss, const std::vector<double> &D) const
-  {
-    // Half of an element's stiffness at the most: what is taken has to be
-    // small beside it for the energy to be that of the displacement.
-    constexpr double    largest = 0.5;
-    std::vector<double> rests;
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        const double allowed      = std::max(largest * available(i) - D[i], 0.);
-        const double of_stiffness = 0.5 * energies[i] / trace_constants[i];
-        rests.push_back(allowed * of_stiffness * n > loss ?
-                          loss / (of_stiffness * n) :
-                          allowed);
-      }
-    return rests;
-  }
-
-
-
   std::optional<MeanProblem>
   MeanProblems::try_mean_problem(const std::vector<CertifiedSide> &ranges,
                                  const Eigen::VectorXd            &means,
-                                 const std::vector<double>        &D,
-                                 const std::vector<double>        &rests) const
+                                 const std::vector<double>        &D) const
   {
     std::vector<double> weights(equilibrium.elements().size(), 1.);
     for (unsigned int i = 0; i < n; ++i)
-      weights[sides[i].element] -= (D[i] + rests[i]) / trace_constants[i];
+      weights[sides[i].element] -= D[i] / trace_constants[i];
     std::unique_ptr<const Condensation> condensed;
     try
       {
@@ -257,7 +235,6 @@ namespace Debond
 
     MeanProblem result;
     result.shifts   = D;
-    result.rests    = rests;
     result.constant = condensed->energy_at_zero();
     std::vector<BranchMinimum> kept_laws;
     const BranchMinimum        zero({{0., 0., 0.L, ""}});
@@ -343,17 +320,15 @@ namespace Debond
   MeanProblem
   MeanProblems::mean_problem(const std::vector<CertifiedSide> &ranges,
                              const Eigen::VectorXd            &means,
-                             std::vector<double>               D,
-                             std::vector<double>               rests) const
+                             std::vector<double>               D) const
   {
     constexpr unsigned int trials = 12;
     for (unsigned int trial = 0; trial < trials; ++trial)
       {
-        if (auto problem = try_mean_problem(ranges, means, D, rests))
+        if (auto problem = try_mean_problem(ranges, means, D))
           return std::move(*problem);
-        for (std::vector<double> *shifts : {&D, &rests})
-          for (double &shift : *shifts)
-            shift *= 0.5;
+        for (double &shift : D)
+          shift *= 0.5;
       }
     throw EquilibriumError("the equilibrated stresses are not determined by "
                            "the mean displacements of the contact sides");

@@ -87,10 +87,6 @@ namespace Debond
                 ranges[i].at_ends[end] =
                   intersection(ranges[i].at_ends[end],
                                range_at(end == 0 ? -1. : 1.));
-              if (problem.rests[i] > 0.)
-                ranges[i].deviation =
-                  std::min(ranges[i].deviation,
-                           radius / std::sqrt(problem.rests[i]));
             }
         }
       return ranges;
@@ -245,7 +241,6 @@ namespace Debond
     CertifiedSide  no_range = {};
     no_range.mean           = empty;
     no_range.at_ends        = {{empty, empty}};
-    no_range.deviation      = 0.;
     const unsigned int n_nodes =
       is_quick ? n_quick_nodes_of_ranges : n_nodes_of_ranges;
     std::vector<CertifiedSide> hulls(ranges.size(), no_range);
@@ -271,8 +266,6 @@ namespace Debond
                   for (unsigned int k = 0; k < 2; ++k)
                     hulls[i].at_ends[k] =
                       hull(hulls[i].at_ends[k], (*own)[i].at_ends[k]);
-                  hulls[i].deviation =
-                    std::max(hulls[i].deviation, (*own)[i].deviation);
                 }
             continue;
           }
@@ -283,8 +276,10 @@ namespace Debond
       // If there is none at all the ranges are left as they are.
       if (!hulls[i].mean.is_empty())
         {
-          hulls[i].ends = ranges[i].ends;
-          ranges[i]     = intersection(ranges[i], hulls[i]);
+          ranges[i].mean = intersection(ranges[i].mean, hulls[i].mean);
+          for (unsigned int k = 0; k < 2; ++k)
+            ranges[i].at_ends[k] =
+              intersection(ranges[i].at_ends[k], hulls[i].at_ends[k]);
         }
     return !ranges.empty() && !hulls[0].mean.is_empty();
   }

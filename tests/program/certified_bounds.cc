@@ -359,8 +359,7 @@ namespace
             result.u,
             parameters.solver.proof,
             []() { return true; },
-            earlier,
-            !is_solid);
+            earlier);
         };
         certificates.push_back(certify(random.kind, scene, nullptr));
         upper = certificates[0].upper;

@@ -133,17 +133,15 @@ namespace Debond
 
     /// Of the displacement @p u of @p solved, which is the scene, or the same
     /// on a finer mesh. @p proof: limits of branch and bound. @p earlier: of
-    /// the same scene on another mesh, whose bounds and what it knows of sides
-    /// are used if they are of the least J and of the loads as they are. If @p
-    /// is_for_finer, the sides have what finer meshes can use of them. Throws
-    /// EquilibriumError if no bound was found.
+    /// the same scene on another mesh, whose bounds are used if they are of the
+    /// least J and of the loads as they are. Throws EquilibriumError if no
+    /// bound was found.
     Certificate
     certify(const Scene<dim>               &solved,
             const DofVector                &u,
             const BranchAndBoundParameters &proof,
             const std::function<bool()>    &may_go_on,
-            const Certificate              *earlier      = nullptr,
-            const bool                      is_for_finer = false) const;
+            const Certificate              *earlier = nullptr) const;
 
   private:
     double

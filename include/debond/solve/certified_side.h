@@ -9,13 +9,12 @@
 #include <array>
 #include <limits>
 #include <optional>
-#include <vector>
 
 namespace Debond
 {
-  /// What each admissible displacement with J at most some value has on a part
-  /// of the contact boundary, a straight line: of its normal displacement u_nu
-  /// and the linear function p that is nearest to it in L2 of the part.
+  /// What each admissible displacement with J at most some value has on a side
+  /// of the contact boundary: of its normal displacement u_nu and the linear
+  /// function p that is nearest to it in L2 of the side.
   struct CertifiedSide
   {
     std::array<dealii::Point<2>, 2> ends;
@@ -30,9 +29,6 @@ namespace Debond
        {-std::numeric_limits<double>::infinity(),
         std::numeric_limits<double>::infinity()}}};
 
-    /// The norm of u_nu - p in L2 of the part is at most this.
-    double deviation = std::numeric_limits<double>::infinity();
-
     /// The piece of the law on which p is, if it is certain.
     std::optional<unsigned int> piece;
 
@@ -44,20 +40,6 @@ namespace Debond
     }
   };
 
-
-
-  /// What is known between @p ends, two points of @p sides: of the side they
-  /// are on, by lemma 4 of doc/reference/certificate.md; nothing if they are on
-  /// none. The piece of the law is left out.
-  CertifiedSide
-  known_between(const std::array<dealii::Point<2>, 2> &ends,
-                const std::vector<CertifiedSide>      &sides);
-
-
-
-  /// What both say; they have the same ends. The piece of the law is left out.
-  CertifiedSide
-  intersection(const CertifiedSide &a, const CertifiedSide &b);
 } // namespace Debond
 
 #endif

@@ -3,9 +3,9 @@
 #define debond_solve_global_bound_h
 
 #include <debond/elasticity/equilibrium_problem.h>
-#include <debond/optimization/branch_minimum.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/solve/certified_side.h>
+#include <debond/solve/mean_problem.h>
 
 #include <functional>
 #include <limits>
@@ -44,24 +44,15 @@ namespace Debond
    * A lower bound of the least J of the continuous problem, and where its
    * minimisers are (theorems 1 and 2 of doc/reference/certificate.md).
    *
-   * @p means: of u_nu on the contact sides, of a good displacement; @p upper:
-   * a value of J that is reached; @p energies: of its strains in the cells
-   * above the contact sides, for the choice of shifts; @p known: what is known
-   * on each contact side of displacements with J at most @p upper. If @p
-   * with_deviations, the result's sides have these, which takes one bound more.
-   * Throws EquilibriumError if there is no bound.
+   * @p means: of u_nu on the contact sides, of a good displacement; @p upper: a
+   * value of J that is reached. Throws EquilibriumError if there is no bound.
    */
   GlobalBound
-  bound_global(const EquilibriumProblem<2>      &equilibrium,
-               const std::vector<double>        &trace_constants,
-               const std::vector<BranchMinimum> &laws,
-               const Eigen::VectorXd            &means,
-               const std::vector<double>        &energies,
-               const double                      upper,
-               std::vector<CertifiedSide>        known,
-               const bool                        with_deviations,
-               const BranchAndBoundParameters   &proof,
-               const std::function<bool()>      &may_go_on);
+  bound_global(const MeanProblems             &problems,
+               const Eigen::VectorXd          &means,
+               const double                    upper,
+               const BranchAndBoundParameters &proof,
+               const std::function<bool()>    &may_go_on);
 } // namespace Debond
 
 #endif

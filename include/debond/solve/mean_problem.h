@@ -19,8 +19,7 @@ namespace Debond
   /// quadratic or m <= 0 are for is a function of some means s,
   ///     constant + 1/2 s'S s - g's + phi(s);
   /// the others, and after them the slopes k of all sides, are eliminated:
-  /// offset + to_others s are those that belong to s. J is at least this, and
-  /// 1/2 the sum of the rests times the squared deviations.
+  /// offset + to_others s are those that belong to s. J is at least this.
   struct MeanProblem
   {
     double constant;
@@ -30,10 +29,8 @@ namespace Debond
     Eigen::VectorXd                    g;
     std::unique_ptr<SeparableBranches> phi;
 
-    // Of the sides: D, the delta of lemma 4, and the pieces of the law that are
-    // certain (theorem 2).
+    // Of the sides: D, and the pieces of the law that are certain (theorem 2).
     std::vector<double>                      shifts;
-    std::vector<double>                      rests;
     std::vector<std::optional<unsigned int>> pieces;
 
     std::vector<unsigned int> kept; ///< sides of s
@@ -77,7 +74,7 @@ namespace Debond
 
 
   /**
-   * Makes these problems (theorems 1 and 2 and lemma 4 of
+   * Makes these problems (theorems 1 and 2 of
    * doc/reference/certificate.md) of a body, for shifts that are chosen here.
    * All that is given or returned by side is in the order of
    * EquilibriumProblem::contact_sides().
@@ -92,6 +89,18 @@ namespace Debond
                  const std::vector<double>        &trace_constants,
                  const std::vector<BranchMinimum> &laws,
                  const std::vector<double>        &energies);
+
+    const std::vector<EquilibriumProblem<2>::ContactSide> &
+    contact_sides() const
+    {
+      return sides;
+    }
+
+    const std::vector<BranchMinimum> &
+    laws_of_sides() const
+    {
+      return laws;
+    }
 
     /// Large enough for the law not to be rounded at the mean, if that can be
     /// with the given multiple of the bonds' stiffness.
@@ -114,19 +123,12 @@ namespace Debond
     losses(const MeanProblem     &problem,
            const Eigen::VectorXd &means_and_slopes) const;
 
-    /// What of a stiffness is left for deviations to be bounded with, beside
-    /// the shifts @p D: so much that it makes the bound lower by about @p
-    /// loss.
-    std::vector<double>
-    rests_for(const double loss, const std::vector<double> &D) const;
-
-    /// D and the rests are made smaller until there is one. At @p means it
+    /// D is made smaller until there is one. At @p means it
     /// measures its rounding. Throws EquilibriumError if there is none.
     MeanProblem
     mean_problem(const std::vector<CertifiedSide> &ranges,
                  const Eigen::VectorXd            &means,
-                 std::vector<double>               D,
-                 std::vector<double>               rests) const;
+                 std::vector<double>               D) const;
 
   private:
     /// Nothing if it is not convex in the slopes, or the means do not determine
@@ -134,8 +136,7 @@ namespace Debond
     std::optional<MeanProblem>
     try_mean_problem(const std::vector<CertifiedSide> &ranges,
                      const Eigen::VectorXd            &means,
-                     const std::vector<double>        &D,
-                     const std::vector<double>        &rests) const;
+                     const std::vector<double>        &D) const;
 
     /// The largest shift of a side: at least a tenth of an element's
     /// stiffness stays.
