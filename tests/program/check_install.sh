@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # check_install.sh DEBOND BUILD_DIRECTORY CMAKE: what is installed into an empty
-# directory runs there, and its pages find each other.
+# directory runs there, and its pages find each other; a program of its own is
+# built with the library; the Debian package has the same program.
 . "$(dirname "${BASH_SOURCE[0]}")/../common.sh"
 build=$2
 cmake=$3
@@ -15,6 +16,22 @@ cd work
 grep -Eq "status +success" log || fail "no success: $(cat log)"
 "$tests/program/check_links.py" "$prefix/share/doc/debond"
 [ -s "$prefix/share/doc/debond/LICENSE" ] || fail "no licence"
+
+# Sanitizers are options of whoever links.
+if ! grep -q "DEBOND_SANITIZE:BOOL=ON" "$build/CMakeCache.txt"; then
+  type=$(sed -n 's/^CMAKE_BUILD_TYPE:[A-Z]*=//p' "$build/CMakeCache.txt")
+  "$cmake" -S "$tests/../doc/develop/own-law" -B own -DCMAKE_BUILD_TYPE="$type" \
+    -DCMAKE_PREFIX_PATH="$prefix" >log 2>&1 &&
+    "$cmake" --build own >>log 2>&1 || fail "own_law is not built: $(cat log)"
+  own/own_law >log || fail "own_law: $(cat log)"
+fi
+
+"$(dirname "$cmake")/cpack" --config "$build/CPackConfig.cmake" -B deb >log 2>&1 ||
+  fail "no Debian package: $(cat log)"
+dpkg-deb -x deb/debond_*.deb root
+root/usr/bin/debond --version >log || fail "the packaged program fails: $(cat log)"
+dpkg-deb -f deb/debond_*.deb Depends | grep -q "libdeal.ii" ||
+  fail "the package does not depend on deal.II"
 
 # What the scripts install removes nothing: apt-get is told so.
 mkdir stub

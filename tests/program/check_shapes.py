@@ -102,7 +102,7 @@ def check_profile(body, s, force, tolerance, of_displacements):
         # At a corner there are several.
         require(any(abs(row["u_nu"] - s[i] - gap) <= of_displacements
                     and abs(row["normal_force"] - force[i]) <= tolerance[i]
-                    and abs(row["initial_gap"] - gap) <= EXACT("1e-12") * gap
+                    and abs(row["initial_gap"] - gap) <= EXACT("1e-12") * abs(gap)
                     for row in at), "wrong success: contact_profile.csv",
                 f"no row with u_nu = {s[i] + gap:.6e}, force {force[i]:.6e}, gap "
                 f"{gap:.6e}, but {at}")

@@ -432,6 +432,13 @@ class Scene:
                 self.mesh.style != "bricks"):  # which the program cuts
             self.add_part(draw, self.contact[0])
 
+    def holds_contact(self):
+        """Whether a clamped or moved side and a contact side have a vertex in common."""
+        held, touched = ({v for side in sides for face in self.mesh.sides[side]
+                          for v in face[0]}
+                         for sides in (self.clamped + self.moved, self.contact))
+        return bool(held & touched)
+
     def add_part(self, draw, side):
         """Bonds of a part of a side: of faces with their centre in it."""
         axis = draw.below(self.dim)
@@ -464,8 +471,10 @@ class Scene:
             bonds.stiffness = self.field(draw, a * draw.uniform(0.1, 1.), a)
             self.set(f"{law}Stepped/Factor", f"({bonds.stiffness})/{a!r}")
         if draw.chance(0.2):
-            bonds.gap = self.field(draw, M * draw.uniform(0., 1.5),
-                                   M * draw.uniform(0., 1.5))
+            # Negative where nothing holds the body in the foundation.
+            sign = -1. if draw.chance(0.3) and not self.holds_contact() else 1.
+            bonds.gap = self.field(draw, sign * M * draw.uniform(0., 1.5),
+                                   sign * M * draw.uniform(0., 1.5))
             self.set(f"{law}Initial gap{name}", str(bonds.gap))
         if name and draw.chance(0.3):
             bonds.is_tangential_fixed = draw.chance(0.5)
@@ -474,22 +483,22 @@ class Scene:
 
     def add_method(self, draw):
         """How it is solved."""
-        method = draw.choice(["automatic"] * 5 + ["majorise minimise"] * 3 + (
-            ["energy bundle"] * 2 + ["euclidean bundle", "multigrid"]
-            if self.clamped else []))
-        is_direct = self.clamped and method not in ("euclidean bundle", "multigrid")
+        method = draw.choice(["automatic"] * 5 + ["majorise minimise"] * 3 +
+                             ["multigrid"] * 2 + (
+            ["energy bundle"] * 2 + ["euclidean bundle"] if self.clamped else []))
+        is_condensed = self.clamped and method != "euclidean bundle"
         self.set("Solver/Linear solver",
                  "multigrid" if method == "multigrid" else "direct")
         self.set("Solver/Method",
                  "majorise minimise" if method == "multigrid" else method)
         self.set("Solver/Euclidean bundle/Maximum iterations", "3000")
         self.set("Solver/Search", draw.choice(
-            ["automatic", "automatic", "full", "none"]) if is_direct else "automatic")
-        is_proved = is_direct and self.quadrature == "nodal" and draw.chance(0.3)
+            ["automatic", "automatic", "full", "none"]) if is_condensed else "automatic")
+        is_proved = is_condensed and self.quadrature == "nodal" and draw.chance(0.3)
         self.set("Solver/Prove", "true" if is_proved else "false")
         self.set("Solver/Proof/Maximum time", "10")
         self.set("Solver/Proof/Threads", "1")
-        if is_direct and not is_proved and not method.startswith("energy") and (
+        if is_condensed and not is_proved and not method.startswith("energy") and (
                 draw.chance(0.1)):
             self.set("Load path/Factors", "0.3, 0.7, 1")
         self.set("Output/Displacement", "true")

@@ -45,7 +45,7 @@ namespace Debond
     class Line;
 
     const Product                multiply;
-    const DofVector             &f;
+    const DofVector              f;
     const ContactSpace<dim>     &contact;
     const AdhesionIntegral<dim> &adhesion;
   };

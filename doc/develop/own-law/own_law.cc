@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A block on a foundation, with a law of its own: bonds of 100 that turn into
+// bonds of 50 before they break. Its top is lifted by 0.03, its sides slide, so
+// that all is known: s = -E d / (E + 50) = -0.02.
+
+#include <deal.II/base/function.h>
+
+#include <debond/contact/adhesion_integral.h>
+#include <debond/elasticity/contact_condensation.h>
+#include <debond/mesh/box.h>
+#include <debond/optimization/majorise/condensed_problem.h>
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+using namespace Debond;
+
+int
+main()
+{
+  // The mesh: a deal.II triangulation of simplices.
+  dealii::Triangulation<2> mesh;
+  make_box<2>({{{1., 1.}}, {{8, 8}}}, mesh);
+  const auto &sides = box_sides<2>();
+
+  // What resists: unknowns, supports, A and f.
+  BoundaryConditions conditions;
+  conditions.contact                       = {sides.at("bottom")};
+  conditions.tangential_displacement_fixed = false;
+  const double lift                        = 0.03;
+  Supports<2>  supports;
+  supports.displacements = {
+    {"sides", {sides.at("left"), sides.at("right")}, /*is_roller=*/true},
+    {"top",
+     {sides.at("top")},
+     false,
+     {{false, true}},
+     std::make_shared<dealii::Functions::ConstantFunction<2>>(lift, 2)}};
+  ElasticProblem<2> problem(mesh, conditions, supports);
+  Material          material;
+  material.young_modulus = 100.;
+  material.poisson_ratio = 0.;
+  problem.assemble(material, Loads<2>());
+
+  // What happens at the contact boundary: the law is the least of its branches
+  // {curvature, slope, constant, name}.
+  const AdhesiveLaw          law({{100., 0., 0., "glued"},
+                                  {50., 0., 0.005, "torn"},
+                                  {0., 0., 0.1, "broken"}});
+  const ContactSpace<2>     &contact = problem.unknowns().contact();
+  const ContactQuadrature<2> quadrature(
+    {ContactQuadratureParameters::Rule::nodal});
+  const AdhesionIntegral<2> bonds(contact.boundary(), law, quadrature);
+
+  // What contact sees of the body: 1/2 s'S s - g's + c_0.
+  const Condensation condensed = condense_to_contact(problem, bonds);
+
+  // How it is minimised, from rest.
+  Eigen::VectorXd  s = contact.at_rest();
+  CondensedProblem minimised(condensed.schur_complement(),
+                             condensed.load(),
+                             bonds,
+                             s);
+  const auto       result = MajoriseMinimise({}).minimize(minimised);
+  const double     J      = result.functional + condensed.energy_at_zero();
+  std::cout << to_string(result.status) << ", s = " << s.mean() << ", J = " << J
+            << std::endl;
+  return result.status == SolverStatus::success &&
+             std::abs(s.mean() + 0.02) < 1e-10 && std::abs(J - 0.02) < 1e-10 ?
+           0 :
+           1;
+}
