@@ -105,7 +105,7 @@ namespace Debond
       "Mesh/Rotation",
       body.box.rotation,
       number("in [-360, 360]", [](double x) { return std::abs(x) <= 360.; }),
-      "Turns the box about the origin in the x-y plane. The sides keep their names; loads are not turned",
+      "Turns the body about the origin in the x-y plane. The sides keep their names; loads are not turned",
       "degrees");
     table.bind(
       "Mesh/File",
@@ -188,7 +188,6 @@ namespace Debond
                              "this belongs to Source = " + name,
                              "Mesh/Source");
     };
-    belong_to(Source::box, "box", "Mesh/Rotation");
     belong_to(Source::file, "file", "Mesh/File, Mesh/Scale, Mesh/Size");
     belong_to(Source::generator, "generator", "Mesh/Generator, Mesh/Arguments");
     if (body.source == Source::box)

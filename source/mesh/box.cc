@@ -156,15 +156,7 @@ namespace Debond
 
     if (box.rotation != 0.)
       {
-        namespace Rotations = dealii::Physics::Transformations::Rotations;
-        const double angle  = box.rotation * dealii::numbers::PI / 180.;
-        dealii::Tensor<2, dim> rotation;
-        if constexpr (dim == 2)
-          rotation = Rotations::rotation_matrix_2d(angle);
-        else
-          rotation =
-            Rotations::rotation_matrix_3d(dealii::Tensor<1, 3>({0., 0., 1.}),
-                                          angle);
+        const auto rotation = rotation_matrix<dim>(box.rotation);
         for (dealii::Point<dim> &vertex : result.vertices)
           vertex = dealii::Point<dim>(rotation * vertex);
       }
@@ -324,14 +316,31 @@ namespace Debond
 
 
 
-  template decltype(box_sides<2>)      box_sides<2>;
-  template decltype(box_sides<3>)      box_sides<3>;
-  template decltype(box_boundaries<2>) box_boundaries<2>;
-  template decltype(box_boundaries<3>) box_boundaries<3>;
-  template decltype(make_box<2>)       make_box<2>;
-  template decltype(make_box<3>)       make_box<3>;
-  template decltype(part_of_box<2>)    part_of_box<2>;
-  template decltype(part_of_box<3>)    part_of_box<3>;
+  template <int dim>
+  dealii::Tensor<2, dim>
+  rotation_matrix(const double degrees)
+  {
+    namespace Rotations = dealii::Physics::Transformations::Rotations;
+    const double angle  = degrees * dealii::numbers::PI / 180.;
+    if constexpr (dim == 2)
+      return Rotations::rotation_matrix_2d(angle);
+    else
+      return Rotations::rotation_matrix_3d(dealii::Tensor<1, 3>({0., 0., 1.}),
+                                           angle);
+  }
+
+
+
+  template decltype(rotation_matrix<2>) rotation_matrix<2>;
+  template decltype(rotation_matrix<3>) rotation_matrix<3>;
+  template decltype(box_sides<2>)       box_sides<2>;
+  template decltype(box_sides<3>)       box_sides<3>;
+  template decltype(box_boundaries<2>)  box_boundaries<2>;
+  template decltype(box_boundaries<3>)  box_boundaries<3>;
+  template decltype(make_box<2>)        make_box<2>;
+  template decltype(make_box<3>)        make_box<3>;
+  template decltype(part_of_box<2>)     part_of_box<2>;
+  template decltype(part_of_box<3>)     part_of_box<3>;
   template class Box<2>;
   template class Box<3>;
 } // namespace Debond

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/grid/grid_tools.h>
+
 #include <debond/mesh/make_body.h>
 #include <debond/mesh/mesh_body.h>
 
@@ -6,6 +8,22 @@ namespace Debond
 {
   namespace
   {
+    template <int dim>
+    void
+    rotate(const double degrees, dealii::Triangulation<dim> &mesh)
+    {
+      if (degrees == 0.)
+        return;
+      const auto rotation = rotation_matrix<dim>(degrees);
+      dealii::GridTools::transform(
+        [&rotation](const dealii::Point<dim> &point) {
+          return dealii::Point<dim>(rotation * point);
+        },
+        mesh);
+    }
+
+
+
     template <int dim>
     std::shared_ptr<BodyDescription>
     make(const BodyParameters &parameters)
@@ -19,12 +37,14 @@ namespace Debond
                                     parameters.scale,
                                     parameters.size);
               return std::make_shared<MeshBody<dim>>(
-                [coarse](const unsigned int n_refinements) {
+                [coarse, degrees = parameters.box.rotation](
+                  const unsigned int n_refinements) {
                   auto source = std::make_unique<SourceMesh<dim>>();
                   source->mesh.copy_triangulation(coarse->mesh);
                   source->names        = coarse->names;
                   source->inner_groups = coarse->inner_groups;
                   source->refine(n_refinements);
+                  rotate(degrees, source->mesh);
                   return source;
                 },
                 parameters.n_refinements);
@@ -32,9 +52,14 @@ namespace Debond
           case BodyParameters::Source::generator:
             // Made anew, as manifolds do not survive a copy.
             return std::make_shared<MeshBody<dim>>(
-              [name = parameters.generator, arguments = parameters.arguments](
-                const unsigned int n_refinements) {
-                return generate_mesh<dim>(name, arguments, n_refinements);
+              [name      = parameters.generator,
+               arguments = parameters.arguments,
+               degrees =
+                 parameters.box.rotation](const unsigned int n_refinements) {
+                auto source =
+                  generate_mesh<dim>(name, arguments, n_refinements);
+                rotate(degrees, source->mesh);
+                return source;
               },
               parameters.n_refinements);
           default:

@@ -167,7 +167,9 @@ namespace Debond
                       const std::string &method,
                       Record            &record)
     {
-      const bool is_bundle = method != SolverMethod::majorise_minimise;
+      // A load path has many histories, which are added up.
+      const bool is_bundle = method != SolverMethod::majorise_minimise &&
+                             result.majorise_history.empty();
       record.add("/iterations/total", result.iterations);
       record.add("/iterations/long", result.long_steps);
       record.add("/iterations/short", result.short_steps);

@@ -41,40 +41,37 @@ namespace Debond
 
 
 
+    /// From @p s, which becomes the result.
     template <int dim>
-    void
-    solve_by_energy_bundle(ProximalBundleParameters bundle,
-                           const Scene<dim>        &scene,
-                           const Condensation      &condensed,
-                           Watch                   &watch,
-                           Eigen::VectorXd         &s,
-                           SolveResult             &result)
+    ProximalBundleResult
+    minimise_by_energy_bundle(ProximalBundleParameters       bundle,
+                              const ContactSpace<dim>       &contact,
+                              const Condensation            &condensed,
+                              const AdhesionIntegral<dim>   &bonds,
+                              const ProximalBundle::Monitor &monitor,
+                              Eigen::VectorXd               &s)
     {
       // The condensed functional has the same form on the normals alone.
-      const ContactSpace<dim> contact =
-        scene.problem().unknowns().contact().condensed();
-      const MatrixView                 S = condensed.schur_complement();
+      const ContactSpace<dim>          normals = contact.condensed();
+      const MatrixView                 S       = condensed.schur_complement();
       const dealii::FullMatrix<double> matrix(S.rows(), S.cols(), S.data());
       const Vector load(condensed.load().begin(), condensed.load().end());
       const Functional<dim> functional(
         [&matrix](Vector &dst, const Vector &src) { matrix.vmult(dst, src); },
         load,
-        contact,
-        scene.adhesion());
+        normals,
+        bonds);
 
       // Without loads any tolerance will do.
       bundle.epsilon_s =
         std::max(bundle.epsilon_s * condensed.energy_without_contact(),
                  std::numeric_limits<double>::min());
-      MetricDirection direction(S, scene.adhesion(), bundle.bundle_size);
-      Vector          x(s.begin(), s.end());
-      add_bundle_result(ProximalBundle(bundle).minimize(
-                          functional, direction, x, std::ref(watch)),
-                        result);
+      MetricDirection            direction(S, bonds, bundle.bundle_size);
+      Vector                     x(s.begin(), s.end());
+      const ProximalBundleResult result =
+        ProximalBundle(bundle).minimize(functional, direction, x, monitor);
       s = eigen_view(x);
-      // The functional differs from J by the energy at s = 0.
-      for (BundleIteration &iteration : result.bundle_history)
-        iteration.functional += condensed.energy_at_zero();
+      return result;
     }
 
 
@@ -132,6 +129,7 @@ namespace Debond
 
       CondensedSolver(const MethodChoice &choice, const Scene<dim> &scene)
         : problem(scene.problem())
+        , is_by_bundle(choice.method == SolverMethod::energy_bundle)
         , whole(condense(choice, scene))
         , free_motions(free_motions_of_contact(problem.unknowns()))
         , s(problem.unknowns().contact().at_rest())
@@ -140,12 +138,15 @@ namespace Debond
       MajoriseMinimiseResult
       minimise(const LoadFactors                factors,
                const AdhesionIntegral<dim>     &bonds,
-               const MajoriseMinimise          &method,
+               const SolverParameters          &parameters,
                const MajoriseMinimise::Monitor &monitor,
-               const MayGoOn &) override
+               const MayGoOn                   &may_go_on) override
       {
         here = std::make_unique<const Condensation>(
           at_factors(whole, problem, bonds, factors));
+        // Without loads the bundle's tolerance has nothing to be relative to.
+        if (is_by_bundle && here->energy_without_contact() > 0.)
+          return by_bundle(parameters.energy_bundle, bonds, may_go_on);
         const Eigen::VectorXd g =
           load_at_contact(problem, *here, factors, free_motions);
         CondensedProblem       condensed(whole.schur_complement(),
@@ -154,7 +155,9 @@ namespace Debond
                                    s,
                                    free_motions,
                                    stiffness_at_contact(problem));
-        MajoriseMinimiseResult result = method.minimize(condensed, monitor);
+        MajoriseMinimiseResult result =
+          MajoriseMinimise(parameters.majorise_minimise)
+            .minimize(condensed, monitor);
         result.functional += here->energy_at_zero();
         for (MajoriseMinimiseIteration &iteration : result.history)
           iteration.functional += here->energy_at_zero();
@@ -187,7 +190,37 @@ namespace Debond
       }
 
     private:
+      /// v_k stands for the residual.
+      MajoriseMinimiseResult
+      by_bundle(const ProximalBundleParameters &parameters,
+                const AdhesionIntegral<dim>    &bonds,
+                const MayGoOn                  &may_go_on)
+      {
+        const ProximalBundleResult bundle = minimise_by_energy_bundle<dim>(
+          parameters,
+          problem.unknowns().contact(),
+          *here,
+          bonds,
+          [&may_go_on](const BundleIteration &) { return may_go_on(); },
+          s);
+        MajoriseMinimiseResult result;
+        result.status     = bundle.status;
+        result.functional = bundle.functional + here->energy_at_zero();
+        result.residual   = bundle.v;
+        result.message    = bundle.message;
+        for (const BundleIteration &iteration : bundle.history)
+          result.history.push_back(
+            {iteration.iteration,
+             iteration.functional + here->energy_at_zero(),
+             iteration.v,
+             iteration.qp_steps,
+             0,
+             0});
+        return result;
+      }
+
       const ElasticProblem<dim> &problem;
+      const bool                 is_by_bundle;
       const Condensation         whole;
       const Eigen::MatrixXd      free_motions;
       Eigen::VectorXd            s;
@@ -241,8 +274,19 @@ namespace Debond
       s = problem.unknowns().contact().trace(*start).cwiseMin(0.);
     // If no contact node is free, there is no metric either.
     if (choice.method == SolverMethod::energy_bundle && s.size() > 0)
-      solve_by_energy_bundle(
-        parameters.energy_bundle, scene, condensed, watch, s, result);
+      {
+        add_bundle_result(
+          minimise_by_energy_bundle<dim>(parameters.energy_bundle,
+                                         problem.unknowns().contact(),
+                                         condensed,
+                                         scene.adhesion(),
+                                         std::ref(watch),
+                                         s),
+          result);
+        // The functional differs from J by the energy at s = 0.
+        for (BundleIteration &iteration : result.bundle_history)
+          iteration.functional += condensed.energy_at_zero();
+      }
     else
       solve_by_majorise_minimise(MajoriseMinimise(parameters.majorise_minimise),
                                  scene,

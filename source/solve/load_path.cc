@@ -283,7 +283,7 @@ namespace Debond
         const MajoriseMinimiseResult minimum = solver->minimise(
           factors,
           *bonds,
-          MajoriseMinimise(solver_parameters.majorise_minimise),
+          solver_parameters,
           [this](const auto &) { return may_go_on(); },
           may_go_on);
         if (minimum.status == SolverStatus::interrupted && !steps.empty())

@@ -126,10 +126,8 @@ namespace Debond
                                      const std::string &reason) {
         throw BadInput({problem.scene + ": Load path/" + entry + ' ' + reason});
       };
-      if (choice.method != SolverMethod::majorise_minimise)
-        refuse("Factors",
-               "needs Solver/Method = majorise minimise or automatic, not " +
-                 choice.method);
+      if (choice.method == SolverMethod::euclidean_bundle)
+        refuse("Factors", "needs another Solver/Method than " + choice.method);
       if (proves)
         refuse("Factors",
                "follows minima that need not be global: in place of "

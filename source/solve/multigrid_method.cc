@@ -108,7 +108,7 @@ namespace Debond
       MajoriseMinimiseResult
       minimise(const LoadFactors                factors,
                const AdhesionIntegral<dim>     &bonds,
-               const MajoriseMinimise          &method,
+               const SolverParameters          &parameters,
                const MajoriseMinimise::Monitor &monitor,
                const MayGoOn                   &may_go_on) override
       {
@@ -118,8 +118,10 @@ namespace Debond
         if (load.all_zero())
           u = 0.;
         DisplacementProblem minimised(problem, load, bonds, *cycle, u);
-        minimised.may_go_on           = may_go_on;
-        MajoriseMinimiseResult result = method.minimize(minimised, monitor);
+        minimised.may_go_on = may_go_on;
+        MajoriseMinimiseResult result =
+          MajoriseMinimise(parameters.majorise_minimise)
+            .minimize(minimised, monitor);
         const double energy = prescribed_energy(problem, bonds, factors);
         result.functional += energy;
         for (MajoriseMinimiseIteration &iteration : result.history)
@@ -202,8 +204,7 @@ namespace Debond
     const auto may_go_on = [&watch]() { return watch.may_go_on(); };
     add_majorise_result(solver.minimise(1.,
                                         scene.adhesion(),
-                                        MajoriseMinimise(
-                                          parameters.majorise_minimise),
+                                        parameters,
                                         std::ref(watch),
                                         may_go_on),
                         0.,

@@ -86,7 +86,7 @@ def path_rows():
     """Of the load path of the last run, by the titles of the columns."""
     with open("output/load_path.csv") as table:
         return [{title: float(value) for title, value in row.items()
-                 if title not in ("status", "minimum") and value}
+                 if title not in ("status", "minimum", "fronts") and value}
                 for row in csv.DictReader(table)]
 
 

@@ -191,9 +191,13 @@ class Result:
                      default=ZERO)
         lengths = PROMISE * (min(EXACT(body.scene.M) * min(
             1, self.scale / self.strength), size) if self.strength else size)
+        # s comes from Cartesian components, which are rounded.
+        lengths = max(lengths, 8 * EPSILON * size)
         violation = law_violation(body, s, self.force, lengths, self.of_force)
         tight = law_violation(body, s, self.force, EXACT("1e-10") * size, self.of_force)
-        fixed = max((abs(self.u[d] - body.G[d]) for d in range(body.n)
+        # In Cartesian components beside gaps, which are rounded.
+        of_gaps = 4 * EPSILON * max(map(abs, body.G))
+        fixed = max((abs(self.u[d] - body.G[d]) - of_gaps for d in range(body.n)
                      if body.kinds[d] == "fixed"), default=ZERO)
         for name, value, limit in (
                 ("equilibrium", inside / largest, PROMISE if self.is_rough else BETTER),

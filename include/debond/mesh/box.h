@@ -29,6 +29,11 @@ namespace Debond
   BoundaryNames
   box_boundaries();
 
+  /// By an angle in degrees in the x-y plane.
+  template <int dim>
+  dealii::Tensor<2, dim>
+  rotation_matrix(const double degrees);
+
   /// The crossed mesh of a box with the boundary ids of box_sides(). Throws
   /// std::invalid_argument if a length is not positive or there are no cells in
   /// a direction.

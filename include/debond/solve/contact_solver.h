@@ -5,6 +5,7 @@
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/load_factors.h>
 #include <debond/elasticity/refinement.h>
+#include <debond/input/solver_parameters.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
@@ -14,10 +15,10 @@
 namespace Debond
 {
   /**
-   * Minimises J on one mesh by majorise-minimise, under one load after the
-   * other, each time from the point before. What does not depend on loads is
-   * made once: a factorisation of A, or a multigrid cycle. All functions but
-   * point() are to be called by all ranks.
+   * Minimises J on one mesh, by majorise-minimise unless another method was
+   * chosen, under one load after the other, each time from the point before.
+   * What does not depend on loads is made once: a factorisation of A, or a
+   * multigrid cycle. All functions but point() are to be called by all ranks.
    */
   template <int dim>
   class ContactSolver
@@ -32,7 +33,7 @@ namespace Debond
     virtual MajoriseMinimiseResult
     minimise(const LoadFactors                factors,
              const AdhesionIntegral<dim>     &bonds,
-             const MajoriseMinimise          &method,
+             const SolverParameters          &parameters,
              const MajoriseMinimise::Monitor &monitor,
              const MayGoOn                   &may_go_on) = 0;
 
