@@ -108,7 +108,7 @@ namespace Debond
       "",
       Pattern("nothing, or numbers and ranges FIRST:STEP:LAST, separated by "
               "commas"),
-      "Multiples of all loads that are applied one after the other, each solved from the state before it, the first one from rest, such as '0:0.05:1.2, 1.2:-0.05:0' for loading and unloading; empty for the loads as they are. Needs majorise minimise",
+      "Multiples of all loads that are applied one after the other, each solved from the state before it, the first one from rest, such as '0:0.05:1.2, 1.2:-0.05:0' for loading and unloading; empty for the loads as they are. Needs another method than euclidean bundle",
       "none",
       [&load_path](const std::string &text) {
         load_path.factors = parse_load_factors(text, true);
