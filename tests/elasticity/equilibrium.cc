@@ -546,26 +546,40 @@ namespace
 
 
 
+  /// What is prescribed has to be linear on each side.
   void
-  test_refusals()
+  test_prescribed()
   {
-    Bar         bar(10, 2);
-    Supports<2> gap, moved;
-    gap.gaps[*bar.conditions.contact.begin()] = {
-      "", std::make_shared<dealii::Functions::ConstantFunction<2>>(1., 1)};
-    print_error([&]() {
-      EquilibriumProblem<2>(
-        bar.mesh, bar.conditions, gap, bar.material, bar.loads);
-    });
-    moved.displacements.push_back({"right",
-                                   bar.conditions.clamped,
-                                   false,
-                                   {{false, true}},
-                                   function("0; 1")});
-    print_error([&]() {
-      EquilibriumProblem<2>(
-        bar.mesh, bar.conditions, moved, bar.material, bar.loads);
-    });
+    Bar        bar(10, 2);
+    const auto print = [&](const std::string &name,
+                           const Supports<2> &supports) {
+      std::cout << name << " is exact: "
+                << (EquilibriumProblem<2>(bar.mesh,
+                                          bar.conditions,
+                                          supports,
+                                          bar.material,
+                                          bar.loads)
+                        .loads_are_exact() ?
+                      "yes" :
+                      "no")
+                << std::endl;
+    };
+    for (const std::string power : {"", "^2"})
+      {
+        Supports<2> gap, moved;
+        auto        distance = std::make_shared<dealii::FunctionParser<2>>(1);
+        distance->initialize("x,y",
+                             "x" + power,
+                             std::map<std::string, double>());
+        gap.gaps[*bar.conditions.contact.begin()] = {"", distance};
+        print("a gap of x" + power, gap);
+        moved.displacements.push_back({"right",
+                                       bar.conditions.clamped,
+                                       false,
+                                       {{false, true}},
+                                       function("0; y" + power)});
+        print("a displacement of y" + power, moved);
+      }
   }
 } // namespace
 
@@ -590,5 +604,5 @@ main(int argc, char *[])
   test_trace_constants();
   test_constants_of_triangles();
   test_temperature();
-  test_refusals();
+  test_prescribed();
 }

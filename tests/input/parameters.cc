@@ -168,7 +168,6 @@ namespace
             "Mesh/Arguments=0 : 1 : true",
             "Boundary conditions/Clamped boundaries=0",
             "Boundary conditions/Contact boundary=1",
-            "Mesh/Rotation=7",
             "Mesh/Scale=3"},
            {"Material/Thermal expansion=1e-6"},
            {"Loads/Temperature change=5"},
