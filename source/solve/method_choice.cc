@@ -269,7 +269,7 @@ namespace Debond
             if (!reason.empty())
               choice.reason += (choice.reason.empty() ? "" : "; ") +
                                ("by multigrid, since " + reason);
-            if (std::max(direct_seconds, multigrid_seconds) >
+            if (std::max(direct_seconds, needs_S ? 0. : multigrid_seconds) >
                 seconds_that_matter)
               choice.reason +=
                 (choice.reason.empty() ? "" : "; ") +

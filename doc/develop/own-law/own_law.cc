@@ -13,6 +13,7 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <string>
 
 using namespace Debond;
 
@@ -30,13 +31,15 @@ main()
   conditions.tangential_displacement_fixed = false;
   const double lift                        = 0.03;
   Supports<2>  supports;
-  supports.displacements = {
-    {"sides", {sides.at("left"), sides.at("right")}, /*is_roller=*/true},
+  for (const std::string side : {"left", "right"})
+    supports.displacements.push_back(
+      {side, {sides.at(side)}, /*is_roller=*/true});
+  supports.displacements.push_back(
     {"top",
      {sides.at("top")},
      false,
      {{false, true}},
-     std::make_shared<dealii::Functions::ConstantFunction<2>>(lift, 2)}};
+     std::make_shared<dealii::Functions::ConstantFunction<2>>(lift, 2)});
   ElasticProblem<2> problem(mesh, conditions, supports);
   Material          material;
   material.young_modulus = 100.;
