@@ -104,7 +104,7 @@ namespace Debond
         const OwnEntries own = own_entries(matrix);
         if (n_eliminated > 0)
           factorize(own);
-        else
+        else if (n_kept > 0)
           {
             // MUMPS wants something to eliminate.
             for (std::size_t k = 0; k < own.values.size(); ++k)
