@@ -39,7 +39,6 @@ namespace Debond
       return hull(at_ends[0], at_ends[1]);
     }
   };
-
 } // namespace Debond
 
 #endif

@@ -13,9 +13,9 @@
 namespace Debond
 {
   /// Minimises the functional of the scene, by the given method. Iterations are
-  /// printed to @p out unless it is null. Methods with a factorisation begin at
-  /// @p start, if there is one. Ranks that share a scene call it together, with
-  /// a method that has levels; the first one has J and the notes.
+  /// printed to @p out unless it is null. All methods but the Euclidean bundle
+  /// begin at @p start, if there is one. Ranks that share a scene call it
+  /// together, and all get the result.
   template <int dim>
   SolveResult
   solve(const MethodChoice     &choice,
