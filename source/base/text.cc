@@ -2,6 +2,7 @@
 #include <debond/base/text.h>
 
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -102,5 +103,19 @@ namespace Debond
   {
     const std::string text = scientific_below(-value, digits);
     return text[0] == '-' ? text.substr(1) : "-" + text;
+  }
+
+
+
+  std::string
+  as_title(const std::string &name)
+  {
+    std::string title;
+    for (const char c : name)
+      if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+        title += c;
+      else if (c == ' ' || c == '_' || c == '-')
+        title += '_';
+    return title;
   }
 } // namespace Debond

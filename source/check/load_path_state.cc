@@ -1,29 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/text.h>
 #include <debond/check/broken_zone.h>
 #include <debond/check/load_path_state.h>
 
 #include <algorithm>
-#include <cctype>
 
 namespace Debond
 {
   namespace
   {
-    /// A name as a part of the title of a column.
-    std::string
-    as_title(const std::string &text)
-    {
-      std::string name;
-      for (const char c : text)
-        if (std::isalnum(static_cast<unsigned char>(c)) != 0)
-          name += c;
-        else if (c == ' ' || c == '_' || c == '-')
-          name += '_';
-      return name;
-    }
-
-
-
     /// LoadPathState::unit_displacement_work.
     template <int dim>
     double
@@ -53,8 +38,6 @@ namespace Debond
   LoadPathState<dim>
   load_path_state(const ElasticProblem<dim>   &problem,
                   const AdhesionIntegral<dim> &adhesion,
-                  const Probes<dim>           &means,
-                  const Probes<dim>           &probes,
                   const LoadFactors            factors,
                   const DofVector             &u,
                   const Verification<dim>     &verification)
@@ -130,13 +113,8 @@ namespace Debond
     state.broken_zone          = verification.broken_zone;
     state.fronts = fronts(boundary, adhesion.adhesive_law(), adhesion, s);
     state.dissipated_energy = adhesion.dissipated_energy();
-    const auto add = [&state](const std::string &kind, const auto &vectors) {
-      for (const auto &[name, vector] : vectors)
-        state.vectors.emplace_back(kind + as_title(name), vector);
-    };
-    add("reaction_", verification.reactions);
-    add("mean_", means.values(problem, u, factors));
-    add("probe_", probes.values(problem, u, factors));
+    for (const auto &[name, vector] : verification.reactions)
+      state.vectors.emplace_back("reaction_" + as_title(name), vector);
     return state;
   }
 

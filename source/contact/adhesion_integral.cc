@@ -98,7 +98,7 @@ namespace Debond
   {
     collect_points();
     lump_nodal_points();
-    if (!boundary.held_vertices.empty() || !least_of_nodes.empty())
+    if (!boundary.held_vertices.empty() || !broken.nodes.empty())
       phi_at_zero = energy(Eigen::VectorXd::Zero(boundary.nodes.size()));
   }
 
@@ -110,37 +110,47 @@ namespace Debond
   {
     if (!quadrature.is_nodal())
       {
-        least_of_points.resize(point_list.size(), 0);
-        least_of_nodes.assign(boundary.nodes.size(), law.branches().size() - 1);
+        broken.points.resize(point_list.size(), 0);
+        broken.nodes.assign(boundary.nodes.size(), law.branches().size() - 1);
         for (unsigned int q = 0; q < point_list.size(); ++q)
           {
             const Point  &point = point_list[q];
-            unsigned int &least = least_of_points[q];
+            unsigned int &least = broken.points[q];
             least               = std::max(least,
                              law.branches().index(point.trace(s) /
                                                   point.bonds.stretch));
             for (unsigned int k = 0; k < point.n_nodes; ++k)
-              least_of_nodes[point.nodes[k]] =
-                std::min(least_of_nodes[point.nodes[k]], least);
+              broken.nodes[point.nodes[k]] =
+                std::min(broken.nodes[point.nodes[k]], least);
           }
         update_points();
         return;
       }
 
-    least_of_nodes.resize(boundary.nodes.size(), 0);
-    least_of_held.resize(boundary.held_vertices.size(), 0);
+    broken.nodes.resize(boundary.nodes.size(), 0);
+    broken.held.resize(boundary.held_vertices.size(), 0);
     const auto raise =
-      [this](const double trace, const BondScale &bonds, unsigned int &least) {
-        least = std::max(least, law.branches().index(trace / bonds.stretch));
+      [this](const double trace, const BondScale &bonds, unsigned int &piece) {
+        piece = std::max(piece, law.branches().index(trace / bonds.stretch));
       };
     for (unsigned int i = 0; i < s.size(); ++i)
-      raise(s(i), bonds_at(i), least_of_nodes[i]);
+      raise(s(i), bonds_at(i), broken.nodes[i]);
     for (const auto &face : boundary.faces)
       for (unsigned int k = 0; k < dim; ++k)
-        if (face.is_held(k) && !least_of_held.empty())
+        if (face.is_held(k) && !broken.held.empty())
           raise(held_trace(face, k),
                 bonds_at(face, k),
-                least_of_held[face.held[k]]);
+                broken.held[face.held[k]]);
+    update_points();
+  }
+
+
+
+  template <int dim>
+  void
+  AdhesionIntegral<dim>::set_memory(const BondMemory &memory)
+  {
+    broken = memory;
     update_points();
   }
 
@@ -154,7 +164,7 @@ namespace Debond
   {
     if (!face.is_held(vertex))
       return least_piece(face.nodes[vertex]);
-    return least_of_held.empty() ? 0 : least_of_held[face.held[vertex]];
+    return broken.held.empty() ? 0 : broken.held[face.held[vertex]];
   }
 
 
@@ -165,7 +175,7 @@ namespace Debond
     const typename ContactBoundary<dim>::Face &face,
     const std::array<double, dim>             &barycentric) const
   {
-    if (least_of_nodes.empty())
+    if (broken.nodes.empty())
       return 0;
     if (quadrature.is_nodal())
       return least_piece_at(face,
@@ -188,8 +198,8 @@ namespace Debond
             nearest = q;
           }
       }
-    return least_of_points[(&face - boundary.faces.data()) * points.size() +
-                           nearest];
+    return least
+      .points[(&face - boundary.faces.data()) * points.size() + nearest];
   }
 
 
@@ -250,7 +260,7 @@ namespace Debond
   AdhesionIntegral<dim>::dissipated_energy() const
   {
     double sum = 0.;
-    if (!least_of_nodes.empty())
+    if (!broken.nodes.empty())
       for (const Point &point : point_list)
         sum +=
           point.weight * point.bonds.energy * law.value(0., point.least_piece);
@@ -414,8 +424,8 @@ namespace Debond
                   point.bonds       = bonds_at(face, k);
                   point.least_piece = least_piece_at(face, k);
                 }
-            if (!least_of_points.empty())
-              point.least_piece = least_of_points[point_list.size()];
+            if (!broken.points.empty())
+              point.least_piece = broken.points[point_list.size()];
             for (unsigned int k = 0; k < n_face_nodes; ++k)
               if (face.is_held(k))
                 point.offset += shape[k] * held_trace(face, k);
@@ -582,7 +592,7 @@ namespace Debond
         const Trace trace = trace_on(face, s);
         std::size_t index =
           (&face - boundary.faces.data()) *
-          (least_of_points.empty() ? 0 : quadrature.points().size());
+          (broken.points.empty() ? 0 : quadrature.points().size());
         for (const auto &point : quadrature.points())
           {
             BondScale   bonds = bonds_of(face, point.barycentric);
@@ -597,8 +607,8 @@ namespace Debond
                   bonds = bonds_at(face, k);
                   least = least_piece_at(face, k);
                 }
-            if (!least_of_points.empty())
-              least = least_of_points[index++];
+            if (!broken.points.empty())
+              least = broken.points[index++];
             const double force =
               point.weight * face.measure * bonds.energy / bonds.stretch *
               law.derivative(at_point / bonds.stretch, least);

@@ -9,21 +9,15 @@
 
 namespace Debond
 {
-  StationaryPath::StationaryPath(const MatrixView        &S,
-                                 const VectorView        &load,
-                                 const VectorView        &slope,
-                                 const BranchMinimum     &f,
-                                 const std::vector<Bond> &bonds,
-                                 const bool               returns,
-                                 const VectorView        &s,
-                                 const double             t)
-    : S(S)
-    , load(load)
-    , slope(slope)
-    , first_t(t)
-    , f(f)
-    , bonds(bonds)
-    , returns(returns)
+  StationaryPath::StationaryPath(const Problem    &problem,
+                                 const VectorView &s,
+                                 const double      t)
+    : S(problem.S)
+    , load(problem.load)
+    , slope(problem.slope)
+    , f(problem.f)
+    , bonds(problem.bonds)
+    , returns(problem.returns)
     , parameter(t)
     , s(s)
     , r(load - S * s)

@@ -286,12 +286,12 @@ namespace Debond
           parameters.load_path,
           settings(),
           *scene,
-          [this](const LoadPathStep<dim> &step,
-                 const DofVector         &u,
+          {},
+          [this](const PathProgress<dim> &progress,
                  const Verification<dim> &verification,
                  const AdhesionIntegral<dim> &) {
             result.verification = verification;
-            path_output->add(step, u, verification);
+            path_output->add(progress.steps.back(), progress.u, verification);
           },
           log());
         result.solve = std::move(path.result);

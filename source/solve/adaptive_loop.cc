@@ -480,12 +480,13 @@ namespace Debond
           followed,
           on_mesh,
           here,
-          [&](const LoadPathStep<dim> &step,
-              const DofVector         &u,
+          {},
+          [&](const PathProgress<dim> &progress,
               const Verification<dim> &,
               const AdhesionIntegral<dim> &bonds) {
-            ErrorEstimate own = estimate_of(
-              here, bonds, u, step.state.functional, step.factors());
+            const LoadPathStep<dim> &step = progress.steps.back();
+            ErrorEstimate            own  = estimate_of(
+              here, bonds, progress.u, step.state.functional, step.factors());
             if (estimate.cells.empty() || own.relative() > estimate.relative())
               {
                 estimate   = std::move(own);

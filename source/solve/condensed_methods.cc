@@ -164,6 +164,12 @@ namespace Debond
         return result;
       }
 
+      void
+      start_from(const Eigen::VectorXd &point, const DofVector &) override
+      {
+        s = point;
+      }
+
       Eigen::VectorXd
       point() const override
       {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/text.h>
 #include <debond/solve/load_path_steps.h>
 
 #include <algorithm>
@@ -6,6 +7,38 @@
 
 namespace Debond
 {
+  template <int dim>
+  std::string
+  location(const LoadPathParameters &parameters, const LoadPathStep<dim> &step)
+  {
+    return "load path, step " + std::to_string(step.step) + ", " +
+           parameters.name(step.factors()) + ": ";
+  }
+
+
+
+  template <int dim>
+  LoadPathState<dim>
+  state_of(const Scene<dim>            &scene,
+           const AdhesionIntegral<dim> &bonds,
+           const LoadFactors            factors,
+           const DofVector             &u,
+           const Verification<dim>     &verification)
+  {
+    LoadPathState<dim> state =
+      load_path_state(scene.problem(), bonds, factors, u, verification);
+    const auto add = [&](const std::string &kind, const Probes<dim> &probes) {
+      for (const auto &[name, vector] :
+           probes.values(scene.problem(), u, factors))
+        state.vectors.emplace_back(kind + as_title(name), vector);
+    };
+    add("mean_", scene.means());
+    add("probe_", scene.probes());
+    return state;
+  }
+
+
+
   template <int dim>
   LoadPathTotals
   load_path_totals(const std::vector<LoadPathStep<dim>> &steps,
@@ -57,6 +90,10 @@ namespace Debond
   }
 
 
+  template decltype(location<2>)         location<2>;
+  template decltype(location<3>)         location<3>;
+  template decltype(state_of<2>)         state_of<2>;
+  template decltype(state_of<3>)         state_of<3>;
   template decltype(load_path_totals<2>) load_path_totals<2>;
   template decltype(load_path_totals<3>) load_path_totals<3>;
 } // namespace Debond

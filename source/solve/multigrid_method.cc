@@ -100,10 +100,18 @@ namespace Debond
                       const DofVector  &start)
         : problem(scene.problem())
         , cycle(make_cycle(scene, has_levels))
-        , u(distribute(start,
-                       problem.unknowns().dof_handler().locally_owned_dofs(),
-                       scene.ranks()))
-      {}
+      {
+        start_from({}, start);
+      }
+
+      void
+      start_from(const Eigen::VectorXd &, const DofVector &start) override
+      {
+        const auto &unknowns = problem.unknowns();
+        u                    = distribute(start,
+                       unknowns.dof_handler().locally_owned_dofs(),
+                       unknowns.communicator());
+      }
 
       MajoriseMinimiseResult
       minimise(const LoadFactors                factors,

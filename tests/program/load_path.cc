@@ -37,6 +37,7 @@ namespace
       parameters.load_path,
       settings_of(parameters, scene),
       scene,
+      {},
       [](const auto &...) {},
       nullptr);
   }
@@ -850,16 +851,17 @@ namespace
             parameters.load_path,
             settings_of(parameters, here),
             here,
-            [&](const auto &step,
-                const auto &u,
+            {},
+            [&](const auto &progress,
                 const auto   &/*verification*/,
                 const auto &bonds) {
-              result = estimate_error(here.problem(),
+              const auto &step = progress.steps.back();
+              result           = estimate_error(here.problem(),
                                       bonds,
                                       here.conditions(),
                                       here.supports(),
                                       here.loads(),
-                                      u,
+                                      progress.u,
                                       step.state.functional,
                                       step.factors(),
                                       &here.dead_loads())

@@ -254,6 +254,7 @@ namespace
       parameters.load_path,
       settings_of(parameters, scene),
       scene,
+      {},
       [](const auto &...) {},
       nullptr);
     const auto        &steps  = path.steps;

@@ -64,6 +64,11 @@ namespace Debond
   std::string
   scientific_above(const double value, const int digits);
 
+  /// A name as a part of the title of a column: letters, digits and
+  /// underscores.
+  std::string
+  as_title(const std::string &name);
+
   /// As scientific() without an exponent.
   inline std::string
   fixed_point(const double value, const int digits)

@@ -65,15 +65,11 @@ namespace Debond
   };
 
   /// @p verification is that of @p u under @p factors times the loads. The
-  /// vectors are the reactions of the supports, the @p means over pieces and
-  /// the
-  /// @p probes.
+  /// vectors are the reactions of the supports.
   template <int dim>
   LoadPathState<dim>
   load_path_state(const ElasticProblem<dim>   &problem,
                   const AdhesionIntegral<dim> &adhesion,
-                  const Probes<dim>           &means,
-                  const Probes<dim>           &probes,
                   const LoadFactors            factors,
                   const DofVector             &u,
                   const Verification<dim>     &verification);

@@ -13,6 +13,17 @@
 
 namespace Debond
 {
+  /// The pieces of the law that bonds have not left for good: those before
+  /// them do not come back. Empty if bonds return.
+  struct BondMemory
+  {
+    std::vector<unsigned int> nodes;
+    std::vector<unsigned int> held;   ///< of vertices that are no nodes
+    std::vector<unsigned int> points; ///< face by face, unless points are nodes
+  };
+
+
+
   /**
    * Phi(s) = int_{Gamma_C} j_1(s) dGamma of the trace with coefficients s, the
    * nodal values of degree 1, by quadrature on the contact boundary. The vector
@@ -51,12 +62,22 @@ namespace Debond
     void
     break_for_good(const VectorView &s);
 
+    const BondMemory &
+    memory() const
+    {
+      return broken;
+    }
+
+    /// The memory() of these bonds at an earlier time.
+    void
+    set_memory(const BondMemory &memory);
+
     /// The piece of the law that the bonds of a node have not left for good, of
     /// all points of its faces where points are not nodes.
     unsigned int
     least_piece(const unsigned int node) const
     {
-      return least_of_nodes.empty() ? 0 : least_of_nodes[node];
+      return broken.nodes.empty() ? 0 : broken.nodes[node];
     }
 
     /// The same of the bonds at a point of one of the boundary's faces: those
@@ -69,7 +90,7 @@ namespace Debond
     bool
     has_broken_points() const
     {
-      return !least_of_points.empty();
+      return !broken.points.empty();
     }
 
     /// The length (area) of the points of the rule whose bonds are on the last
@@ -261,12 +282,7 @@ namespace Debond
     double load_factor = 1.;
     double phi_at_zero = 0.;
 
-    /// Pieces that bonds have not left for good; empty if they return.
-    std::vector<unsigned int> least_of_nodes;
-    std::vector<unsigned int> least_of_held;
-
-    /// The same by point, face by face, unless points are nodes.
-    std::vector<unsigned int> least_of_points;
+    BondMemory broken;
 
     std::vector<Point> point_list;
   };

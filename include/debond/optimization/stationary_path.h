@@ -39,18 +39,20 @@ namespace Debond
       unsigned int least;   ///< pieces of f before this one do not return
     };
 
-    /// Starts at a minimum @p s for @p t, where @p load is g, in the direction
-    /// of rising t, @p slope being the derivative of g. Keeps references to
-    /// @p S and @p f. If not @p returns, s_i does not come back to a piece
-    /// that it has left.
-    StationaryPath(const MatrixView        &S,
-                   const VectorView        &load,
-                   const VectorView        &slope,
-                   const BranchMinimum     &f,
-                   const std::vector<Bond> &bonds,
-                   const bool               returns,
-                   const VectorView        &s,
-                   const double             t);
+    /// What the points are stationary for, with g(t) = load + t slope; S and f
+    /// are references.
+    struct Problem
+    {
+      MatrixView           S;
+      Eigen::VectorXd      load;
+      Eigen::VectorXd      slope;
+      const BranchMinimum &f;
+      std::vector<Bond>    bonds;   ///< of each s_i
+      bool                 returns; ///< whether s_i comes back to a piece of f
+    };
+
+    /// Starts at a minimum @p s for @p t, in the direction of rising t.
+    StationaryPath(const Problem &problem, const VectorView &s, const double t);
 
     enum class Event
     {
@@ -138,7 +140,6 @@ namespace Debond
 
     const MatrixView      S;
     const Eigen::VectorXd load, slope;
-    const double          first_t;
     const BranchMinimum  &f;
     std::vector<Bond>     bonds;
     const bool            returns;

@@ -37,6 +37,11 @@ namespace Debond
              const MajoriseMinimise::Monitor &monitor,
              const MayGoOn                   &may_go_on) = 0;
 
+    /// The next minimisation starts from normal displacements @p s of the
+    /// contact nodes, which are those of the displacement @p u.
+    virtual void
+    start_from(const Eigen::VectorXd &s, const DofVector &u) = 0;
+
     /// The normal displacements s of the contact nodes.
     virtual Eigen::VectorXd
     point() const = 0;

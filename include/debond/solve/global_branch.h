@@ -2,11 +2,10 @@
 #ifndef debond_solve_global_branch_h
 #define debond_solve_global_branch_h
 
-#include <debond/elasticity/contact_condensation.h>
 #include <debond/input/load_path_parameters.h>
 #include <debond/input/solver_parameters.h>
 #include <debond/linear_algebra/views.h>
-#include <debond/solve/scene.h>
+#include <debond/solve/condensed_scene.h>
 #include <debond/solve/which_minimum.h>
 
 #include <functional>
@@ -21,26 +20,6 @@ namespace Debond
     Eigen::VectorXd s;
     double          functional; ///< without the energy at s = 0
     WhichMinimum    which;
-  };
-
-  /// A scene condensed onto its contact normals, under multiples of its loads.
-  template <int dim>
-  struct CondensedScene
-  {
-    const Scene<dim>   &scene;
-    const Condensation &condensed; ///< under the whole load
-
-    AdhesionIntegral<dim>
-    bonds(const LoadFactors factors) const
-    {
-      return scene.adhesion().at(factors.displacements);
-    }
-
-    Condensation
-    at(const LoadFactors factors) const
-    {
-      return at_factors(condensed, scene.problem(), bonds(factors), factors);
-    }
   };
 
   /// By the factor of the loads.

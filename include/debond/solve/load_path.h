@@ -29,11 +29,25 @@ namespace Debond
     std::shared_ptr<const AdhesionIntegral<dim>> bonds;
   };
 
-  /// Called after each factor, with the displacement, its verification and the
-  /// bonds as they are.
+  /// How far a path has come, and all that the way on depends on.
   template <int dim>
-  using LoadPathObserver = std::function<void(const LoadPathStep<dim> &,
-                                              const DofVector &,
+  struct PathProgress
+  {
+    std::vector<LoadPathStep<dim>> steps;
+
+    /// By step.
+    std::vector<Eigen::VectorXd> points; ///< s of the contact nodes
+    std::vector<MinimumKind>     kinds;
+
+    /// After the last step.
+    DofVector  u;
+    BondMemory memory;
+  };
+
+  /// Called after each factor, with the verification of the displacement and
+  /// the bonds as they are.
+  template <int dim>
+  using LoadPathObserver = std::function<void(const PathProgress<dim> &,
                                               const Verification<dim> &,
                                               const AdhesionIntegral<dim> &)>;
 
@@ -50,17 +64,16 @@ namespace Debond
    * if all factors were solved, whether or not all of them are verified. A
    * table of the factors is printed to @p out unless that is null.
    *
-   * If the scene wants it, `arc` gets the curve of stationary states on which
-   * that of the first factor is, a step for each breakpoint (StationaryPath),
-   * until the factor leaves the interval of those of the path: `status` is
-   * "stable" if the states between the last breakpoint and this one are minima,
-   * else "unstable".
+   * @p start has the steps that an earlier run has done, none at first; the
+   * observer sees the last of them again. The scene's arc, see follow_arc(),
+   * starts from the first factor.
    */
   template <int dim>
   FollowedPath<dim>
   follow_load_path(const LoadPathParameters    &parameters,
                    const SolveSettings         &settings,
                    const Scene<dim>            &scene,
+                   const PathProgress<dim>     &start,
                    const LoadPathObserver<dim> &observer,
                    std::ostream                *out);
 } // namespace Debond

@@ -3,6 +3,8 @@
 #define debond_solve_load_path_steps_h
 
 #include <debond/check/load_path_state.h>
+#include <debond/input/load_path_parameters.h>
+#include <debond/solve/scene.h>
 
 #include <optional>
 #include <string>
@@ -40,6 +42,23 @@ namespace Debond
     /// Of the first thing that went wrong, empty if nothing did.
     std::string message;
   };
+
+
+
+  /// "load path, step 3, factor 0.5: ", for messages.
+  template <int dim>
+  std::string
+  location(const LoadPathParameters &parameters, const LoadPathStep<dim> &step);
+
+  /// In numbers, with the vectors that the scene asks for. As
+  /// load_path_state().
+  template <int dim>
+  LoadPathState<dim>
+  state_of(const Scene<dim>            &scene,
+           const AdhesionIntegral<dim> &bonds,
+           const LoadFactors            factors,
+           const DofVector             &u,
+           const Verification<dim>     &verification);
 
 
 

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/optimization/stationary_path.h>
+#include <debond/solve/bond_change.h>
+
+#include <algorithm>
+
+namespace Debond
+{
+  namespace
+  {
+    using Event = StationaryPath::Event;
+
+
+
+    /// Of the factor that changes.
+    double
+    factor_between(const LoadFactors first,
+                   const LoadFactors last,
+                   const double      part)
+    {
+      return first.loads != last.loads ?
+               first.loads + part * (last.loads - first.loads) :
+               first.displacements +
+                 part * (last.displacements - first.displacements);
+    }
+
+
+
+    /// Where displacements are proportional to the factor and bonds are at
+    /// nodes.
+    template <int dim>
+    std::optional<double>
+    proportional_change(const BranchMinimum         &branches,
+                        const AdhesionIntegral<dim> &bonds,
+                        const PathPoint             &last,
+                        const double                 factor)
+    {
+      double     first     = factor / last.factors.loads;
+      const bool increases = first > 1.;
+      bool       changes   = false;
+      for (unsigned int i = 0; i < last.s.size(); ++i)
+        if (last.s(i) < 0.)
+          {
+            const double       stretch = bonds.bonds_at(i).stretch;
+            const unsigned int k       = branches.index(last.s(i) / stretch);
+            if (increases ? k + 1 == branches.size() :
+                            k <= bonds.least_piece(i))
+              continue;
+            const double reached =
+              stretch * (increases ? branches[k].lower : branches[k].upper) /
+              last.s(i);
+            if (increases ? reached < first : reached > first)
+              {
+                changes = true;
+                first   = reached;
+              }
+          }
+      return changes ? std::optional<double>(first * last.factors.loads) :
+                       std::nullopt;
+    }
+
+
+
+    /// Where bonds are not at nodes. On the way to their first change they are
+    /// linear springs.
+    template <int dim>
+    std::optional<double>
+    change_between_nodes(const CondensedScene<dim>   &scene,
+                         const AdhesionIntegral<dim> &bonds,
+                         const PathPoint             &last,
+                         const LoadFactors            next,
+                         const std::function<bool()> &may_go_on)
+    {
+      StationaryPath::Problem problem =
+        scene.between(last.factors, next, 1., bonds);
+      const Eigen::SparseMatrix<double> springs   = bonds.curvature(last.s);
+      Eigen::MatrixXd                   stiffness = problem.S;
+      stiffness += springs;
+      const BranchMinimum no_law({{0., 0., 0., ""}});
+      problem.load += springs * last.s - bonds.subgradient(last.s);
+      StationaryPath path({stiffness,
+                           problem.load,
+                           problem.slope,
+                           no_law,
+                           {static_cast<std::size_t>(last.s.size()),
+                            {0., 1., 0}},
+                           true},
+                          last.s,
+                          0.);
+      Event          event = Event::contact;
+      for (unsigned int k = 0;
+           event == Event::contact && k < 2 * last.s.size() && may_go_on();
+           ++k)
+        {
+          const Eigen::VectorXd before = path.point();
+          const double          t      = path.t();
+          event                        = path.advance(0., 1.);
+          if (event != Event::contact && event != Event::end)
+            return {};
+          const double part =
+            bonds.first_change(before, path.point() - before, 1.);
+          if (part < 1.)
+            return factor_between(last.factors,
+                                  next,
+                                  t + part * (path.t() - t));
+        }
+      return {};
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::optional<double>
+  first_bond_change(const CondensedScene<dim>   &scene,
+                    const AdhesionIntegral<dim> &bonds,
+                    const PathPoint             &last,
+                    const LoadFactors            next,
+                    const std::function<bool()> &may_go_on)
+  {
+    const BranchMinimum &branches = scene.scene.law().branches();
+    if (branches.size() == 1)
+      return {};
+    bool has_slope = false;
+    for (unsigned int k = 0; k < branches.size(); ++k)
+      has_slope = has_slope || branches[k].slope != 0.;
+    // Without a slope, gaps and other factors displacements are proportional
+    // to the factor.
+    const LoadPathParameters   &load_path = scene.scene.parameters().load_path;
+    const ElasticUnknowns<dim> &unknowns  = scene.scene.problem().unknowns();
+    const bool                  is_proportional =
+      last.factors.loads != 0. && !has_slope && !unknowns.has_gap() &&
+      load_path.displacement_factors.empty() && load_path.dead_loads.empty();
+    if (!bonds.is_separable())
+      {
+        // What is prescribed on the contact boundary changes the springs'
+        // forces.
+        if (!unknowns.contact().boundary().held_vertices.empty())
+          return {};
+        if (!is_proportional)
+          return change_between_nodes(scene, bonds, last, next, may_go_on);
+        const double          whole = next.loads / last.factors.loads - 1.;
+        const Eigen::VectorXd way   = whole * last.s;
+        const double          part  = bonds.first_change(last.s, way, 1.);
+        return part == 1. ?
+                 std::nullopt :
+                 std::make_optional(factor_between(last.factors, next, part));
+      }
+    if (is_proportional)
+      return proportional_change(branches, bonds, last, next.loads);
+
+    StationaryPath path(scene.between(last.factors, next, 1., bonds),
+                        last.s,
+                        0.);
+    // Contact that comes and goes. Changes at the end of the step count.
+    Event event = Event::contact;
+    for (unsigned int k = 0;
+         event == Event::contact && k < 2 * last.s.size() && may_go_on();
+         ++k)
+      event = path.advance(0., 1. + 1e-10);
+    if (event != Event::bond)
+      return {};
+    return factor_between(last.factors, next, std::min(1., path.t()));
+  }
+
+
+
+  template decltype(first_bond_change<2>) first_bond_change<2>;
+  template decltype(first_bond_change<3>) first_bond_change<3>;
+} // namespace Debond

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/run_watch.h>
+#include <debond/solve/load_path_arc.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Debond
+{
+  namespace
+  {
+    /// The line of factors on which an arc is, by the one of them that varies.
+    class VariedFactor
+    {
+    public:
+      explicit VariedFactor(const LoadPathParameters &path)
+        : path(path)
+        , is_of_loads(!are_equal(path.factors))
+        , values(is_of_loads ? path.factors : path.displacement_factors)
+      {}
+
+      /// Whether there is no line.
+      bool
+      is_constant() const
+      {
+        return are_equal(values);
+      }
+
+      double
+      first() const
+      {
+        return values.front();
+      }
+
+      /// The next one that differs from the first.
+      double
+      other() const
+      {
+        return *std::find_if(values.begin(),
+                             values.end(),
+                             [this](const double value) {
+                               return value != first();
+                             });
+      }
+
+      /// The least and the largest one times @p sign.
+      std::pair<double, double>
+      interval(const double sign) const
+      {
+        const auto [least, largest] =
+          std::minmax_element(values.begin(), values.end());
+        return std::minmax(sign * *least, sign * *largest);
+      }
+
+      LoadFactors
+      at(const double value) const
+      {
+        LoadFactors factors                                   = path.at(0);
+        (is_of_loads ? factors.loads : factors.displacements) = value;
+        if (path.displacement_factors.empty())
+          factors.displacements = value;
+        return factors;
+      }
+
+    private:
+      static bool
+      are_equal(const std::vector<double> &numbers)
+      {
+        return std::all_of(numbers.begin(),
+                           numbers.end(),
+                           [&numbers](const double number) {
+                             return number == numbers[0];
+                           });
+      }
+
+      const LoadPathParameters  &path;
+      const bool                 is_of_loads;
+      const std::vector<double> &values;
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  LoadPathArc<dim>
+  follow_arc(const CondensedScene<dim>   &scene,
+             const Eigen::VectorXd       &s,
+             const double                 tolerance,
+             const std::function<bool()> &may_go_on)
+  {
+    const Stage               stage("arc");
+    LoadPathArc<dim>          arc;
+    const LoadPathParameters &parameters = scene.scene.parameters().load_path;
+    const VariedFactor        varied(parameters);
+    if (varied.is_constant())
+      {
+        arc.note = "There is no arc: the factor stays the same.";
+        return arc;
+      }
+
+    // t rises to begin with.
+    const double                    first    = varied.first();
+    const double                    length   = varied.other() - first;
+    const double                    sign     = length > 0. ? 1. : -1.;
+    const std::pair<double, double> interval = varied.interval(sign);
+    BondMemory                      memory;
+    StationaryPath                  path(scene.between(varied.at(first),
+                                      varied.at(varied.other()),
+                                      std::abs(length),
+                                      scene.scene.adhesion()),
+                        s,
+                        sign * first);
+    const auto                      add = [&](const bool is_stable) {
+      const LoadFactors     factors = varied.at(sign * path.t() + 0.); // no -0
+      AdhesionIntegral<dim> here = scene.bonds(factors);
+      here.set_memory(memory);
+      if (!parameters.bonds_heal)
+        here.break_for_good(path.point_before_kinks());
+      memory = here.memory();
+      const DofVector u =
+        at_factors(scene.condensed, scene.scene.problem(), here, factors)
+          .expand(path.point());
+      const Verification<dim> verification =
+        verify(scene.scene.problem(), here, scene.scene.law(), u, factors);
+      LoadPathStep<dim> step = {};
+      step.step = static_cast<unsigned int>(arc.steps.size() + 1);
+      step.factor              = factors.loads;
+      step.displacement_factor = factors.displacements;
+      step.status = is_stable ? "stable" : "unstable";
+      step.state = state_of(scene.scene, here, factors, u, verification);
+      if (!(verification.error() <= tolerance))
+        {
+          step.status = "not verified";
+          arc.note = "The arc ends: " + location(parameters, step) +
+                     verification.failure(tolerance);
+        }
+      arc.steps.push_back(step);
+      return step.status != "not verified";
+    };
+
+    using Event                 = StationaryPath::Event;
+    Event              last     = Event::contact;
+    const Eigen::Index most     = 100 + 20 * s.size();
+    bool               is_going = add(true);
+    for (unsigned int k = 0; is_going && last != Event::end; ++k)
+      {
+        if (!may_go_on())
+          {
+            arc.interrupted = true;
+            break;
+          }
+        const double before = path.t();
+        last                = path.advance(interval.first, interval.second);
+        is_going            = false;
+        if (last == Event::no_stiffness)
+          arc.note =
+            "The arc ends where the bonds that hold the body have broken.";
+        else if (last == Event::degenerate)
+          arc.note = "The arc ends where it branches, or rounding hides how it "
+                     "goes on.";
+        else if (k == most)
+          arc.note =
+            "The arc ends after " + std::to_string(most) + " changes of nodes.";
+        else
+          // Nodes of a body at rest change one after the other.
+          is_going = path.t() == before || add(!path.was_at_kink());
+      }
+    return arc;
+  }
+
+
+
+  template decltype(follow_arc<2>) follow_arc<2>;
+  template decltype(follow_arc<3>) follow_arc<3>;
+} // namespace Debond
