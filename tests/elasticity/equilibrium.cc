@@ -6,9 +6,9 @@
 #include <deal.II/base/function_parser.h>
 #include <deal.II/grid/grid_tools.h>
 
+#include <debond/certify/equilibrium_problem.h>
+#include <debond/certify/trace_constant.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/elasticity/equilibrium_problem.h>
-#include <debond/elasticity/trace_constant.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/mesh/box.h>
 

@@ -10,8 +10,8 @@
 // change, and how the gap falls. Arguments: the number of plane scenes, a fifth
 // as many solids, the first one.
 
+#include <debond/certify/certificate.h>
 #include <debond/mesh/bisected_body.h>
-#include <debond/solve/certificate.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 // value, have to be there, and some of them near the ends of the intervals.
 // Their J is not below the bound either.
 
-#include <debond/solve/certificate.h>
+#include <debond/certify/certificate.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/solve.h>
 

@@ -4,12 +4,12 @@
 // dense algebra from the condensed stresses: theorem 1, and, where all branches
 // are certain, the ranges of means and ends.
 
+#include <debond/certify/global_bound.h>
+#include <debond/certify/mean_problem.h>
+#include <debond/certify/side_ranges.h>
 #include <debond/optimization/global/convex_envelope.h>
 #include <debond/optimization/interval.h>
-#include <debond/solve/global_bound.h>
-#include <debond/solve/mean_problem.h>
 #include <debond/solve/scene.h>
-#include <debond/solve/side_ranges.h>
 
 #include <Eigen/Cholesky>
 

@@ -2,12 +2,12 @@
 #ifndef debond_output_run_result_h
 #define debond_output_run_result_h
 
+#include <debond/certify/certificate.h>
 #include <debond/check/coming_off.h>
 #include <debond/check/displacement_error.h>
 #include <debond/check/error_estimate.h>
 #include <debond/check/plausibility.h>
 #include <debond/solve/adaptive_loop.h>
-#include <debond/solve/certificate.h>
 #include <debond/solve/load_path_steps.h>
 #include <debond/solve/solve.h>
 

@@ -2,11 +2,11 @@
 #ifndef debond_output_tables_h
 #define debond_output_tables_h
 
+#include <debond/certify/certificate.h>
 #include <debond/check/verification.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
-#include <debond/solve/certificate.h>
 
 #include <optional>
 #include <string>

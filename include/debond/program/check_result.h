@@ -2,11 +2,11 @@
 #ifndef debond_program_check_result_h
 #define debond_program_check_result_h
 
+#include <debond/certify/certificate.h>
 #include <debond/input/accuracy_parameters.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/output/run_result.h>
-#include <debond/solve/certificate.h>
 #include <debond/solve/scene.h>
 
 #include <memory>

@@ -2,9 +2,9 @@
 #ifndef debond_solve_adaptive_loop_h
 #define debond_solve_adaptive_loop_h
 
+#include <debond/certify/certificate.h>
 #include <debond/check/error_estimate.h>
 #include <debond/input/accuracy_parameters.h>
-#include <debond/solve/certificate.h>
 #include <debond/solve/load_path.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve.h>

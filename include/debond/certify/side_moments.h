@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_elasticity_side_moments_h
-#define debond_elasticity_side_moments_h
+#ifndef debond_certify_side_moments_h
+#define debond_certify_side_moments_h
 
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_solve_side_ranges_h
-#define debond_solve_side_ranges_h
+#ifndef debond_certify_side_ranges_h
+#define debond_certify_side_ranges_h
 
-#include <debond/solve/certified_side.h>
-#include <debond/solve/mean_problem.h>
+#include <debond/certify/certified_side.h>
+#include <debond/certify/mean_problem.h>
 
 #include <functional>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/certify/mean_problem.h>
 #include <debond/optimization/global/convex_envelope.h>
 #include <debond/optimization/global/convexity_shift.h>
-#include <debond/solve/mean_problem.h>
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_solve_mean_problem_h
-#define debond_solve_mean_problem_h
+#ifndef debond_certify_mean_problem_h
+#define debond_certify_mean_problem_h
 
-#include <debond/elasticity/equilibrium_problem.h>
+#include <debond/certify/certified_side.h>
+#include <debond/certify/equilibrium_problem.h>
 #include <debond/optimization/branch_minimum.h>
 #include <debond/optimization/global/separable_branches.h>
-#include <debond/solve/certified_side.h>
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/certify/side_ranges.h>
 #include <debond/optimization/global/node_bound.h>
 #include <debond/optimization/interval.h>
-#include <debond/solve/side_ranges.h>
 
 #include <algorithm>
 #include <array>

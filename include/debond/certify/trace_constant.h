@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_elasticity_trace_constant_h
-#define debond_elasticity_trace_constant_h
+#ifndef debond_certify_trace_constant_h
+#define debond_certify_trace_constant_h
 
 #include <debond/elasticity/material.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/numbers.h>
 
-#include <debond/elasticity/equilibrium_problem.h>
-#include <debond/elasticity/trace_constant.h>
+#include <debond/certify/equilibrium_problem.h>
+#include <debond/certify/trace_constant.h>
 #include <debond/mesh/box.h>
 
 #include <Eigen/Eigenvalues>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/elasticity/equilibrium_element.h>
+#include <debond/certify/equilibrium_element.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>

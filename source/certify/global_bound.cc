@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/elasticity/trace_constant.h>
+#include <debond/certify/global_bound.h>
+#include <debond/certify/mean_problem.h>
+#include <debond/certify/side_ranges.h>
+#include <debond/certify/trace_constant.h>
 #include <debond/optimization/interval.h>
-#include <debond/solve/global_bound.h>
-#include <debond/solve/mean_problem.h>
-#include <debond/solve/side_ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature.h>
 
+#include <debond/certify/side_moments.h>
 #include <debond/elasticity/load_vector.h>
-#include <debond/elasticity/side_moments.h>
 
 #include <algorithm>
 #include <cmath>

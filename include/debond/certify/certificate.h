@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_solve_certificate_h
-#define debond_solve_certificate_h
+#ifndef debond_certify_certificate_h
+#define debond_certify_certificate_h
 
-#include <debond/elasticity/equilibrium_problem.h>
+#include <debond/certify/equilibrium_problem.h>
+#include <debond/certify/global_bound.h>
 #include <debond/input/accuracy_parameters.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/global/branch_and_bound.h>
-#include <debond/solve/global_bound.h>
 #include <debond/solve/scene.h>
 
 #include <exception>

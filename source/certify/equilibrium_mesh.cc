@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
+#include <debond/certify/equilibrium_mesh.h>
+#include <debond/certify/side_moments.h>
 #include <debond/contact/field_value.h>
-#include <debond/elasticity/equilibrium_mesh.h>
-#include <debond/elasticity/side_moments.h>
 
 #include <algorithm>
 #include <cmath>

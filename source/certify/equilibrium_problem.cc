@@ -3,9 +3,9 @@
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/sparsity_pattern.h>
 
-#include <debond/elasticity/equilibrium_problem.h>
-#include <debond/elasticity/side_moments.h>
-#include <debond/elasticity/trace_constant.h>
+#include <debond/certify/equilibrium_problem.h>
+#include <debond/certify/side_moments.h>
+#include <debond/certify/trace_constant.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_elasticity_equilibrium_mesh_h
-#define debond_elasticity_equilibrium_mesh_h
+#ifndef debond_certify_equilibrium_mesh_h
+#define debond_certify_equilibrium_mesh_h
 
 #include <deal.II/grid/tria.h>
 
-#include <debond/elasticity/equilibrium_element.h>
+#include <debond/certify/equilibrium_element.h>
 #include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/unknowns.h>
 

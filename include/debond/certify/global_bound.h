@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_solve_global_bound_h
-#define debond_solve_global_bound_h
+#ifndef debond_certify_global_bound_h
+#define debond_certify_global_bound_h
 
-#include <debond/elasticity/equilibrium_problem.h>
+#include <debond/certify/certified_side.h>
+#include <debond/certify/equilibrium_problem.h>
+#include <debond/certify/mean_problem.h>
 #include <debond/optimization/global/branch_and_bound.h>
-#include <debond/solve/certified_side.h>
-#include <debond/solve/mean_problem.h>
 
 #include <functional>
 #include <limits>

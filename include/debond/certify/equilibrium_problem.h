@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_elasticity_equilibrium_problem_h
-#define debond_elasticity_equilibrium_problem_h
+#ifndef debond_certify_equilibrium_problem_h
+#define debond_certify_equilibrium_problem_h
 
-#include <debond/elasticity/equilibrium_mesh.h>
+#include <debond/certify/equilibrium_mesh.h>
 #include <debond/elasticity/fields.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/linear_algebra/dof_vector.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_solve_certified_side_h
-#define debond_solve_certified_side_h
+#ifndef debond_certify_certified_side_h
+#define debond_certify_certified_side_h
 
 #include <deal.II/base/point.h>
 
