@@ -854,15 +854,15 @@ namespace
                 const auto &u,
                 const auto   &/*verification*/,
                 const auto &bonds) {
-              result = estimate_error(here.problem(),
-                                      bonds,
-                                      here.conditions(),
-                                      here.supports(),
-                                      here.loads(),
-                                      u,
-                                      step.state.functional,
-                                      step.factors(),
-                                      &here.dead_loads())
+              result = estimate_error<2>({here.problem(),
+                                          bonds,
+                                          here.conditions(),
+                                          here.supports(),
+                                          here.loads(),
+                                          &here.dead_loads()},
+                                         u,
+                                         step.state.functional,
+                                         step.factors())
                          .functional;
             },
             nullptr);
