@@ -51,13 +51,13 @@ namespace Debond
 
   template <int dim>
   LoadPathState<dim>
-  load_path_state(const ElasticProblem<dim>   &problem,
-                  const AdhesionIntegral<dim> &adhesion,
-                  const Probes<dim>           &means,
-                  const Probes<dim>           &probes,
-                  const LoadFactors            factors,
-                  const DofVector             &u,
-                  const Verification<dim>     &verification)
+  load_path_state(
+    const ElasticProblem<dim>   &problem,
+    const AdhesionIntegral<dim> &adhesion,
+    const LoadFactors            factors,
+    const DofVector             &u,
+    const Verification<dim>     &verification,
+    const std::vector<std::pair<std::string, const Probes<dim> *>> &probes)
   {
     const auto        &nodes = problem.unknowns().contact().boundary().nodes;
     Eigen::VectorXd    s(problem.unknowns().contact().size());
@@ -135,8 +135,8 @@ namespace Debond
         state.vectors.emplace_back(kind + as_title(name), vector);
     };
     add("reaction_", verification.reactions);
-    add("mean_", means.values(problem, u, factors));
-    add("probe_", probes.values(problem, u, factors));
+    for (const auto &[kind, of_kind] : probes)
+      add(kind, of_kind->values(problem, u, factors));
     return state;
   }
 

@@ -81,7 +81,7 @@ namespace Debond
                               conditions,
                               contact_edges);
     contact_space = make_contact_space(
-      contact, degree, conditions, supports, diameter, node_supports, gap);
+      contact, degree, conditions, supports, node_supports, gap);
     std::vector<Support<dim>> held = node_supports.finish();
     if (gap.size() > 0 && gap.all_zero())
       gap.reinit(0);

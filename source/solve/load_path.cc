@@ -377,13 +377,13 @@ namespace Debond
             const DofVector             &u,
             const Verification<dim>     &verification) const
       {
-        return load_path_state(scene.problem(),
-                               bonds_there,
-                               scene.means(),
-                               scene.probes(),
-                               factors,
-                               u,
-                               verification);
+        return load_path_state<dim>(scene.problem(),
+                                    bonds_there,
+                                    factors,
+                                    u,
+                                    verification,
+                                    {{"mean_", &scene.means()},
+                                     {"probe_", &scene.probes()}});
       }
 
       bool

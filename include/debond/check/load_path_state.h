@@ -65,18 +65,17 @@ namespace Debond
   };
 
   /// @p verification is that of @p u under @p factors times the loads. The
-  /// vectors are the reactions of the supports, the @p means over pieces and
-  /// the
-  /// @p probes.
+  /// vectors are the reactions of the supports and those of @p probes, each
+  /// with what its titles begin with.
   template <int dim>
   LoadPathState<dim>
-  load_path_state(const ElasticProblem<dim>   &problem,
-                  const AdhesionIntegral<dim> &adhesion,
-                  const Probes<dim>           &means,
-                  const Probes<dim>           &probes,
-                  const LoadFactors            factors,
-                  const DofVector             &u,
-                  const Verification<dim>     &verification);
+  load_path_state(
+    const ElasticProblem<dim>   &problem,
+    const AdhesionIntegral<dim> &adhesion,
+    const LoadFactors            factors,
+    const DofVector             &u,
+    const Verification<dim>     &verification,
+    const std::vector<std::pair<std::string, const Probes<dim> *>> &probes);
 } // namespace Debond
 
 #endif
