@@ -122,10 +122,10 @@ namespace Debond
     /// The mean of a traction on a face.
     template <int dim>
     dealii::Tensor<1, dim>
-    mean(const Traction<dim>                       &traction,
-         const dealii::Tensor<1, dim>              &normal,
-         const std::array<dealii::Point<dim>, dim> &corners,
-         const dealii::Quadrature<dim - 1>         &rule)
+    mean_traction(const Traction<dim>                       &traction,
+                  const dealii::Tensor<1, dim>              &normal,
+                  const std::array<dealii::Point<dim>, dim> &corners,
+                  const dealii::Quadrature<dim - 1>         &rule)
     {
       dealii::Tensor<1, dim> sum;
       for (unsigned int q = 0; q < rule.size(); ++q)
@@ -148,10 +148,10 @@ namespace Debond
       if (worst.difference <= small_error * worst.size)
         return;
       const auto mean_by = [&](const unsigned int n_parts) {
-        return mean(*worst.traction,
-                    worst.normal,
-                    worst.corners,
-                    face_rule<dim>(n_parts));
+        return mean_traction<dim>(*worst.traction,
+                                  worst.normal,
+                                  worst.corners,
+                                  face_rule<dim>(n_parts));
       };
       const double error =
         worst.measure *
@@ -251,7 +251,8 @@ namespace Debond
                 worst.size += measure * mean_size;
                 const double difference =
                   measure *
-                  (mean(traction, normal, corners, coarse_rule) - by_rule)
+                  (mean_traction<dim>(traction, normal, corners, coarse_rule) -
+                   by_rule)
                     .norm();
                 if (difference > worst.difference)
                   worst = {&traction,
