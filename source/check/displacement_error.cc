@@ -1,70 +1,51 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/auto_derivative_function.h>
 #include <deal.II/base/quadrature_lib.h>
 
 #include <debond/base/ranks.h>
+#include <debond/base/text.h>
 #include <debond/check/displacement_error.h>
+#include <debond/contact/field_value.h>
 #include <debond/mesh/owned_cells.h>
 
 #include <cmath>
-#include <limits>
-#include <sstream>
 #include <stdexcept>
 
 namespace Debond
 {
   namespace
   {
+    /// With derivatives by differences. Throws std::invalid_argument where it
+    /// is not finite.
     template <int dim>
-    dealii::Tensor<1, dim>
-    value_at(const dealii::Point<dim>    &point,
-             const dealii::Function<dim> &exact)
+    class ExactDisplacement : public dealii::AutoDerivativeFunction<dim>
     {
-      dealii::Vector<double> values(dim);
-      dealii::Tensor<1, dim> result;
-      try
-        {
-          exact.vector_value(point, values);
-          for (unsigned int d = 0; d < dim; ++d)
-            result[d] = values[d];
-        }
-      catch (const std::exception &)
-        {
-          result[0] = std::numeric_limits<double>::quiet_NaN();
-        }
-      if (!std::isfinite(result.norm()))
-        {
-          std::ostringstream message;
-          message << "The exact displacement is not finite at (" << point
-                  << ").";
-          throw std::invalid_argument(message.str());
-        }
-      return result;
-    }
+    public:
+      explicit ExactDisplacement(const dealii::Function<dim> &exact)
+        : dealii::AutoDerivativeFunction<dim>(1., dim)
+        , exact(exact)
+      {
+        this->set_formula(dealii::AutoDerivativeFunction<dim>::FourthOrder);
+      }
 
+      double
+      value(const dealii::Point<dim> &point,
+            const unsigned int        component) const override
+      {
+        try
+          {
+            return field_value(exact, point, component);
+          }
+        catch (const std::invalid_argument &)
+          {
+            throw std::invalid_argument(
+              words("The exact displacement is not finite at (", point, ")."));
+          }
+      }
 
-
-    /// Its error is of the order step^4.
-    template <int dim>
-    dealii::Tensor<2, dim>
-    gradient_at(const dealii::Point<dim>    &point,
-                const double                 step,
-                const dealii::Function<dim> &exact)
-    {
-      dealii::Tensor<2, dim> gradient;
-      for (unsigned int e = 0; e < dim; ++e)
-        {
-          const auto at = [&](const int steps) {
-            dealii::Point<dim> neighbour = point;
-            neighbour[e] += steps * step;
-            return value_at(neighbour, exact);
-          };
-          const dealii::Tensor<1, dim> derivative =
-            (8. * (at(1) - at(-1)) - (at(2) - at(-2))) / (12. * step);
-          for (unsigned int d = 0; d < dim; ++d)
-            gradient[d][e] = derivative[d];
-        }
-      return gradient;
-    }
+    private:
+      const dealii::Function<dim> &exact;
+    };
 
 
 
@@ -104,8 +85,9 @@ namespace Debond
                                       dealii::update_JxW_values);
     const auto       &values = cell_stresses.values();
 
-    Squares    errors, norms;
-    const auto add = [&](const double                  weight,
+    ExactDisplacement<dim> known(exact);
+    Squares                errors, norms;
+    const auto             add = [&](const double                  weight,
                          const dealii::Tensor<1, dim> &value,
                          const dealii::Tensor<2, dim> &gradient,
                          Squares                      &squares) {
@@ -124,14 +106,18 @@ namespace Debond
           stiffness =
             problem.fields().material(cell).template elasticity_tensor<dim>();
           // The points of the rule are further than twice that from the faces.
-          const double step = 1e-3 * cell->minimum_vertex_distance();
+          known.set_h(1e-3 * cell->minimum_vertex_distance());
           for (const unsigned int q : values.quadrature_point_indices())
             {
-              const dealii::Point<dim>    &point  = values.quadrature_point(q);
-              const double                 weight = values.JxW(q);
-              const dealii::Tensor<1, dim> exact_value = value_at(point, exact);
-              const dealii::Tensor<2, dim> exact_gradient =
-                gradient_at(point, step, exact);
+              const dealii::Point<dim> &point  = values.quadrature_point(q);
+              const double              weight = values.JxW(q);
+              dealii::Tensor<1, dim>    exact_value;
+              dealii::Tensor<2, dim>    exact_gradient;
+              for (unsigned int d = 0; d < dim; ++d)
+                {
+                  exact_value[d]    = known.value(point, d);
+                  exact_gradient[d] = known.gradient(point, d);
+                }
               add(weight, exact_value, exact_gradient, norms);
               add(weight,
                   cell_stresses.displacement(q) - exact_value,

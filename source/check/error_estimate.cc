@@ -97,30 +97,12 @@ namespace Debond
 
 
 
-    template <int dim>
-    bool
-    is_stretched(const std::array<dealii::Point<dim>, dim + 1> &vertices)
-    {
-      double shortest = std::numeric_limits<double>::infinity();
-      double longest  = 0.;
-      for (unsigned int v = 1; v <= dim; ++v)
-        for (unsigned int w = 0; w < v; ++w)
-          {
-            const double square = vertices[v].distance_square(vertices[w]);
-            shortest            = std::min(shortest, square);
-            longest             = std::max(longest, square);
-          }
-      return longest >
-             largest_calibrated_stretch * largest_calibrated_stretch * shortest;
-    }
-
-
-
-    /// The mean square of a linear function with these values at the vertices
-    /// of a face.
+    /// Over a face, of a linear function with these values at its vertices: of
+    /// degree 2 the mean square, of degree 1 the square of the mean, as no more
+    /// than means are known.
     template <typename Value, std::size_t n>
     double
-    mean_square(const std::array<Value, n> &values)
+    mean_square(const std::array<Value, n> &values, const unsigned int degree)
     {
       double squares = 0.;
       Value  sum     = values[0];
@@ -130,7 +112,8 @@ namespace Debond
           if (v > 0)
             sum += values[v];
         }
-      return (squares + sum * sum) / (n * (n + 1.));
+      return degree == 1 ? (sum * sum) / double(n * n) :
+                           (squares + sum * sum) / (n * (n + 1.));
     }
 
 
@@ -157,54 +140,42 @@ namespace Debond
     class Residuals
     {
     public:
-      Residuals(const ElasticProblem<dim>   &problem,
-                const AdhesionIntegral<dim> &adhesion,
-                const BoundaryConditions    &conditions,
-                const Supports<dim>         &supports,
-                const Loads<dim>            &loads,
+      Residuals(const EstimatedProblem<dim> &of,
                 const DofVector             &u,
-                const LoadFactors            factors,
-                const Loads<dim>            *dead_loads)
-        : degree(problem.unknowns().degree())
-        , adhesion(adhesion)
-        , boundary(problem.unknowns().contact().boundary())
-        , conditions(conditions)
-        , supports(supports)
-        , loads(loads)
-        , s(problem.unknowns().contact().trace(u))
-        , dead_loads(dead_loads)
+                const LoadFactors            factors)
+        : of(of)
+        , degree(of.problem.unknowns().degree())
+        , boundary(of.problem.unknowns().contact().boundary())
+        , s(of.problem.unknowns().contact().trace(u))
         , load_factor(factors.loads)
-        , has_volume_loads(loads.body_force || loads.temperature_change ||
-                           (dead_loads != nullptr && dead_loads->body_force))
+        , has_volume_loads(
+            of.loads.body_force || of.loads.temperature_change ||
+            (of.dead_loads != nullptr && of.dead_loads->body_force))
         , largest_s(s.template lpNorm<Eigen::Infinity>())
         , fe(1)
-        , barycentric(problem.unknowns().mapping(),
+        , barycentric(of.problem.unknowns().mapping(),
                       fe,
                       dealii::QGaussSimplex<dim>(has_volume_loads ? 2 : 1),
-                      dealii::update_gradients |
+                      dealii::update_values | dealii::update_gradients |
                         dealii::update_quadrature_points |
                         dealii::update_JxW_values)
-        , on_face(problem.unknowns().mapping(),
+        , on_face(of.problem.unknowns().mapping(),
                   fe,
                   face_rule<dim>(1),
                   dealii::update_values | dealii::update_quadrature_points |
                     dealii::update_normal_vectors | dealii::update_JxW_values)
       {
-        const ElasticFields<dim> &fields = problem.fields();
-        const DofVector           displacement =
-          problem.unknowns().cartesian_displacement(u, factors);
-        const auto        &dofs = problem.unknowns().dof_handler();
+        const ElasticUnknowns<dim> &unknowns = of.problem.unknowns();
+        const DofVector             displacement =
+          unknowns.cartesian_displacement(u, factors);
+        const auto        &dofs = unknowns.dof_handler();
         const unsigned int n    = dofs.get_triangulation().n_active_cells();
         cells.reserve(n);
-        if (degree == 2)
-          linear_stresses.reserve(n);
-        if (has_volume_loads)
-          volume_loads.reserve(n);
         parts.assign(n, 0.);
         for (unsigned int f = static_cast<unsigned int>(boundary.faces.size());
              f-- > 0;)
           first_contact_face[boundary.faces[f].cell] = f;
-        CellStresses<dim> stresses(fields,
+        CellStresses<dim> stresses(of.problem.fields(),
                                    displacement,
                                    factors,
                                    stress_points<dim>(degree));
@@ -216,25 +187,19 @@ namespace Debond
             volume = 0.;
             for (const unsigned int q : barycentric.quadrature_point_indices())
               volume += barycentric.JxW(q);
-            Vertices vertices;
-            for (unsigned int v = 0; v <= dim; ++v)
-              vertices[v] = cell->vertex(v);
-            add_cell(vertices,
-                     fields.material(cell),
-                     stresses,
-                     cell->is_locally_owned());
+            add_cell(cell, stresses);
             // Of cells of other ranks not all faces are here.
             unsigned int n_contact_faces = 0;
             for (unsigned int f = 0; f <= dim; ++f)
               if (cell->neighbor_index(f) < 0)
                 {
                   if (cell->is_locally_owned())
-                    add_boundary_face(cell, f, vertices, n_contact_faces);
+                    add_boundary_face(cell, f, n_contact_faces);
                 }
               else if (const auto neighbor = cell->neighbor(f);
                        neighbor->active_cell_index() <
                        cell->active_cell_index())
-                add_inner_face(cell, f, vertices, neighbor);
+                add_inner_face(cell, f, neighbor);
           }
       }
 
@@ -249,39 +214,21 @@ namespace Debond
       bool has_stretched_cells      = false;
 
     private:
-      using Vertices = std::array<dealii::Point<dim>, dim + 1>;
-
       /// What the next cells need of one that is done.
       struct CellStress
       {
-        double                          mu;
-        double                          lambda;
-        double                          part_of_lambda; ///< tr sigma's in eps
-        dealii::SymmetricTensor<2, dim> stress;
-
-        /// sigma is what shears minus this times the identity.
-        double pressure;
-
+        double mu;
+        double lambda;
         double bubble_energy;
-      };
 
-      struct VolumeLoad
-      {
-        /// int_K (f_0 + div sigma).
-        dealii::Tensor<1, dim> force;
-
-        /// What keeps the cell from expanding, and its gradient.
-        double                 thermal_pressure = 0.;
-        dealii::Tensor<1, dim> pressure_gradient;
-
-        dealii::Point<dim> middle;
-      };
-
-      /// Of degree 2, at the vertices of a cell.
-      struct LinearStress
-      {
+        /// At the vertices. Stresses are what shears minus the pressure times
+        /// the identity.
         std::array<dealii::SymmetricTensor<2, dim>, dim + 1> stresses;
         std::array<double, dim + 1>                          pressures;
+
+        /// int_K (f_0 + div sigma), of which faces bear their share; of degree
+        /// 2 zero, for there fall_inside() has it.
+        dealii::Tensor<1, dim> force;
       };
 
       struct Face
@@ -289,120 +236,87 @@ namespace Debond
         unsigned int           cell;
         dealii::Tensor<1, dim> area; ///< the normal times the measure
 
-        /// Of the face, if there are loads in the volume.
-        dealii::Point<dim> middle;
-
         /// The numbers of its vertices in the cell, in the order of
         /// ContactBoundary's faces.
         std::array<unsigned int, dim> in_cell;
       };
 
-      /// Of the next cell; @p stresses: at stress_points().
+      /// Of the next cell; @p at_points: at stress_points(). Loads are
+      /// evaluated where load_vector() and thermal_stresses() do it: there they
+      /// are finite.
+      template <typename CellIterator>
       void
-      add_cell(const Vertices          &vertices,
-               const Material          &material,
-               const CellStresses<dim> &stresses,
-               const bool               is_own)
+      add_cell(const CellIterator &cell, const CellStresses<dim> &at_points)
       {
-        const double mu     = material.shear_modulus();
-        const double lambda = material.template lame_lambda<dim>();
-        CellStress   here   = {mu,
-                               lambda,
-                               lambda / (2. * mu + dim * lambda),
-                               stresses.stress(0),
-                               0.,
-                               bubble_energy<dim>(barycentric, volume)};
-        VolumeLoad   load;
-        if (has_volume_loads)
-          load = volume_load(vertices, material);
-        const double trace = dealii::trace(here.stress);
-        here.pressure =
-          load.thermal_pressure -
-          here.part_of_lambda * (trace + dim * load.thermal_pressure);
+        const Material &material       = of.problem.fields().material(cell);
+        const double    mu             = material.shear_modulus();
+        const double    lambda         = material.template lame_lambda<dim>();
+        const double    part_of_lambda = lambda / (2. * mu + dim * lambda);
+        const double    stress_of_one =
+          of.loads.temperature_change ?
+               load_factor * material.template thermal_stress<dim>() :
+               0.;
+        cells.emplace_back();
+        CellStress &here   = cells.back();
+        here.mu            = mu;
+        here.lambda        = lambda;
+        here.bubble_energy = bubble_energy<dim>(barycentric, volume);
+
+        // What keeps the cell from expanding: the linear function with the same
+        // mean and moments.
+        std::array<double, dim + 1> thermal = {};
+        double                      mean    = 0.;
+        for (const unsigned int q : barycentric.quadrature_point_indices())
+          {
+            const double              weight = barycentric.JxW(q) / volume;
+            const dealii::Point<dim> &point  = barycentric.quadrature_point(q);
+            if (of.loads.body_force)
+              here.force +=
+                load_factor * weight * volume * of.loads.force_at(point);
+            if (of.dead_loads != nullptr && of.dead_loads->body_force)
+              here.force += weight * volume * of.dead_loads->force_at(point);
+            if (stress_of_one == 0.)
+              continue;
+            const double pressure =
+              weight * stress_of_one *
+              field_value(*of.loads.temperature_change, point);
+            mean += pressure;
+            for (unsigned int v = 0; v <= dim; ++v)
+              thermal[v] += (dim + 1.) *
+                            ((dim + 2.) * barycentric.shape_value(v, q) - 1.) *
+                            pressure;
+          }
+        for (unsigned int v = 0; v <= dim; ++v)
+          {
+            here.stresses[v] =
+              degree == 2 ?
+                at_points.stress(1 + v) :
+                at_points.stress(0) -
+                  (thermal[v] - mean) * dealii::unit_symmetric_tensor<dim>();
+            here.pressures[v] =
+              thermal[v] - part_of_lambda * (dealii::trace(here.stresses[v]) +
+                                             dim * thermal[v]);
+            here.force +=
+              volume * (here.stresses[v] * barycentric.shape_grad(v, 0));
+          }
         if (degree == 2)
           {
-            add_linear_part(vertices, stresses, here.part_of_lambda, load);
-            parts[cells.size()] =
-              fall_inside<dim>(barycentric, volume, load.force, here.mu);
+            parts[cell->active_cell_index()] =
+              fall_inside<dim>(barycentric, volume, here.force, mu);
+            here.force = 0.;
           }
-        if (is_own)
-          stress_energy +=
-            0.5 * (1. / (2. * mu)) * volume *
-            (here.stress * here.stress - here.part_of_lambda * trace * trace);
+
+        const double trace = dealii::trace(at_points.stress(0));
+        if (cell->is_locally_owned())
+          stress_energy += 0.5 * (1. / (2. * mu)) * volume *
+                           (at_points.stress(0) * at_points.stress(0) -
+                            part_of_lambda * trace * trace);
         is_nearly_incompressible =
           is_nearly_incompressible || lambda > largest_calibrated_lambda * mu;
         has_stretched_cells =
-          has_stretched_cells || (dim == 3 && is_stretched<dim>(vertices));
-        cells.push_back(here);
-        if (has_volume_loads)
-          volume_loads.push_back(load);
-      }
-
-      /// Loads are evaluated where load_vector() and thermal_stresses() do it:
-      /// there they are finite.
-      VolumeLoad
-      volume_load(const Vertices &vertices, const Material &material) const
-      {
-        VolumeLoad result;
-        for (const dealii::Point<dim> &vertex : vertices)
-          result.middle += vertex / (dim + 1.);
-        const double stress_of_one =
-          loads.temperature_change ?
-            load_factor * material.template thermal_stress<dim>() :
-            0.;
-        for (const unsigned int q : barycentric.quadrature_point_indices())
-          {
-            const double             weight = barycentric.JxW(q) / volume;
-            const dealii::Point<dim> point  = barycentric.quadrature_point(q);
-            // The gradients at the vertices times the coordinates.
-            dealii::Tensor<1, dim> towards;
-            for (unsigned int v = 0; v <= dim; ++v)
-              towards +=
-                fe.shape_value(v, barycentric.get_quadrature().point(q)) *
-                barycentric.shape_grad(v, q);
-            const auto add_force = [&](const Loads<dim> &load,
-                                       const double      factor) {
-              if (load.body_force)
-                result.force += factor * weight * volume * load.force_at(point);
-            };
-            add_force(loads, load_factor);
-            if (dead_loads != nullptr)
-              add_force(*dead_loads, 1.);
-            if (stress_of_one != 0.)
-              {
-                // The linear function with the same mean and moments.
-                const double pressure =
-                  stress_of_one * field_value(*loads.temperature_change, point);
-                result.thermal_pressure += weight * pressure;
-                result.pressure_gradient +=
-                  (dim + 1.) * (dim + 2.) * weight * pressure * towards;
-              }
-          }
-        if (degree == 1)
-          result.force -= volume * result.pressure_gradient;
-        return result;
-      }
-
-      /// What varies in a cell, of degree 2, from the stress at its points.
-      void
-      add_linear_part(const Vertices          &vertices,
-                      const CellStresses<dim> &at_points,
-                      const double             part_of_lambda,
-                      VolumeLoad              &load)
-      {
-        linear_stresses.emplace_back();
-        auto &[stresses, pressures] = linear_stresses.back();
-        for (unsigned int v = 0; v <= dim; ++v)
-          {
-            stresses[v] = at_points.stress(1 + v);
-            const double thermal =
-              load.thermal_pressure +
-              load.pressure_gradient * (vertices[v] - load.middle);
-            pressures[v] =
-              thermal -
-              part_of_lambda * (dealii::trace(stresses[v]) + dim * thermal);
-            load.force += volume * (stresses[v] * barycentric.shape_grad(v, 0));
-          }
+          has_stretched_cells ||
+          (dim == 3 && cell->diameter() > largest_calibrated_stretch *
+                                            cell->minimum_vertex_distance());
       }
 
       /// Of each face of a cell: asking ReferenceCell for each of them takes
@@ -419,40 +333,17 @@ namespace Debond
         return result;
       }
 
+      template <typename CellIterator>
       Face
-      face_of(const unsigned int cell,
-              const unsigned int f,
-              const Vertices    &vertices) const
+      face_of(const CellIterator &cell, const unsigned int f) const
       {
-        Face         face     = {cell, {}, {}, face_vertices[f]};
+        const auto  &in_cell  = face_vertices[f];
         unsigned int opposite = dim * (dim + 1) / 2;
-        for (const unsigned int vertex : face.in_cell)
+        for (const unsigned int vertex : in_cell)
           opposite -= vertex;
-        if (has_volume_loads)
-          for (const unsigned int vertex : face.in_cell)
-            face.middle += vertices[vertex] / double(dim);
-        face.area = -dim * volume * barycentric.shape_grad(opposite, 0);
-        return face;
-      }
-
-      /// What the volume's force and the pressure's change from the middle of a
-      /// cell add to minus the traction on a side of a face, times its measure.
-      dealii::Tensor<1, dim>
-      share_of_volume(const unsigned int            cell,
-                      const Face                   &face,
-                      const dealii::Tensor<1, dim> &outward) const
-      {
-        return pressure_change(cell, face) * outward +
-               mean_in_cell * volume_loads[cell].force;
-      }
-
-      /// From the middle of a cell to that of its face.
-      double
-      pressure_change(const unsigned int cell, const Face &face) const
-      {
-        return has_volume_loads ? volume_loads[cell].pressure_gradient *
-                                    (face.middle - volume_loads[cell].middle) :
-                                  0.;
+        return {cell->active_cell_index(),
+                -dim * volume * barycentric.shape_grad(opposite, 0),
+                in_cell};
       }
 
       /// What J would fall by r, given the mean square of its product with the
@@ -468,66 +359,40 @@ namespace Debond
       void
       add_inner_face(const CellIterator  &cell,
                      const unsigned int   f,
-                     const Vertices      &vertices,
                      const OtherIterator &neighbor)
       {
-        const Face face = face_of(cell->active_cell_index(), f, vertices);
-        const unsigned int other  = neighbor->active_cell_index();
-        const CellStress  &here   = cells[face.cell];
-        const CellStress  &there  = cells[other];
-        const double       a      = here.bubble_energy;
-        const double       b      = there.bubble_energy;
-        double             energy = 0.;
+        const Face         face  = face_of(cell, f);
+        const unsigned int other = neighbor->active_cell_index();
+        const CellStress  &here  = cells[face.cell];
+        const CellStress  &there = cells[other];
+        const double       a     = here.bubble_energy;
+        const double       b     = there.bubble_energy;
         // At the interface of two materials only tractions have no jump.
         const bool is_one_material =
           here.mu == there.mu && here.lambda == there.lambda;
-        const double stiffness = here.mu * a + there.mu * b;
-        const double pressure_stiffness =
-          (here.lambda + 2. * here.mu) * (a + b);
-        if (degree == 2)
+        // Linear on the face: r times the measure, without the jumps of the
+        // pressure, and these, at its vertices.
+        std::array<dealii::Tensor<1, dim>, dim> r;
+        std::array<double, dim>                 jumps = {};
+        for (unsigned int v = 0; v < dim; ++v)
           {
-            // Linear on the face: r times the measure, without the jumps of the
-            // pressure, and these, at its vertices.
-            std::array<dealii::Tensor<1, dim>, dim> r;
-            std::array<double, dim>                 jumps = {};
-            const LinearStress &from = linear_stresses[face.cell];
-            const LinearStress &to   = linear_stresses[other];
-            for (unsigned int v = 0; v < dim; ++v)
-              {
-                const unsigned int index = cell->vertex_index(face.in_cell[v]);
-                unsigned int       w     = 0;
-                while (neighbor->vertex_index(w) != index)
-                  ++w;
-                r[v] =
-                  (to.stresses[w] - from.stresses[face.in_cell[v]]) * face.area;
-                if (is_one_material)
-                  {
-                    jumps[v] =
-                      from.pressures[face.in_cell[v]] - to.pressures[w];
-                    r[v] -= jumps[v] * face.area;
-                  }
-              }
-            energy = fall(mean_square(jumps) * face.area.norm_square(),
-                          pressure_stiffness) +
-                     fall(mean_square(r), stiffness);
-          }
-        else
-          {
-            dealii::Tensor<1, dim> r = (there.stress - here.stress) * face.area;
-            if (has_volume_loads)
-              r += share_of_volume(face.cell, face, face.area) +
-                   share_of_volume(other, face, -face.area);
+            const unsigned int own   = face.in_cell[v];
+            const unsigned int index = cell->vertex_index(own);
+            unsigned int       w     = 0;
+            while (neighbor->vertex_index(w) != index)
+              ++w;
+            r[v] = (there.stresses[w] - here.stresses[own]) * face.area +
+                   mean_in_cell * (here.force + there.force);
             if (is_one_material)
               {
-                const double jump =
-                  here.pressure + pressure_change(face.cell, face) -
-                  there.pressure - pressure_change(other, face);
-                r -= jump * face.area;
-                energy = fall(jump * jump * face.area.norm_square(),
-                              pressure_stiffness);
+                jumps[v] = here.pressures[own] - there.pressures[w];
+                r[v] -= jumps[v] * face.area;
               }
-            energy += fall(r.norm_square(), stiffness);
           }
+        const double energy =
+          fall(mean_square(jumps, degree) * face.area.norm_square(),
+               (here.lambda + 2. * here.mu) * (a + b)) +
+          fall(mean_square(r, degree), here.mu * a + there.mu * b);
         parts[face.cell] += 0.5 * energy;
         parts[other] += 0.5 * energy;
       }
@@ -536,29 +401,22 @@ namespace Debond
       void
       add_boundary_face(const CellIterator &cell,
                         const unsigned int  f,
-                        const Vertices     &vertices,
                         unsigned int       &n_contact_faces)
       {
         const auto id         = cell->face(f)->boundary_id();
-        const bool is_contact = conditions.contact.count(id) > 0;
+        const bool is_contact = of.conditions.contact.count(id) > 0;
         // Those of a cell follow each other.
         const unsigned int contact_face =
           is_contact ? first_contact_face.at(cell->id().get_coarse_cell_id()) +
                          n_contact_faces++ :
                        0;
-        if (conditions.clamped.count(id) > 0)
+        if (of.conditions.clamped.count(id) > 0)
           return;
 
-        const Face   face    = face_of(cell->active_cell_index(), f, vertices);
-        const double measure = face.area.norm();
-        const dealii::Tensor<1, dim> normal = face.area / measure;
-        dealii::Tensor<1, dim>       inner;
-        if (degree == 1)
-          {
-            inner = -(cells[face.cell].stress * normal);
-            if (has_volume_loads)
-              inner += share_of_volume(face.cell, face, face.area) / measure;
-          }
+        const Face                   face    = face_of(cell, f);
+        const CellStress            &here    = cells[face.cell];
+        const double                 measure = face.area.norm();
+        const dealii::Tensor<1, dim> normal  = face.area / measure;
         on_face.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell),
                        f);
         double square = 0.;
@@ -568,15 +426,14 @@ namespace Debond
             for (unsigned int v = 0; v < dim; ++v)
               coordinates[v] = on_face.shape_value(face.in_cell[v], q);
             const dealii::Point<dim> &point = on_face.quadrature_point(q);
-            dealii::Tensor<1, dim>    r     = inner;
-            if (degree == 2)
-              for (unsigned int v = 0; v < dim; ++v)
-                r -= coordinates[v] *
-                     (linear_stresses[face.cell].stresses[face.in_cell[v]] *
-                      normal);
-            r += load_factor * loads.traction(id, point, normal);
-            if (dead_loads != nullptr)
-              r += dead_loads->traction(id, point, normal);
+            dealii::Tensor<1, dim>    r = mean_in_cell / measure * here.force;
+            // Of degree 1 the mean.
+            for (unsigned int v = 0; v < dim; ++v)
+              r -= (degree == 1 ? 1. / dim : coordinates[v]) *
+                   (here.stresses[face.in_cell[v]] * normal);
+            r += load_factor * of.loads.traction(id, point, normal);
+            if (of.dead_loads != nullptr)
+              r += of.dead_loads->traction(id, point, normal);
             if (is_contact)
               r = with_foundation(r,
                                   face,
@@ -585,7 +442,6 @@ namespace Debond
             square +=
               on_face.JxW(q) / measure * free_part(r, normal, id).norm_square();
           }
-        const CellStress &here = cells[face.cell];
         parts[face.cell] +=
           fall(square * measure * measure, here.mu * here.bubble_energy);
       }
@@ -601,8 +457,8 @@ namespace Debond
         constexpr double             tolerance = 1e-6;
         const double                 measure   = side.area.norm();
         const dealii::Tensor<1, dim> normal    = side.area / measure;
-        const double traction  = adhesion.traction(face, coordinates, s);
-        const double trace     = adhesion.trace(face, coordinates, s);
+        const double traction  = of.adhesion.traction(face, coordinates, s);
+        const double trace     = of.adhesion.trace(face, coordinates, s);
         double       r_nu      = r * normal - traction;
         bool         is_closed = true;
         for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
@@ -615,7 +471,7 @@ namespace Debond
           r_nu /= std::sqrt(1. + mean_square_on_face<dim> * measure * traction /
                                    (trace * cells[side.cell].mu *
                                     cells[side.cell].bubble_energy));
-        return conditions.fixes_tangential(face.id) ?
+        return of.conditions.fixes_tangential(face.id) ?
                  r_nu * normal :
                  r + (r_nu - r * normal) * normal;
       }
@@ -626,7 +482,8 @@ namespace Debond
                 const dealii::Tensor<1, dim>    &normal,
                 const dealii::types::boundary_id id) const
       {
-        for (const PrescribedDisplacement<dim> &held : supports.displacements)
+        for (const PrescribedDisplacement<dim> &held :
+             of.supports.displacements)
           if (held.boundaries.count(id) > 0)
             {
               if (held.is_roller)
@@ -639,14 +496,10 @@ namespace Debond
         return r;
       }
 
+      const EstimatedProblem<dim>    of;
       const unsigned int             degree;
-      const AdhesionIntegral<dim>   &adhesion;
       const ContactBoundary<dim>    &boundary;
-      const BoundaryConditions      &conditions;
-      const Supports<dim>           &supports;
-      const Loads<dim>              &loads;
       const Eigen::VectorXd          s;
-      const Loads<dim>              *dead_loads;
       const double                   load_factor;
       const bool                     has_volume_loads;
       const double                   largest_s;
@@ -656,9 +509,7 @@ namespace Debond
       double                         volume = 0.; ///< of the cell
       const std::array<std::array<unsigned int, dim>, dim + 1> face_vertices =
         make_face_vertices();
-      std::vector<CellStress>   cells;
-      std::vector<LinearStress> linear_stresses; ///< of degree 2
-      std::vector<VolumeLoad>   volume_loads;    ///< if there are any
+      std::vector<CellStress> cells;
 
       /// Of each cell that has any.
       std::unordered_map<dealii::types::coarse_cell_id, unsigned int>
@@ -687,25 +538,17 @@ namespace Debond
 
   template <int dim>
   ErrorEstimate
-  estimate_error(const ElasticProblem<dim>   &problem,
-                 const AdhesionIntegral<dim> &adhesion,
-                 const BoundaryConditions    &conditions,
-                 const Supports<dim>         &supports,
-                 const Loads<dim>            &loads,
+  estimate_error(const EstimatedProblem<dim> &of,
                  const DofVector             &u,
                  const double                 functional,
-                 const LoadFactors            factors,
-                 const Loads<dim>            *dead_loads)
+                 const LoadFactors            factors)
   {
-    const auto                   &dofs  = problem.unknowns().dof_handler();
-    const MPI_Comm                ranks = problem.unknowns().communicator();
+    const auto                   &dofs  = of.problem.unknowns().dof_handler();
+    const MPI_Comm                ranks = of.problem.unknowns().communicator();
     std::optional<Residuals<dim>> residuals;
-    on_all_ranks(ranks, [&]() {
-      residuals.emplace(
-        problem, adhesion, conditions, supports, loads, u, factors, dead_loads);
-    });
+    on_all_ranks(ranks, [&]() { residuals.emplace(of, u, factors); });
 
-    const double  constant = calibration<dim>(problem.unknowns().degree());
+    const double  constant = calibration<dim>(of.problem.unknowns().degree());
     ErrorEstimate result;
     result.cells = std::move(residuals->parts);
     for (double &part : result.cells)

@@ -127,21 +127,20 @@ namespace Debond
 
 
 
-    /// Of each node. @p rounding: of the nodes' forces.
+    /// Of each node. @p resolved: the least force that is, of each; @p largest:
+    /// displacement of the body and force of a support.
     template <int dim>
     std::vector<LawScale>
-    law_scales(const AdhesiveLaw                   &law,
-               const AdhesionIntegral<dim>         &adhesion,
+    law_scales(const AdhesionIntegral<dim>         &adhesion,
                const ContactBoundary<dim>          &boundary,
                const std::vector<ContactNodeState> &nodes,
-               const VectorView                    &rounding,
-               const double                         resolved_above_gaps,
-               const double                         largest_reaction,
-               const double                         largest_displacement)
+               const VectorView                    &resolved,
+               const LawScale                      &largest)
     {
       constexpr double smallest_contact_force = 1e-3;
 
-      double largest_force = smallest_contact_force * largest_reaction;
+      const AdhesiveLaw &law           = adhesion.adhesive_law();
+      double             largest_force = smallest_contact_force * largest.force;
       for (const ContactNodeState &node : nodes)
         largest_force = std::max(largest_force, std::abs(node.normal_force));
 
@@ -153,12 +152,10 @@ namespace Debond
           const double    strength  = law.bond_strength() * bonds.energy /
                                   bonds.stretch * boundary.nodes[i].measure;
           const bool has_bonds = threshold > 0. && strength > 0.;
-          LawScale   scale     = {largest_displacement, largest_force};
+          LawScale   scale     = {largest.length, largest_force};
           if (has_bonds)
             scale.force = std::min(scale.force, strength);
-          scale.force = std::max({scale.force,
-                                  digits_above_rounding * rounding(i),
-                                  resolved_above_gaps});
+          scale.force = std::max(scale.force, resolved(i));
           if (has_bonds)
             scale.length =
               std::min(scale.length,
@@ -170,40 +167,37 @@ namespace Debond
 
 
 
-    BondState
-    state_of_branch(const AdhesiveLaw              &law,
-                    const std::vector<std::string> &names,
-                    const unsigned int              piece)
-    {
-      return static_cast<BondState>(
-        std::find(names.begin(), names.end(), law.name(piece)) - names.begin());
-    }
-
-
-
+    /// Of node @p i, from its displacement and force. @p largest_s: of all
+    /// nodes.
+    template <int dim>
     void
-    set_state(const AdhesiveLaw              &law,
-              const std::vector<std::string> &names,
-              const BondScale                &bonds,
-              const unsigned int              least_piece,
-              const LawScale                 &scale,
-              const double                    largest_displacement,
-              const double                    tolerance,
-              ContactNodeState               &node)
+    set_state(const unsigned int           i,
+              const AdhesionIntegral<dim> &adhesion,
+              const LawScale              &scale,
+              const double                 largest_s,
+              const double                 tolerance,
+              Verification<dim>           &result)
     {
-      const BranchMinimum &branches = law.branches();
+      const AdhesiveLaw   &law         = adhesion.adhesive_law();
+      const BranchMinimum &branches    = law.branches();
+      const BondScale      bonds       = adhesion.bonds_at(i);
+      const unsigned int   least_piece = adhesion.least_piece(i);
+      ContactNodeState    &node        = result.nodes[i];
+      const auto           state_of    = [&](const unsigned int piece) {
+        return static_cast<BondState>(std::find(result.state_names.begin(),
+                                                result.state_names.end(),
+                                                law.name(piece)) -
+                                      result.state_names.begin());
+      };
       node.branch =
         bonds.energy == 0. ?
           BondState::free :
-          state_of_branch(law,
-                          names,
-                          std::max(least_piece,
-                                   branches.index(node.s / bonds.stretch)));
+          state_of(
+            std::max(least_piece, branches.index(node.s / bonds.stretch)));
       const double threshold = first_threshold(law) * bonds.stretch;
       const double no_gap =
-        tolerance * (threshold > 0. ?
-                       std::min(threshold, largest_displacement) :
-                       largest_displacement);
+        tolerance *
+        (threshold > 0. ? std::min(threshold, largest_s) : largest_s);
       // A small gap under pressure is contact that an iterative method has not
       // closed yet.
       constexpr double largest_gap = 1e-3;
@@ -224,7 +218,7 @@ namespace Debond
           if (std::abs(node.s - kink) <= tolerance * std::abs(kink))
             {
               node.state  = BondState::kink;
-              node.branch = state_of_branch(law, names, k - 1);
+              node.branch = state_of(k - 1);
             }
         }
     }
@@ -364,14 +358,15 @@ namespace Debond
 
 
 
+    /// @p residual: A u - f; @p resolved: the least sum of forces' sizes that
+    /// rounding leaves; @p held_forces: of the bonds at vertices that are held.
     template <int dim>
     void
     compute_force_balance(const ElasticProblem<dim> &problem,
                           const DofVector           &residual,
-                          const std::vector<double> &held_forces,
                           const LoadFactors          factors,
-                          const double               smallest_force,
-                          const DofVector           &rounding,
+                          const double               resolved,
+                          const std::vector<double> &held_forces,
                           Verification<dim>         &result)
     {
       const auto       &normals = problem.unknowns().contact().normals();
@@ -444,9 +439,6 @@ namespace Debond
       const double imbalance = (result.applied_force + result.clamped_reaction +
                                 result.contact_reaction)
                                  .norm();
-      // The rounding of a sum is that of all its terms.
-      const double resolved =
-        std::max(smallest_force, digits_above_rounding * rounding.l1_norm());
       result.force_imbalance =
         imbalance > 0. ? imbalance / std::max(scale, resolved) : 0.;
     }
@@ -522,30 +514,24 @@ namespace Debond
     const double resolved_above_gaps =
       digits_above_rounding *
       std::min(rounding_of_gaps, negligible_force * largest_force);
-    const std::vector<LawScale> scales = law_scales(law,
-                                                    adhesion,
-                                                    boundary,
-                                                    result.nodes,
-                                                    contact.trace(rounding),
-                                                    resolved_above_gaps,
-                                                    largest.supported,
-                                                    largest_displacement);
+    const Eigen::VectorXd resolved_at_nodes =
+      (digits_above_rounding * contact.trace(rounding))
+        .cwiseMax(resolved_above_gaps);
+    const std::vector<LawScale> scales =
+      law_scales(adhesion,
+                 boundary,
+                 result.nodes,
+                 resolved_at_nodes,
+                 {largest_displacement, largest.supported});
     compute_violations(adhesion, s, scales, result.nodes);
 
     const double largest_s = s.lpNorm<Eigen::Infinity>();
     result.law_violation   = 0.;
     for (unsigned int i = 0; i < result.nodes.size(); ++i)
       {
-        ContactNodeState &node = result.nodes[i];
-        set_state(law,
-                  result.state_names,
-                  adhesion.bonds_at(i),
-                  adhesion.least_piece(i),
-                  scales[i],
-                  largest_s,
-                  tolerance,
-                  node);
-        result.law_violation = std::max(result.law_violation, node.violation);
+        set_state(i, adhesion, scales[i], largest_s, tolerance, result);
+        result.law_violation =
+          std::max(result.law_violation, result.nodes[i].violation);
       }
 
     const double resolved =
@@ -555,12 +541,13 @@ namespace Debond
       largest.free > 0. ?
         largest.free / std::max({largest.free, largest.supported, resolved}) :
         0.;
+    // The rounding of a sum is that of all its terms.
     compute_force_balance(problem,
                           residual,
-                          adhesion.held_forces(s),
                           factors,
-                          resolved,
-                          rounding,
+                          std::max(resolved,
+                                   digits_above_rounding * rounding.l1_norm()),
+                          adhesion.held_forces(s),
                           result);
 
     result.force_rounding =

@@ -198,7 +198,7 @@ namespace Debond
             nearest = q;
           }
       }
-    return least
+    return broken
       .points[(&face - boundary.faces.data()) * points.size() + nearest];
   }
 

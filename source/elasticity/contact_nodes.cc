@@ -103,20 +103,22 @@ namespace Debond
 
     /// The places of contact nodes in their order, the lexicographic one of
     /// their positions. Rounding of the coordinates, as in a turned body, must
-    /// not change it: those that agree to 1e-10 of the body's @p diameter are
-    /// the same, and nodes at the same place stay as they are.
+    /// not change it: those that agree to 1e-10 of the contact boundary's size
+    /// are the same, and nodes at the same place stay as they are.
     template <int dim>
     std::vector<unsigned int>
-    contact_order(const std::vector<typename ContactBoundary<dim>::Node> &nodes,
-                  const double diameter)
+    contact_order(const std::vector<typename ContactBoundary<dim>::Node> &nodes)
     {
+      double size = 0.;
+      for (const auto &node : nodes)
+        size = std::max(size, node.position.distance(nodes[0].position));
       std::array<std::vector<unsigned int>, dim> coordinate_ranks;
       for (unsigned int d = 0; d < dim; ++d)
         {
           std::vector<double> coordinates;
           for (const auto &node : nodes)
             coordinates.push_back(node.position[d]);
-          coordinate_ranks[d] = ranks(coordinates, 1e-10 * diameter);
+          coordinate_ranks[d] = ranks(coordinates, 1e-10 * size);
         }
       std::vector<unsigned int> order(nodes.size());
       std::iota(order.begin(), order.end(), 0u);
@@ -163,11 +165,11 @@ namespace Debond
       }
 
       ContactSpace<dim>
-      space(const double diameter)
+      space()
       {
         std::vector<dealii::types::global_dof_index> boundary_normals;
         std::vector<unsigned int>                    place(nodes.size());
-        for (const unsigned int node : contact_order<dim>(nodes, diameter))
+        for (const unsigned int node : contact_order<dim>(nodes))
           {
             place[node] = static_cast<unsigned int>(boundary.nodes.size());
             boundary.nodes.push_back(nodes[node]);
@@ -375,13 +377,12 @@ namespace Debond
                      const unsigned int                    degree,
                      const BoundaryConditions             &conditions,
                      const Supports<dim>                  &supports,
-                     const double                          diameter,
                      NodeSupports<dim>                    &node_supports,
                      DofVector                            &gap)
   {
     return ContactSpaceMaker<dim>(
              faces, degree, conditions, supports, node_supports, gap)
-      .space(diameter);
+      .space();
   }
 
 

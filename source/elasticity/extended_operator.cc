@@ -107,19 +107,14 @@ namespace Debond
       problem.unknowns().communicator(),
       dealii::ArrayView<long double>(forces.data(), forces.size()));
     problem.unknowns().edges().forces_to_conjugates(forces);
-    ExtendedVector result = forces;
-    for (const auto &frame : problem.unknowns().frames())
-      for (unsigned int k = 0; k < dim; ++k)
-        {
-          result(frame.dofs[k]) = 0.;
-          for (unsigned int d = 0; d < dim; ++d)
-            result(frame.dofs[k]) +=
-              frame.to_cartesian[d][k] * forces(frame.dofs[d]);
-        }
-    for (unsigned int i = 0; i < result.size(); ++i)
+    multiply_in_frames(
+      problem.unknowns().frames(),
+      [](const auto &frame) { return dealii::transpose(frame.to_cartesian); },
+      forces);
+    for (unsigned int i = 0; i < forces.size(); ++i)
       if (problem.unknowns().is_constrained(i))
-        result(i) = 0.;
-    return result;
+        forces(i) = 0.;
+    return forces;
   }
 
 
@@ -159,14 +154,10 @@ namespace Debond
   ExtendedOperator<dim>::cartesian(const ExtendedVector &u) const
   {
     ExtendedVector result = u;
-    for (const auto &frame : problem.unknowns().frames())
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          result(frame.dofs[d]) = 0.;
-          for (unsigned int k = 0; k < dim; ++k)
-            result(frame.dofs[d]) +=
-              frame.to_cartesian[d][k] * u(frame.dofs[k]);
-        }
+    multiply_in_frames(
+      problem.unknowns().frames(),
+      [](const auto &frame) { return frame.to_cartesian; },
+      result);
     problem.unknowns().edges().to_values(result);
     return result;
   }

@@ -103,180 +103,73 @@ namespace Debond
     /// Errors of the integral that no note speaks of, relative to the load.
     constexpr double small_error = 1e-6;
 
-    /// A part of a face.
-    template <int dim>
-    using Part = std::array<dealii::Point<dim>, dim>;
 
-    /// Two halves, or four triangles.
+
+    /// A traction on the face on which its integral is worst.
     template <int dim>
-    std::vector<Part<dim>>
-    divide(const Part<dim> &part)
+    struct WorstFace
     {
-      const auto middle = [&](const unsigned int a, const unsigned int b) {
-        return part[a] + 0.5 * (part[b] - part[a]);
-      };
-      if constexpr (dim == 2)
-        return {{{part[0], middle(0, 1)}}, {{middle(0, 1), part[1]}}};
-      else
-        return {{{part[0], middle(0, 1), middle(0, 2)}},
-                {{middle(0, 1), part[1], middle(1, 2)}},
-                {{middle(0, 2), middle(1, 2), part[2]}},
-                {{middle(0, 1), middle(1, 2), middle(0, 2)}}};
-    }
-
-
-
-    /// Of degree 3 and more.
-    template <int dim>
-    dealii::Quadrature<dim - 1>
-    rule_with_ends()
-    {
-      if constexpr (dim == 2)
-        return dealii::QGaussLobatto<1>(4);
-      else
-        return {{{0., 0.},
-                 {1., 0.},
-                 {0., 1.},
-                 {0.5, 0.},
-                 {0.5, 0.5},
-                 {0., 0.5},
-                 {1. / 3., 1. / 3.}},
-                {1. / 40.,
-                 1. / 40.,
-                 1. / 40.,
-                 1. / 15.,
-                 1. / 15.,
-                 1. / 15.,
-                 9. / 40.}};
-    }
-
-
-
-    /// A traction on one face.
-    template <int dim>
-    struct LoadedFace
-    {
-      const Traction<dim>   *traction;
+      const Traction<dim>   *traction   = nullptr;
+      double                 size       = 0.; ///< of the load on all faces
+      double                 difference = 0.; ///< from a coarser rule
       dealii::Tensor<1, dim> normal;
-      Part<dim>              corners;
-      double                 measure;
-
-      /// The mean on a part of it.
-      dealii::Tensor<1, dim>
-      mean(const Part<dim> &part, const dealii::Quadrature<dim - 1> &rule) const
-      {
-        dealii::Tensor<1, dim> sum;
-        for (unsigned int q = 0; q < rule.size(); ++q)
-          {
-            dealii::Point<dim> point = part[0];
-            for (unsigned int k = 1; k < dim; ++k)
-              point += rule.point(q)[k - 1] * (part[k] - part[0]);
-            sum += (dim - 1.) * rule.weight(q) * (*traction)(point, normal);
-          }
-        return sum;
-      }
-
-      /// How far the mean is from that of its parts.
-      dealii::Tensor<1, dim>
-      error(const Part<dim>                   &part,
-            const dealii::Quadrature<dim - 1> &rule) const
-      {
-        dealii::Tensor<1, dim>       result = mean(part, rule);
-        const std::vector<Part<dim>> parts  = divide<dim>(part);
-        for (const Part<dim> &smaller : parts)
-          result -= mean(smaller, rule) / static_cast<double>(parts.size());
-        return result;
-      }
+      std::array<dealii::Point<dim>, dim> corners;
+      double                              measure = 0.;
     };
 
 
 
-    /// Integrates a traction over faces, one after the other, and remembers the
-    /// one on which that is worst.
+    /// The mean of a traction on a face.
     template <int dim>
-    class TractionIntegral
+    dealii::Tensor<1, dim>
+    mean_traction(const Traction<dim>                       &traction,
+                  const dealii::Tensor<1, dim>              &normal,
+                  const std::array<dealii::Point<dim>, dim> &corners,
+                  const dealii::Quadrature<dim - 1>         &rule)
     {
-    public:
-      TractionIntegral()
-        : rule(face_rule<dim>(parts_of_a_face<dim>))
-        , coarse_rule(face_rule<dim>(parts_of_a_face<dim> / 2))
-      {}
+      dealii::Tensor<1, dim> sum;
+      for (unsigned int q = 0; q < rule.size(); ++q)
+        {
+          dealii::Point<dim> point = corners[0];
+          for (unsigned int k = 1; k < dim; ++k)
+            point += rule.point(q)[k - 1] * (corners[k] - corners[0]);
+          sum += (dim - 1.) * rule.weight(q) * traction(point, normal);
+        }
+      return sum;
+    }
 
-      /// @p mean: by the rule.
-      void
-      look_at(const LoadedFace<dim>        &face,
-              const dealii::Tensor<1, dim> &mean,
-              const double                  mean_size)
-      {
-        size += mean_size * face.measure;
-        const double difference =
-          (face.mean(face.corners, coarse_rule) - mean).norm() * face.measure;
-        if (difference > largest_difference)
-          {
-            largest_difference = difference;
-            worst              = face;
-          }
-      }
 
-      /// Appends a note if the worst face needs one.
-      void
-      add_note(std::vector<std::string> &notes) const
-      {
-        if (largest_difference <= small_error * size)
-          return;
-        const double error =
-          worst.error(worst.corners, rule).norm() * worst.measure / size;
-        if (error <= small_error)
-          return;
 
-        // The rule has points at the ends, for a jump near one of them would go
-        // unnoticed; not at those of the face, where it may be a neighbor's.
-        const dealii::Quadrature<dim - 1> with_ends = rule_with_ends<dim>();
-        Part<dim>                         part      = worst.corners;
-        for (const dealii::Point<dim> &corner : worst.corners)
-          for (dealii::Point<dim> &inner : part)
-            inner += 1e-10 * (corner - inner);
-        for (unsigned int step = 0; step < (dim == 2 ? 30 : 15); ++step)
-          {
-            const std::vector<Part<dim>> parts = divide<dim>(part);
-            part                               = *std::max_element(
-              parts.begin(),
-              parts.end(),
-              [&](const Part<dim> &a, const Part<dim> &b) {
-                return worst.error(a, with_ends).norm_square() <
-                       worst.error(b, with_ends).norm_square();
-              });
-          }
-        dealii::Point<dim> place;
-        for (const dealii::Point<dim> &corner : part)
-          place += corner / static_cast<double>(dim);
-        const double here = worst.mean(part, with_ends).norm();
-        double       jump = 0.;
-        for (const dealii::Point<dim> &corner : part)
-          jump = std::max(jump,
-                          ((*worst.traction)(corner, worst.normal) -
-                           (*worst.traction)(part[0], worst.normal))
-                            .norm());
-        notes.push_back(words(worst.traction->entry,
-                              here * worst.measure > 100. * size ?
-                                " grows without bound" :
-                              jump > 1e-3 * here ? " jumps" :
-                                                   " is not smooth",
-                              " inside a face, at ",
-                              point_text(place),
-                              ", which makes an error of ",
-                              error,
-                              " of the whole: put a vertex there"));
-      }
-
-      const dealii::Quadrature<dim - 1> rule;
-
-    private:
-      const dealii::Quadrature<dim - 1> coarse_rule;
-      LoadedFace<dim>                   worst;
-      double                            largest_difference = 0.;
-      double                            size               = 0.;
-    };
+    /// Appends a note if the integral over the worst face is not good enough.
+    template <int dim>
+    void
+    add_note(const WorstFace<dim> &worst, std::vector<std::string> &notes)
+    {
+      if (worst.difference <= small_error * worst.size)
+        return;
+      const auto mean_by = [&](const unsigned int n_parts) {
+        return mean_traction<dim>(*worst.traction,
+                                  worst.normal,
+                                  worst.corners,
+                                  face_rule<dim>(n_parts));
+      };
+      const double error =
+        worst.measure *
+        (mean_by(2 * parts_of_a_face<dim>) - mean_by(parts_of_a_face<dim>))
+          .norm() /
+        worst.size;
+      if (error <= small_error)
+        return;
+      dealii::Point<dim> centre;
+      for (const dealii::Point<dim> &corner : worst.corners)
+        centre += corner / static_cast<double>(dim);
+      notes.push_back(words(worst.traction->entry,
+                            " is not smooth inside the face at ",
+                            point_text(centre),
+                            ", which makes an error of about ",
+                            error,
+                            " of the whole: put a vertex where it jumps"));
+    }
 
 
 
@@ -289,9 +182,11 @@ namespace Debond
     {
       const dealii::MappingFE<dim> mapping(dealii::FE_SimplexP<dim>(1));
       const auto                  &fe = dof_handler.get_fe();
-      std::map<std::string, TractionIntegral<dim>> integrals;
-      const dealii::Quadrature<dim - 1>            rule =
+      std::map<std::string, WorstFace<dim>> worst_faces;
+      const dealii::Quadrature<dim - 1>     rule =
         face_rule<dim>(parts_of_a_face<dim>);
+      const dealii::Quadrature<dim - 1> coarse_rule =
+        face_rule<dim>(parts_of_a_face<dim> / 2);
       dealii::FEFaceValues<dim> fe_values(mapping,
                                           fe,
                                           rule,
@@ -310,15 +205,14 @@ namespace Debond
               continue;
             fe_values.reinit(cell, f);
             cell->get_dof_indices(dofs);
-            LoadedFace<dim> loaded = {nullptr,
-                                      fe_values.normal_vector(0),
-                                      {},
-                                      face->measure()};
+            const dealii::Tensor<1, dim> normal  = fe_values.normal_vector(0);
+            const double                 measure = face->measure();
+            std::array<dealii::Point<dim>, dim> corners;
             for (unsigned int v = 0; v < dim; ++v)
-              loaded.corners[v] = face->vertex(v);
+              corners[v] = face->vertex(v);
             for (const Traction<dim> &traction : loads_here->second)
               {
-                dealii::Tensor<1, dim> mean;
+                dealii::Tensor<1, dim> by_rule;
                 double                 mean_size = 0.;
                 for (unsigned int q = 0; q < rule.size(); ++q)
                   {
@@ -326,16 +220,15 @@ namespace Debond
                     // the traction may jump there.
                     dealii::Point<dim> point = fe_values.quadrature_point(q);
                     for (unsigned int d = 0; d < dim; ++d)
-                      if (std::all_of(loaded.corners.begin(),
-                                      loaded.corners.end(),
+                      if (std::all_of(corners.begin(),
+                                      corners.end(),
                                       [&](const dealii::Point<dim> &corner) {
-                                        return corner[d] ==
-                                               loaded.corners[0][d];
+                                        return corner[d] == corners[0][d];
                                       }))
-                        point[d] = loaded.corners[0][d];
-                    values[q] = (dim - 1.) * rule.weight(q) *
-                                traction(point, loaded.normal);
-                    mean += values[q];
+                        point[d] = corners[0][d];
+                    values[q] =
+                      (dim - 1.) * rule.weight(q) * traction(point, normal);
+                    by_rule += values[q];
                     mean_size += values[q].norm();
                   }
                 for (unsigned int i = 0; i < dofs.size(); ++i)
@@ -350,19 +243,29 @@ namespace Debond
                         sum += static_cast<long double>(
                                  fe_values.shape_value(i, q)) *
                                values[q][d];
-                      forces(dofs[i]) +=
-                        loaded.measure * static_cast<double>(sum);
+                      forces(dofs[i]) += measure * static_cast<double>(sum);
                     }
-                if (notes != nullptr)
-                  {
-                    loaded.traction = &traction;
-                    integrals[traction.entry].look_at(loaded, mean, mean_size);
-                  }
+                if (notes == nullptr)
+                  continue;
+                WorstFace<dim> &worst = worst_faces[traction.entry];
+                worst.size += measure * mean_size;
+                const double difference =
+                  measure *
+                  (mean_traction<dim>(traction, normal, corners, coarse_rule) -
+                   by_rule)
+                    .norm();
+                if (difference > worst.difference)
+                  worst = {&traction,
+                           worst.size,
+                           difference,
+                           normal,
+                           corners,
+                           measure};
               }
           }
       if (notes != nullptr)
-        for (const auto &[unused, integral] : integrals)
-          integral.add_note(*notes);
+        for (const auto &[unused, worst] : worst_faces)
+          add_note(worst, *notes);
     }
 
 

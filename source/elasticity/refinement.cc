@@ -72,14 +72,12 @@ namespace Debond
                        const LoadFactors            factors,
                        CorrectionSolver            &correction_solver,
                        const std::function<bool()> &go_on,
-                       const DofVector             &start,
-                       RefinementResult            &counts)
+                       const DofVector             &start)
         : A(elastic_problem)
         , problem(elastic_problem)
         , phi(nonsmooth)
         , solver(correction_solver)
         , may_go_on(go_on)
-        , result(counts)
         , normals(problem.unknowns().contact().normals())
         , lifting(to_extended(problem.unknowns().lifting(factors)))
         , u(to_extended(start) + lifting)
@@ -94,6 +92,8 @@ namespace Debond
           least_energy +=
             diagonal(i) * epsilon * lifting(i) * epsilon * lifting(i);
       }
+
+      RefinementResult result;
 
       /// Returns false if the majorant is the one of before.
       bool
@@ -320,13 +320,11 @@ namespace Debond
           }
       }
 
-      const ExtendedOperator<dim>  A;
-      const ElasticProblem<dim>   &problem;
-      const PiecewiseQuadratic    &phi;
-      CorrectionSolver            &solver;
-      const std::function<bool()> &may_go_on;
-      RefinementResult            &result;
-
+      const ExtendedOperator<dim>                         A;
+      const ElasticProblem<dim>                          &problem;
+      const PiecewiseQuadratic                           &phi;
+      CorrectionSolver                                   &solver;
+      const std::function<bool()>                        &may_go_on;
       const std::vector<dealii::types::global_dof_index> &normals;
 
       const ExtendedVector lifting;
@@ -352,15 +350,14 @@ namespace Debond
          const std::function<bool()> &may_go_on,
          DofVector                   &u)
   {
-    RefinementResult      result;
-    ExtendedMajorant<dim> majorant(
-      problem, phi, factors, solver, may_go_on, u, result);
+    ExtendedMajorant<dim> majorant(problem, phi, factors, solver, may_go_on, u);
     while (majorant.majorise())
       if (!majorant.minimise())
-        return result;
-    u                      = majorant.rounded();
-    result.stress_rounding = majorant.stress_rounding();
-    result.converged       = true;
+        return majorant.result;
+    RefinementResult result = majorant.result;
+    u                       = majorant.rounded();
+    result.stress_rounding  = majorant.stress_rounding();
+    result.converged        = true;
     return result;
   }
 

@@ -81,7 +81,7 @@ namespace Debond
                               conditions,
                               contact_edges);
     contact_space = make_contact_space(
-      contact, degree, conditions, supports, diameter, node_supports, gap);
+      contact, degree, conditions, supports, node_supports, gap);
     std::vector<Support<dim>> held = node_supports.finish();
     if (gap.size() > 0 && gap.all_zero())
       gap.reinit(0);
@@ -237,18 +237,11 @@ namespace Debond
   ElasticUnknowns<dim>::cartesian_displacement(const DofVector  &w,
                                                const LoadFactors factors) const
   {
-    DofVector u = w;
+    DofVector result = w;
     if (has_lifting())
-      u += lifting(factors);
-    DofVector result = u;
-    for (const DisplacementFrame<dim> &frame : frames())
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          result[frame.dofs[d]] = 0.;
-          for (unsigned int k = 0; k < dim; ++k)
-            result[frame.dofs[d]] +=
-              frame.to_cartesian[d][k] * u[frame.dofs[k]];
-        }
+      result += lifting(factors);
+    multiply_in_frames(
+      frames(), [](const auto &frame) { return frame.to_cartesian; }, result);
     contact_edges.to_values(result);
     return result;
   }
@@ -260,14 +253,8 @@ namespace Debond
   ElasticUnknowns<dim>::to_frames(const DofVector &cartesian) const
   {
     DofVector result = cartesian;
-    for (const DisplacementFrame<dim> &frame : frames())
-      for (unsigned int k = 0; k < dim; ++k)
-        {
-          result[frame.dofs[k]] = 0.;
-          for (unsigned int d = 0; d < dim; ++d)
-            result[frame.dofs[k]] +=
-              frame.to_frame[k][d] * cartesian[frame.dofs[d]];
-        }
+    multiply_in_frames(
+      frames(), [](const auto &frame) { return frame.to_frame; }, result);
     return result;
   }
 
@@ -293,17 +280,12 @@ namespace Debond
   DofVector
   ElasticUnknowns<dim>::in_frames(const DofVector &forces) const
   {
-    DofVector conjugates = forces;
-    contact_edges.forces_to_conjugates(conjugates);
-    DofVector result = conjugates;
-    for (const DisplacementFrame<dim> &frame : frames())
-      for (unsigned int k = 0; k < dim; ++k)
-        {
-          result[frame.dofs[k]] = 0.;
-          for (unsigned int d = 0; d < dim; ++d)
-            result[frame.dofs[k]] +=
-              frame.to_cartesian[d][k] * conjugates[frame.dofs[d]];
-        }
+    DofVector result = forces;
+    contact_edges.forces_to_conjugates(result);
+    multiply_in_frames(
+      frames(),
+      [](const auto &frame) { return dealii::transpose(frame.to_cartesian); },
+      result);
     return result;
   }
 
@@ -314,14 +296,10 @@ namespace Debond
   ElasticUnknowns<dim>::cartesian_forces(const DofVector &forces) const
   {
     DofVector result = forces;
-    for (const DisplacementFrame<dim> &frame : frames())
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          result[frame.dofs[d]] = 0.;
-          for (unsigned int k = 0; k < dim; ++k)
-            result[frame.dofs[d]] +=
-              frame.to_frame[k][d] * forces[frame.dofs[k]];
-        }
+    multiply_in_frames(
+      frames(),
+      [](const auto &frame) { return dealii::transpose(frame.to_frame); },
+      result);
     return result;
   }
 

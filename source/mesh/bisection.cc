@@ -4,72 +4,26 @@
 #include <debond/mesh/bisection.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <numeric>
 #include <queue>
 #include <stdexcept>
+#include <unordered_map>
 #include <utility>
 
 namespace Debond
 {
   namespace
   {
-    /// The vertices that were put in the middle of edges: of each vertex the
-    /// list of those on edges to vertices with larger numbers.
-    class EdgeMiddles
+    /// The vertices that were put in the middle of edges, by the edges' key().
+    using EdgeMiddles = std::unordered_map<std::uint64_t, unsigned int>;
+
+    std::uint64_t
+    key(const unsigned int a, const unsigned int b)
     {
-    public:
-      bool
-      empty() const
-      {
-        return entries.empty();
-      }
-
-      bool
-      has(const unsigned int a, const unsigned int b) const
-      {
-        return find(std::min(a, b), std::max(a, b)) != end;
-      }
-
-      /// @p next is the number of a new one; returns whether it is needed.
-      std::pair<unsigned int, bool>
-      insert(const unsigned int a,
-             const unsigned int b,
-             const unsigned int next)
-      {
-        const unsigned int first = std::min(a, b), second = std::max(a, b);
-        const unsigned int found = find(first, second);
-        if (found != end)
-          return {entries[found].middle, false};
-        if (first >= lists.size())
-          lists.resize(first + 1, end);
-        entries.push_back({second, next, lists[first]});
-        lists[first] = static_cast<unsigned int>(entries.size()) - 1;
-        return {next, true};
-      }
-
-    private:
-      struct Entry
-      {
-        unsigned int second;
-        unsigned int middle;
-        unsigned int next;
-      };
-
-      static constexpr unsigned int end = dealii::numbers::invalid_unsigned_int;
-
-      unsigned int
-      find(const unsigned int first, const unsigned int second) const
-      {
-        unsigned int entry = first < lists.size() ? lists[first] : end;
-        while (entry != end && entries[entry].second != second)
-          entry = entries[entry].next;
-        return entry;
-      }
-
-      std::vector<unsigned int> lists; ///< their first entries
-      std::vector<Entry>        entries;
-    };
+      return (std::uint64_t{std::min(a, b)} << 32) + std::max(a, b);
+    }
 
 
 
@@ -82,7 +36,7 @@ namespace Debond
         return false;
       for (unsigned int i = 0; i < n; ++i)
         for (unsigned int j = i + 1; j < n; ++j)
-          if (middles.has(vertices[i], vertices[j]))
+          if (middles.count(key(vertices[i], vertices[j])) > 0)
             return true;
       return false;
     }
@@ -338,11 +292,12 @@ namespace Debond
             goes_on              = true;
             const unsigned int a = cell.vertices[0];
             const unsigned int b = cell.vertices[cell.tag];
-            const auto [z, is_new] =
-              middles.insert(a, b, static_cast<unsigned int>(points.size()));
+            const auto [middle, is_new] =
+              middles.emplace(key(a, b),
+                              static_cast<unsigned int>(points.size()));
             if (is_new)
               points.push_back(points[a] + 0.5 * (points[b] - points[a]));
-            for (const Simplex &half : halves(cell, z))
+            for (const Simplex &half : halves(cell, middle->second))
               {
                 next.push_back(half);
                 next_left.push_back(left[c] > 0 ? left[c] - 1 : 0);

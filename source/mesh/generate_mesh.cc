@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/exceptions.h>
-#include <deal.II/base/utilities.h>
 #include <deal.II/grid/grid_generator.h>
 
-#include <debond/base/text.h>
 #include <debond/mesh/source_mesh.h>
 
 #include <boost/algorithm/string/replace.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <map>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -35,44 +29,6 @@ namespace Debond
       return boost::replace_all_copy(words,
                                      " -MAX_DOUBLE...MAX_DOUBLE (inclusive)",
                                      "");
-    }
-
-
-
-    /// About how many cells a generator makes.
-    double
-    n_cells(const std::string &name,
-            const std::string &arguments,
-            const int          dim)
-    {
-      // Of which generators an argument is a number of cells, or a list.
-      static const std::map<std::size_t, std::string> counts = {
-        {0,
-         " cheese hyper_cross moebius subdivided_hyper_cube subdivided_hyper_rectangle "},
-        {1, " channel_with_cylinder "},
-        {2, " torus "},
-        {3,
-         " concentric_hyper_shells cylinder_shell hyper_shell half_hyper_shell quarter_hyper_shell hyper_cube_with_cylindrical_hole "},
-        {4, " cylinder_shell "},
-        {5, " concentric_hyper_shells "},
-        {10, " plate_with_a_hole "}};
-      using dealii::Utilities::split_string_list;
-      const std::vector<std::string> words = split_string_list(arguments, ':');
-      double                         n     = 1.;
-      for (const auto &[i, names] : counts)
-        // Semicolons separate lists of lengths.
-        if (i < words.size() &&
-            names.find(' ' + name + ' ') != std::string::npos &&
-            words[i].find(';') == std::string::npos)
-          for (const std::string &word : split_string_list(words[i], ','))
-            {
-              // Negative ones are large in 32 bits without a sign.
-              const double number = std::strtod(word.c_str(), nullptr);
-              const double count =
-                number < 0. ? number + 4294967296. : std::max(1., number);
-              n = name == "hyper_cross" ? n + count : n * count;
-            }
-      return name == "subdivided_hyper_cube" ? std::pow(n, dim) : n;
     }
   } // namespace
 
@@ -99,11 +55,6 @@ namespace Debond
                 const std::string &arguments,
                 const unsigned int n_refinements)
   {
-    if (const double n = n_cells(name, arguments, dim); n > 1e7)
-      throw std::invalid_argument(
-        words("these arguments make about ",
-              n,
-              " cells, more than 1e7; leave some to Refinements"));
     auto source = std::make_unique<SourceMesh<dim>>();
     try
       {

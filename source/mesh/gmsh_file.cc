@@ -17,11 +17,9 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
-#include <utility>
 
 namespace boost::serialization
 {
@@ -47,80 +45,25 @@ namespace Debond
 {
   namespace
   {
-    /// What Gmsh does not tell of a file.
-    struct FileText
-    {
-      double version  = 0.; ///< of .msh
-      bool   has_mark = false;
-
-      /// Of version 2.0, where some files have the groups' dimensions and some
-      /// have not, by dimension (or -1) and group.
-      std::map<std::pair<int, int>, std::string> names;
-    };
-
-    /// Throws if there are more elements in ASCII than the file says, which
-    /// Gmsh would leave out.
-    FileText
-    look_into(const std::string &file_name)
+    /// Whether this is a .msh file of a version before 4.
+    bool
+    is_old_msh(const std::string &file_name)
     {
       std::ifstream input = open_plain_file(file_name);
       if (!input)
         throw std::invalid_argument(file_name + " cannot be read");
-      FileText    text;
-      std::string line, section;
-      std::size_t n_lines = 0, n_blocks = 0, n_elements = 0;
-      std::getline(input, line);
-      text.has_mark = line.rfind("\xef\xbb\xbf", 0) == 0;
-      if (text.has_mark)
-        line.erase(0, 3);
-      bool is_text = !line.empty() && line[0] == '$';
-      for (; is_text; is_text = is_text && std::getline(input, line))
-        {
-          line.erase(line.find_last_not_of(" \t\r") + 1);
-          if (line.empty())
-            continue;
-          const std::size_t  quote = line.find('"');
-          std::istringstream numbers(line.substr(0, quote));
-          if (line[0] == '$')
-            {
-              if ((section == "$Elements" || section == "$ELM") &&
-                  n_lines > 1 + n_blocks + n_elements)
-                throw std::invalid_argument(
-                  words(file_name,
-                        ": ",
-                        section,
-                        " says that it has ",
-                        n_elements,
-                        ", but ",
-                        n_lines - 1 - n_blocks - n_elements,
-                        " more lines follow"));
-              section = line;
-              n_lines = 0;
-              if (section == "$NOD" || section == "$NO")
-                text.version = 1.;
-            }
-          else if (n_lines++ == 0 && section == "$MeshFormat")
-            {
-              int is_binary = 0;
-              numbers >> text.version >> is_binary;
-              is_text = is_binary == 0;
-            }
-          else if (n_lines == 1 && text.version >= 4.)
-            numbers >> n_blocks >> n_elements;
-          else if (n_lines == 1)
-            numbers >> n_elements;
-          else if (section == "$PhysicalNames" && text.version == 2. &&
-                   quote != std::string::npos)
-            {
-              int dimension = -1, group = 0, second = 0;
-              numbers >> group;
-              if (numbers >> second)
-                dimension = std::exchange(group, second);
-              text.names[{dimension, group}] =
-                line.substr(quote + 1, line.rfind('"') - quote - 1);
-            }
-        }
-      return text;
+      if (input.peek() != '$')
+        return false;
+      for (std::string line; std::getline(input, line);)
+        if (line.rfind("$MeshFormat", 0) == 0)
+          {
+            double version = 0.;
+            input >> version;
+            return version < 4.;
+          }
+        else if (line.rfind("$NO", 0) == 0) // of version 1
+          return true;
+      return false;
     }
 
 
@@ -260,20 +203,7 @@ namespace Debond
   GmshFile
   read_gmsh_file(const std::string &file_name, const int dim, const double size)
   {
-    const FileText text   = look_into(file_name);
-    const bool     is_old = text.version > 0. && text.version < 4.;
-    // Gmsh does not know files that begin with a byte order mark.
-    std::filesystem::path copy;
-    if (text.has_mark)
-      {
-        copy = std::filesystem::temp_directory_path() /
-               ("debond-" + std::to_string(getpid()) +
-                std::filesystem::path(file_name).extension().string());
-        std::ifstream input(file_name, std::ios::binary);
-        input.seekg(3);
-        std::ofstream(copy, std::ios::binary) << input.rdbuf();
-      }
-
+    const bool is_old = is_old_msh(file_name);
     // Gmsh crashes on some broken files, and it changes the locale, the
     // environment and the number of threads: it gets a process of its own.
     int         ends[2];
@@ -289,11 +219,8 @@ namespace Debond
         const int nowhere = open("/dev/null", O_WRONLY);
         dup2(nowhere, STDOUT_FILENO);
         dup2(nowhere, STDERR_FILENO);
-        send_what_gmsh_reads(fdopen(ends[1], "wb"),
-                             text.has_mark ? copy.string() : file_name,
-                             is_old,
-                             dim,
-                             size);
+        send_what_gmsh_reads(
+          fdopen(ends[1], "wb"), file_name, is_old, dim, size);
         _exit(0);
       }
     close(ends[1]);
@@ -306,8 +233,6 @@ namespace Debond
     std::fclose(input);
     int status = 1;
     waitpid(child, &status, 0);
-    std::error_code ignored;
-    std::filesystem::remove(copy, ignored);
     if (status != 0)
       throw std::invalid_argument(file_name + ": Gmsh crashes on this file");
 
@@ -318,12 +243,6 @@ namespace Debond
     archive >> error >> file;
     if (!error.empty())
       throw std::invalid_argument(file_name + ": " + error);
-    for (GmshFile::Elements &elements : file.elements)
-      for (auto &[group, name] : elements.groups)
-        for (const int dimension : {-1, elements.dimension})
-          if (const auto own = text.names.find({dimension, group});
-              own != text.names.end())
-            name = own->second;
     return file;
   }
 } // namespace Debond

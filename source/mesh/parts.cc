@@ -5,8 +5,6 @@
 #include <debond/mesh/parts.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <set>
 #include <stdexcept>
 
@@ -57,65 +55,21 @@ namespace Debond
 
 
 
-    /// Whether a part contains a vertex of a face or cell, asked from a little
+    /// Whether a part's edge goes through a face or cell: some of its vertices
+    /// are in the part and others are not. Vertices are asked from a little
     /// within, since an edge of the part may follow the mesh, as that of
     /// "y < 1e-6" does.
-    template <int dim, typename Iterator>
-    bool
-    contains_vertex(const Part<dim>   &part,
-                    const Iterator    &object,
-                    const unsigned int v)
-    {
-      return part.contains(object->vertex(v) +
-                           1e-3 * (object->center() - object->vertex(v)));
-    }
-
-
-
-    /// Whether a part's edge goes through a face or cell: some of its vertices
-    /// are in the part and others are not.
     template <int dim, typename Iterator>
     bool
     is_cut(const Part<dim> &part, const Iterator &object)
     {
       const bool inside = part.contains(object->center());
       for (const unsigned int v : object->vertex_indices())
-        if (contains_vertex(part, object, v) != inside)
+        if (part.contains(object->vertex(v) +
+                          1e-3 * (object->center() - object->vertex(v))) !=
+            inside)
           return true;
       return false;
-    }
-
-
-
-    /// Coordinates at which a part's edge cuts lines of the mesh, by the axis
-    /// along which these run.
-    using CutPositions = std::array<std::set<std::string>, 3>;
-
-    /// Adds those on the edges of a face or cell.
-    template <int dim, typename Iterator>
-    void
-    add_cuts(const Part<dim> &part,
-             const Iterator  &object,
-             CutPositions    &positions)
-    {
-      for (const unsigned int v : object->vertex_indices())
-        for (const unsigned int w : object->vertex_indices())
-          for (unsigned int axis = 0; axis < dim; ++axis)
-            {
-              dealii::Point<dim> in  = object->vertex(v),
-                                 out = object->vertex(w);
-              if (std::abs(std::abs(in[axis] - out[axis]) - in.distance(out)) >
-                    1e-9 * in.distance(out) ||
-                  !contains_vertex(part, object, v) ||
-                  contains_vertex(part, object, w) || v == w)
-                continue;
-              for (unsigned int halving = 0; halving < 50; ++halving)
-                {
-                  const dealii::Point<dim> middle    = 0.5 * (in + out);
-                  (part.contains(middle) ? in : out) = middle;
-                }
-              positions[axis].insert(words(out[axis]));
-            }
     }
 
 
@@ -156,17 +110,13 @@ namespace Debond
     Division<dealii::types::material_id, RegionNames>   cells(material_ids);
 
     std::vector<unsigned int> n_inside(parts.size(), 0), n_cut(parts.size(), 0);
-    std::vector<CutPositions> positions(parts.size());
     const auto parts_of = [&](const auto &object, const auto &may_be_in) {
       std::set<std::string> in;
       for (std::size_t p = 0; p < parts.size(); ++p)
         if (may_be_in(parts[p]))
           {
             if (is_cut(parts[p], object))
-              {
-                ++n_cut[p];
-                add_cuts(parts[p], object, positions[p]);
-              }
+              ++n_cut[p];
             if (parts[p].contains(object->center()))
               {
                 in.insert(parts[p].name);
@@ -217,19 +167,13 @@ namespace Debond
                                       n_inside[p] == 1 ? " face" : " faces"));
         if (n_cut[p] == 0)
           continue;
-        std::string note = words("the edge of the part ",
-                                 parts[p].name,
-                                 " cuts ",
-                                 n_cut[p],
-                                 ' ' + kind,
-                                 n_cut[p] == 1 ? "" : "s",
-                                 "; where the centre is decides");
-        // An edge across the mesh cuts at many places.
-        for (unsigned int axis = 0; axis < dim; ++axis)
-          if (positions[p][axis].size() <= 2)
-            for (const std::string &position : positions[p][axis])
-              note += words("; put vertices at ", "xyz"[axis], " = ", position);
-        names.notes.push_back(note);
+        names.notes.push_back(words("the edge of the part ",
+                                    parts[p].name,
+                                    " cuts ",
+                                    n_cut[p],
+                                    ' ' + kind,
+                                    n_cut[p] == 1 ? "" : "s",
+                                    "; where the centre is decides"));
       }
     return names;
   }

@@ -15,6 +15,7 @@ namespace Debond
     : S(problem.S)
     , load(problem.load)
     , slope(problem.slope)
+    , first_t(t)
     , f(problem.f)
     , bonds(problem.bonds)
     , returns(problem.returns)

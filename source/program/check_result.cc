@@ -137,15 +137,15 @@ namespace Debond
     {
       try
         {
-          result.estimate = estimate_error(scene.problem(),
-                                           bonds,
-                                           scene.conditions(),
-                                           scene.supports(),
-                                           scene.loads(),
-                                           result.solve.u,
-                                           result.solve.functional,
-                                           result.solve.load_factor,
-                                           &scene.dead_loads());
+          result.estimate = estimate_error<dim>({scene.problem(),
+                                                 bonds,
+                                                 scene.conditions(),
+                                                 scene.supports(),
+                                                 scene.loads(),
+                                                 &scene.dead_loads()},
+                                                result.solve.u,
+                                                result.solve.functional,
+                                                result.solve.load_factor);
           if (const std::string &reason = result.estimate->outside_calibration;
               !reason.empty())
             result.notes.push_back(

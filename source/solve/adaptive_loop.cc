@@ -221,15 +221,15 @@ namespace Debond
                 const double                 functional,
                 const LoadFactors            factors)
     {
-      return estimate_error(scene.problem(),
-                            bonds,
-                            scene.conditions(),
-                            scene.supports(),
-                            scene.loads(),
-                            u,
-                            functional,
-                            factors,
-                            &scene.dead_loads());
+      return estimate_error<dim>({scene.problem(),
+                                  bonds,
+                                  scene.conditions(),
+                                  scene.supports(),
+                                  scene.loads(),
+                                  &scene.dead_loads()},
+                                 u,
+                                 functional,
+                                 factors);
     }
 
 

@@ -248,13 +248,16 @@ namespace Debond
       contact_boundary(), *adhesive_law, *quadrature, bond_field.get());
     // Asks for the bonds at points of its own, where they may be wrong.
     if (bond_field)
-      estimate_error(*elastic_problem,
-                     *adhesion_integral,
-                     boundary_conditions,
-                     body_supports,
-                     Loads<dim>(),
-                     DofVector(elastic_problem->unknowns().n_dofs()),
-                     0.);
+      {
+        const Loads<dim> none;
+        estimate_error<dim>({*elastic_problem,
+                             *adhesion_integral,
+                             boundary_conditions,
+                             body_supports,
+                             none},
+                            DofVector(elastic_problem->unknowns().n_dofs()),
+                            0.);
+      }
     energy = std::make_unique<Functional<dim>>(
       [this](DofVector &dst, const DofVector &src) {
         elastic_problem->vmult(dst, src);

@@ -36,13 +36,13 @@ namespace
       , scene(parameters)
     {
       result   = solved(parameters, scene);
-      estimate = estimate_error(scene.problem(),
-                                scene.adhesion(),
-                                scene.conditions(),
-                                scene.supports(),
-                                scene.loads(),
-                                result.u,
-                                result.functional);
+      estimate = estimate_error<dim>({scene.problem(),
+                                      scene.adhesion(),
+                                      scene.conditions(),
+                                      scene.supports(),
+                                      scene.loads()},
+                                     result.u,
+                                     result.functional);
     }
 
     explicit Solved(const Values &values)

@@ -856,15 +856,15 @@ namespace
                 const auto   &/*verification*/,
                 const auto &bonds) {
               const auto &step = progress.steps.back();
-              result           = estimate_error(here.problem(),
-                                      bonds,
-                                      here.conditions(),
-                                      here.supports(),
-                                      here.loads(),
-                                      progress.u,
-                                      step.state.functional,
-                                      step.factors(),
-                                      &here.dead_loads())
+              result           = estimate_error<2>({here.problem(),
+                                                    bonds,
+                                                    here.conditions(),
+                                                    here.supports(),
+                                                    here.loads(),
+                                                    &here.dead_loads()},
+                                         progress.u,
+                                         step.state.functional,
+                                         step.factors())
                          .functional;
             },
             nullptr);

@@ -30,13 +30,13 @@ namespace
       result = solved(parameters, scene);
       error  = verify(scene.problem(), scene.adhesion(), scene.law(), result.u)
                 .error();
-      estimate = estimate_error(scene.problem(),
-                                scene.adhesion(),
-                                scene.conditions(),
-                                scene.supports(),
-                                scene.loads(),
-                                result.u,
-                                result.functional)
+      estimate = estimate_error<dim>({scene.problem(),
+                                      scene.adhesion(),
+                                      scene.conditions(),
+                                      scene.supports(),
+                                      scene.loads()},
+                                     result.u,
+                                     result.functional)
                    .relative();
     }
 

@@ -39,6 +39,21 @@ namespace Debond
 
 
 
+  /// What an estimate is of: a problem and what it was made of, with its bonds
+  /// as they are.
+  template <int dim>
+  struct EstimatedProblem
+  {
+    const ElasticProblem<dim>   &problem;
+    const AdhesionIntegral<dim> &adhesion;
+    const BoundaryConditions    &conditions;
+    const Supports<dim>         &supports;
+    const Loads<dim>            &loads;
+    const Loads<dim>            *dead_loads = nullptr; ///< if there are any
+  };
+
+
+
   /**
    * The residual estimate of the error of J at a displacement u. Tractions do
    * not fit together at the faces F of the cells,
@@ -66,9 +81,8 @@ namespace Debond
    * quadrature of j_1, and the polygon in place of a curved boundary, change in
    * J is not in it.
    *
-   * @p conditions, @p supports and @p loads are what @p problem was made of,
    * @p functional is J(u), @p factors the multiples of the loads that @p u
-   * belongs to, @p dead_loads those that have none, if there are any. Throws
+   * belongs to. Throws
    * std::invalid_argument with the place if a load or a bond is none at a point
    * of a face that the solution did not ask for.
    *
@@ -77,15 +91,10 @@ namespace Debond
    */
   template <int dim>
   ErrorEstimate
-  estimate_error(const ElasticProblem<dim>   &problem,
-                 const AdhesionIntegral<dim> &adhesion,
-                 const BoundaryConditions    &conditions,
-                 const Supports<dim>         &supports,
-                 const Loads<dim>            &loads,
+  estimate_error(const EstimatedProblem<dim> &of,
                  const DofVector             &u,
                  const double                 functional,
-                 const LoadFactors            factors    = 1.,
-                 const Loads<dim>            *dead_loads = nullptr);
+                 const LoadFactors            factors = 1.);
 } // namespace Debond
 
 #endif

@@ -26,7 +26,6 @@ namespace Debond
                      const unsigned int                    degree,
                      const BoundaryConditions             &conditions,
                      const Supports<dim>                  &supports,
-                     const double                          diameter,
                      NodeSupports<dim>                    &node_supports,
                      DofVector                            &gap);
 } // namespace Debond

@@ -96,7 +96,7 @@ namespace Debond
    * displacements more. So a load may jump between faces (between cells);
    * where a traction jumps inside of a face or is not smooth there, such that
    * this costs more than 1e-6 of all tractions of its entry, @p notes get one
-   * line that says where.
+   * line that names the worst face.
    *
    * Throws LoadError with the place if a load is not finite at a point of the
    * rules.

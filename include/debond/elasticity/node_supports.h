@@ -15,6 +15,8 @@
 #include <array>
 #include <map>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace Debond
@@ -34,6 +36,28 @@ namespace Debond
     dealii::Tensor<2, dim> to_frame;
     dealii::Tensor<2, dim> to_cartesian;
   };
+
+
+
+  /// Multiplies the components of each node that has a frame by the matrix of
+  /// it that @p matrix_of gives.
+  template <int dim, typename Vector, typename MatrixOf>
+  void
+  multiply_in_frames(const std::vector<DisplacementFrame<dim>> &frames,
+                     const MatrixOf                            &matrix_of,
+                     Vector                                    &v)
+  {
+    for (const DisplacementFrame<dim> &frame : frames)
+      {
+        std::array<std::decay_t<decltype(v(0))>, dim> before;
+        for (unsigned int d = 0; d < dim; ++d)
+          before[d] = std::exchange(v(frame.dofs[d]), 0.);
+        const dealii::Tensor<2, dim> matrix = matrix_of(frame);
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int k = 0; k < dim; ++k)
+            v(frame.dofs[d]) += matrix[d][k] * before[k];
+      }
+  }
 
 
 

@@ -39,8 +39,8 @@ namespace Debond
       unsigned int least;   ///< pieces of f before this one do not return
     };
 
-    /// What the points are stationary for, with g(t) = load + t slope; S and f
-    /// are references.
+    /// What the points are stationary for, with g(t) = load + (t - t_0) slope,
+    /// t_0 being the first t; S and f are references.
     struct Problem
     {
       MatrixView           S;
@@ -140,6 +140,7 @@ namespace Debond
 
     const MatrixView      S;
     const Eigen::VectorXd load, slope;
+    const double          first_t;
     const BranchMinimum  &f;
     std::vector<Bond>     bonds;
     const bool            returns;
