@@ -13,9 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <map>
-#include <new>
 #include <numeric>
 #include <sstream>
 
@@ -494,18 +492,6 @@ namespace Debond
       return;
     certificate.lower = std::max(certificate.lower, other.lower);
     certificate.upper = std::min(certificate.upper, other.upper);
-  }
-
-
-
-  std::string
-  no_certificate(const std::exception &error)
-  {
-    return std::string("There is no certificate: ") +
-           (dynamic_cast<const std::bad_alloc *>(&error) != nullptr ?
-              "there is not enough memory for the equilibrated stresses" :
-              error.what()) +
-           '.';
   }
 
 

@@ -48,31 +48,6 @@ namespace Debond
 
 
   void
-  write_certified_sides(const Certificate &certificate,
-                        const AdhesiveLaw &law,
-                        const std::string &file_name)
-  {
-    CsvTable   table;
-    const auto add = [&](const std::string &title, const auto &value) {
-      table.add(title, certificate.sides, value);
-    };
-    add("x0", [](const auto &side) { return side.ends[0][0]; });
-    add("y0", [](const auto &side) { return side.ends[0][1]; });
-    add("x1", [](const auto &side) { return side.ends[1][0]; });
-    add("y1", [](const auto &side) { return side.ends[1][1]; });
-    add("least_mean", [](const auto &side) { return side.mean.lower; });
-    add("largest_mean", [](const auto &side) { return side.mean.upper; });
-    add("least_linear", [](const auto &side) { return side.linear().lower; });
-    add("largest_linear", [](const auto &side) { return side.linear().upper; });
-    add("state", [&law](const auto &side) {
-      return side.piece ? law.name(*side.piece) : "uncertain";
-    });
-    table.write(file_name);
-  }
-
-
-
-  void
   write_history(const std::vector<BundleIteration> &history,
                 const std::optional<double>        &found,
                 const std::string                  &file_name)

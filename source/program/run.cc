@@ -8,6 +8,7 @@
 #include <debond/base/processes.h>
 #include <debond/base/ranks.h>
 #include <debond/base/text.h>
+#include <debond/certify/certification.h>
 #include <debond/input/bad_input.h>
 #include <debond/output/load_path_output.h>
 #include <debond/output/output_files.h>
@@ -34,19 +35,6 @@ namespace Debond
 
 
 
-    void
-    refuse_certificates_of_ranks(const Parameters &parameters)
-    {
-      const std::string entry = "Certificate/Kind";
-      if (n_started_ranks() > 1 &&
-          parameters.certificate.kind != CertificateKind::none)
-        throw BadInput({parameters.locations.at(entry) + ": " + entry +
-                        ": several ranks have no certificate; run the scene on "
-                        "one rank"});
-    }
-
-
-
     /// The steps of run(), in their order.
     template <int dim>
     class SceneRun
@@ -62,7 +50,6 @@ namespace Debond
         , choice(choose_method(parameters, parameters.solver))
         , record(parameters.output.machine_details)
       {
-        refuse_certificates_of_ranks(parameters);
         scene = make_first_scene<dim>(parameters,
                                       parameters.accuracy,
                                       parameters.solver.start);
@@ -73,7 +60,10 @@ namespace Debond
         error_of(parameters.verification.exact_displacement,
                  *scene,
                  DofVector(scene->problem().unknowns().n_dofs()));
-        certifier    = make_certifier(parameters.certificate.kind, scene);
+        certification.emplace(parameters.certificate.kind,
+                              parameters.accuracy.certified_width,
+                              parameters.solver.proof,
+                              scene);
         result.times = {{"mesh", scene->mesh_seconds()},
                         {"assembly", scene->assembly_seconds()}};
       }
@@ -154,15 +144,9 @@ namespace Debond
                      path.bonds ? *path.bonds : scene->adhesion(),
                      shortfall,
                      result);
-        if (parameters.certificate.kind != CertificateKind::none &&
-            result.is_success() && !result.certificate)
-          certify_result(certifier.get(),
-                         parameters.certificate.kind,
-                         parameters.accuracy.is_adaptive(),
-                         parameters.solver.proof,
-                         scene,
-                         result);
+        certification->certify(scene, result);
         report_result(*scene, choice, result, record);
+        certification->report(record);
       }
 
       void
@@ -227,6 +211,7 @@ namespace Debond
                             result.path,
                             result.arc);
         append(path_output->files(), files);
+        append(certification->files(parameters.output, *scene), files);
       }
 
       /// For the iterations; null if there is none.
@@ -251,7 +236,7 @@ namespace Debond
             adaptive = solve_adaptively(
               settings(),
               parameters.accuracy,
-              parameters.certificate.kind,
+              certification->goal(),
               [this](const AdaptiveLevel &level) {
                 report_level(static_cast<unsigned int>(result.levels.size()),
                              level,
@@ -272,10 +257,9 @@ namespace Debond
               }
             throw;
           }
-        result.solve       = std::move(adaptive.solve);
-        shortfall          = adaptive.shortfall;
-        result.certificate = std::move(adaptive.certificate);
-        path               = std::move(adaptive.path);
+        result.solve = std::move(adaptive.solve);
+        shortfall    = adaptive.shortfall;
+        path         = std::move(adaptive.path);
         list_files();
       }
 
@@ -304,10 +288,10 @@ namespace Debond
       std::ostream       &out;
       const bool          terminal; ///< whether out is one
 
-      MethodChoice                          choice;
-      Record                                record;
-      std::shared_ptr<const Scene<dim>>     scene;
-      std::unique_ptr<const Certifier<dim>> certifier;
+      MethodChoice                      choice;
+      Record                            record;
+      std::shared_ptr<const Scene<dim>> scene;
+      std::optional<Certification<dim>> certification;
 
       RunResult<dim>    result;
       FollowedPath<dim> path;      ///< of which result has the steps

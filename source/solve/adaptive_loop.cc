@@ -38,8 +38,8 @@ namespace Debond
       return degree == 1 ? 1.25 : 1.1;
     }
 
-    /// The same if parts of a certificate's gap are to become smaller.
-    constexpr double growth_for_gaps = 1.7;
+    /// The same if a goal besides the estimate has not been reached.
+    constexpr double growth_for_goal = 1.7;
 
     /// The part of Accuracy/Target that a mesh is made for.
     constexpr double aim = 0.9;
@@ -157,14 +157,15 @@ namespace Debond
 
 
     /// Why there can be no mesh as large as that of @p body; empty if there
-    /// can. @p limit: of memory in bytes.
+    /// can. @p limit: of memory in bytes; @p goal may be null.
     template <int dim>
     std::string
-    too_large(const ProblemParameters  &problem,
-              const AccuracyParameters &accuracy,
-              const MethodChoice       &wanted,
-              const double              limit,
-              const Body<dim>          &body)
+    too_large(const ProblemParameters   &problem,
+              const AccuracyParameters  &accuracy,
+              const MethodChoice        &wanted,
+              const RefinementGoal<dim> *goal,
+              const double               limit,
+              const Body<dim>           &body)
     {
       // Of degree 2 edges have unknowns as well, their number by Euler's
       // formula for bodies without holes, in 3D about.
@@ -172,12 +173,11 @@ namespace Debond
                                   body.n_vertices() :
                                   2. * body.n_vertices() + body.n_cells() - 1.;
       const double n_unknowns = dim * n_nodes;
-      // Four unknowns on each of 3/2 sides a triangle, or nine on each of two
-      // faces a tetrahedron, for stresses.
       const double memory =
-        accuracy.certified_width > 0. ?
-          memory_of_factorisation(
-            dim, std::max(n_unknowns, (dim == 2 ? 6. : 18.) * body.n_cells())) :
+        goal != nullptr ?
+          memory_of_factorisation(dim,
+                                  std::max(n_unknowns,
+                                           goal->n_unknowns(body.n_cells()))) :
           least_memory(wanted, dim, n_unknowns);
       std::ostringstream text;
       text << "the next mesh would have " << std::fixed << std::setprecision(0)
@@ -234,62 +234,6 @@ namespace Debond
 
 
 
-    /// The certificate of a level; of one that Certificate/Target is for
-    /// bonds that may break, which takes longer, that for their branches as
-    /// they are as long as that is not narrow enough and @p is_last is false.
-    /// @p global is the latest one for bonds that may break, for which the next
-    /// one is narrower. Throws EquilibriumError if there is none.
-    template <int dim>
-    Certificate
-    certify_level(const CertificateKind                    kind,
-                  const double                             target,
-                  const BranchAndBoundParameters          &proof,
-                  const std::shared_ptr<const Scene<dim>> &scene,
-                  const DofVector                         &u,
-                  const bool                               is_last,
-                  std::optional<Certificate>              &global,
-                  const std::function<bool()>             &may_go_on)
-    {
-      const auto certify = [&](const CertificateKind           kind_of_this,
-                               const BranchAndBoundParameters &limits) {
-        Certificate certificate =
-          Certifier<dim>(kind_of_this, scene)
-            .certify(*scene, u, limits, may_go_on, global ? &*global : nullptr);
-        if (certificate.minimum == CertifiedMinimum::global)
-          global = certificate;
-        return certificate;
-      };
-      if (kind == CertificateKind::global && !is_last)
-        try
-          {
-            const Certificate first =
-              certify(CertificateKind::fixed_state, proof);
-            if (first.minimum == CertifiedMinimum::global ||
-                first.width() > target)
-              return first;
-          }
-        catch (const std::exception &)
-          {
-            // Such as a body that only bonds hold.
-          }
-      return certify(kind, proof);
-    }
-
-
-
-    std::string
-    too_wide(const Certificate &certificate, const double target)
-    {
-      std::ostringstream text;
-      text << "The interval is " << std::setprecision(2) << certificate.width()
-           << " of |J| wide, Certificate/Target is " << target;
-      if (!certificate.loads_are_exact)
-        text << " (a vertex where a load jumps or bends makes it narrower)";
-      return text.str();
-    }
-
-
-
     template <int dim>
     class AdaptiveLoop
     {
@@ -298,13 +242,12 @@ namespace Debond
 
       AdaptiveLoop(const SolveSettings               &settings,
                    const AccuracyParameters          &accuracy,
-                   const CertificateKind              kind,
+                   RefinementGoal<dim>               *goal,
                    const Report                      &report,
                    std::shared_ptr<const Scene<dim>> &scene)
         : settings(settings)
         , accuracy(accuracy)
-        , kind(kind)
-        , width(accuracy.certified_width)
+        , goal(goal)
         , report(report)
         , scene(scene)
         , problem(scene->parameters())
@@ -449,8 +392,8 @@ namespace Debond
         const bool is_usable =
           (can_be_verified(result.solve.status) || comes_off_later) &&
           !result.solve.minimum.interrupted;
-        if (is_usable && result.shortfall.empty() && width > 0.)
-          certify(false);
+        if (is_usable && result.shortfall.empty())
+          look_at_goal(false);
         ended = !is_usable || !result.shortfall.empty();
         if (!ended)
           {
@@ -461,7 +404,7 @@ namespace Debond
                     result.solve.iterations,
                     functional,
                     estimate.relative(),
-                    own_width(),
+                    goal_here.width,
                     seconds + timer.wall_time()});
             growth.add(unknowns.n_free_dofs(), estimate.relative());
           }
@@ -497,32 +440,12 @@ namespace Debond
       }
 
       void
-      certify(const bool is_last)
+      look_at_goal(const bool is_last)
       {
-        result.certificate.reset();
-        try
-          {
-            result.certificate =
-              certify_level<dim>(kind,
-                                 width,
-                                 settings.parameters.proof,
-                                 scene,
-                                 result.solve.u,
-                                 is_last,
-                                 narrowest,
-                                 [&]() { return !guard.requested(); });
-            result.certificate->include(result.solve.functional);
-          }
-        catch (const std::exception &error)
-          {
-            result.shortfall = no_certificate(error);
-          }
-      }
-
-      double
-      own_width() const
-      {
-        return result.certificate ? result.certificate->width() : 0.;
+        if (goal == nullptr)
+          return;
+        goal_here        = goal->look(scene, result.solve, is_last);
+        result.shortfall = goal_here.failure;
       }
 
       bool
@@ -536,28 +459,28 @@ namespace Debond
       {
         if (ended)
           return true;
-        if (width > 0. && guard.requested())
+        if (goal == nullptr)
+          return is_accurate();
+        // Its look may have been cut short.
+        if (guard.requested())
           {
             interrupt();
             return true;
           }
-        return width > 0. ? own_width() <= width &&
-                              (is_accurate() || accuracy.target == 0.) :
-                            is_accurate();
+        return goal_here.is_reached && (is_accurate() || accuracy.target == 0.);
       }
 
       /// @p limit becomes why there can be none.
       std::shared_ptr<const BisectedBody<dim>>
       next_body(std::string &limit)
       {
-        const bool by_gaps =
-          own_width() > width && !result.certificate->gaps.empty();
-        double times = by_gaps || width > 0. ? growth_for_gaps : growth.next();
+        const bool by_goal = !goal_here.is_reached && !goal_here.parts.empty();
+        double     times   = goal ? growth_for_goal : growth.next();
         while (true)
           {
             std::shared_ptr<const BisectedBody<dim>> body =
               bisected(*scene).refined(
-                divisions(by_gaps ? result.certificate->gaps :
+                divisions(by_goal ? goal_here.parts :
                                     of_whole_mesh(*scene, estimate.cells),
                           dim,
                           times));
@@ -565,6 +488,7 @@ namespace Debond
               too_large<dim>(problem,
                              accuracy,
                              wanted,
+                             goal,
                              memory_left(settings.parameters.memory_limit),
                              *body);
             if (limit.empty() || times <= least_growth(problem.degree))
@@ -576,17 +500,11 @@ namespace Debond
       void
       say_what_is_missing(const std::string &limit)
       {
-        if (width > 0.)
-          {
-            if (kind == CertificateKind::global &&
-                result.certificate->minimum != CertifiedMinimum::global)
-              certify(true);
-            if (!result.shortfall.empty())
-              return;
-            if (own_width() > width)
-              result.shortfall =
-                too_wide(*result.certificate, width) + ": " + limit + '.';
-          }
+        look_at_goal(true);
+        if (!result.shortfall.empty())
+          return;
+        if (goal && !goal_here.is_reached)
+          result.shortfall = goal_here.shortfall + ": " + limit + '.';
         if (!is_accurate() && accuracy.target > 0.)
           {
             std::ostringstream text;
@@ -609,8 +527,7 @@ namespace Debond
 
       const SolveSettings               &settings;
       const AccuracyParameters          &accuracy;
-      const CertificateKind              kind;
-      const double                       width; ///< Certificate/Target
+      RefinementGoal<dim> *const         goal; ///< null without one
       const Report                      &report;
       std::shared_ptr<const Scene<dim>> &scene;
 
@@ -625,9 +542,9 @@ namespace Debond
       ErrorEstimate       estimate;
       double              functional = 0.; ///< that it is relative to
       MeshGrowth          growth;
-      std::optional<Certificate> narrowest;
-      dealii::Timer              timer;
-      double                     seconds = 0.; ///< before the timer started
+      GoalOnMesh          goal_here;
+      dealii::Timer       timer;
+      double              seconds = 0.; ///< before the timer started
 
       MethodChoice                     choice; ///< on the mesh of the result
       std::shared_ptr<const Body<dim>> latest;
@@ -672,14 +589,13 @@ namespace Debond
 
   template <int dim>
   AdaptiveResult<dim>
-  solve_adaptively(const SolveSettings      &settings,
-                   const AccuracyParameters &accuracy,
-                   const CertificateKind     certificate,
+  solve_adaptively(const SolveSettings                              &settings,
+                   const AccuracyParameters                         &accuracy,
+                   RefinementGoal<dim>                              *goal,
                    const std::function<void(const AdaptiveLevel &)> &report,
                    std::shared_ptr<const Scene<dim>>                &scene)
   {
-    return AdaptiveLoop<dim>(settings, accuracy, certificate, report, scene)
-      .run();
+    return AdaptiveLoop<dim>(settings, accuracy, goal, report, scene).run();
   }
 
 

@@ -77,7 +77,7 @@ refined(const Debond::Parameters &parameters)
   refined.result = Debond::solve_adaptively<dim>(
     settings_of(parameters, *refined.scene),
     parameters.accuracy,
-    parameters.certificate.kind,
+    nullptr,
     [&](const Debond::AdaptiveLevel &level) {
       refined.levels.push_back(level);
     },

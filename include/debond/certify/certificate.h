@@ -9,7 +9,6 @@
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/solve/scene.h>
 
-#include <exception>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -101,13 +100,6 @@ namespace Debond
   /// for loads that are not exact, are for other numbers and change nothing.
   void
   intersect(Certificate &certificate, const Certificate &other);
-
-
-
-  /// What is said of a Certifier that threw @p error: rounding and memory set
-  /// limits to certificates that displacements do not have.
-  std::string
-  no_certificate(const std::exception &error);
 
 
 

@@ -2,11 +2,11 @@
 #ifndef debond_output_run_result_h
 #define debond_output_run_result_h
 
-#include <debond/certify/certificate.h>
 #include <debond/check/coming_off.h>
 #include <debond/check/displacement_error.h>
 #include <debond/check/error_estimate.h>
 #include <debond/check/plausibility.h>
+#include <debond/output/vtu.h>
 #include <debond/solve/adaptive_loop.h>
 #include <debond/solve/load_path_steps.h>
 #include <debond/solve/solve.h>
@@ -47,8 +47,8 @@ namespace Debond
     /// If the exact displacement is known.
     std::optional<DisplacementError> displacement_error;
 
-    /// Of a success, if the scene asks for it.
-    std::optional<Certificate> certificate;
+    /// More numbers of cells for body.vtu, and of faces for contact.vtu.
+    std::vector<CellField> cell_fields, face_fields;
 
     /// If the scene has a load path; all the rest is of its last step.
     std::vector<LoadPathStep<dim>> path;

@@ -2,7 +2,6 @@
 #ifndef debond_output_tables_h
 #define debond_output_tables_h
 
-#include <debond/certify/certificate.h>
 #include <debond/check/verification.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
 #include <debond/optimization/global/branch_and_bound.h>
@@ -25,14 +24,6 @@ namespace Debond
   write_contact_profile(const ContactBoundary<dim> &boundary,
                         const Verification<dim>    &verification,
                         const std::string          &file_name);
-
-  /// What a certificate knows of each contact side, as CSV: x0, y0, x1, y1,
-  /// least_mean, largest_mean, least_linear, largest_linear, state ("uncertain"
-  /// if it is).
-  void
-  write_certified_sides(const Certificate &certificate,
-                        const AdhesiveLaw &law,
-                        const std::string &file_name);
 
   /// The iteration history as CSV: iteration, functional, v, t_L, t_R,
   /// bundle_size, qp_steps, kind. @p found: J of the state that a search or a

@@ -2,16 +2,15 @@
 #ifndef debond_solve_adaptive_loop_h
 #define debond_solve_adaptive_loop_h
 
-#include <debond/certify/certificate.h>
 #include <debond/check/error_estimate.h>
 #include <debond/input/accuracy_parameters.h>
 #include <debond/solve/load_path.h>
+#include <debond/solve/refinement_goal.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve.h>
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +25,8 @@ namespace Debond
     unsigned int iterations;
     double       functional;      ///< J, of the factor of the estimate
     double       estimated_error; ///< ErrorEstimate::relative()
-    double       gap; ///< Certificate::width(), 0 without Certificate/Target
-    double       seconds; ///< wall time of mesh, assembly and solve
+    double       gap;             ///< GoalOnMesh::width, 0 without a goal
+    double       seconds;         ///< wall time of mesh, assembly and solve
   };
 
 
@@ -37,9 +36,6 @@ namespace Debond
   {
     SolveResult       solve; ///< on the last mesh
     FollowedPath<dim> path;  ///< if the scene has one
-
-    /// Of the last mesh, with Certificate/Target.
-    std::optional<Certificate> certificate;
 
     /// What kept the loop from its target; empty if nothing did.
     std::string shortfall;
@@ -55,9 +51,10 @@ namespace Debond
                    const std::string        &start = "");
 
   /// Solves the scene of make_first_scene(), and again and again on a mesh that
-  /// is refined where the estimate is large, or with Certificate/Target the
-  /// parts of the gap, from the state before; with the search that the scene
-  /// wants on each, and the linear solver that is best for each. A load path is
+  /// is refined where the estimate is large, or what @p goal says, from the
+  /// state before; with the search that the scene wants on each, and the linear
+  /// solver that is best for each. It ends with the target of @p accuracy and
+  /// the goal, if there are any. A load path is
   /// followed on each mesh, without its global branch and its arc, for the
   /// estimate of the factor that has the largest one relative to its J; the
   /// result is that of the last factor. @p scene becomes that of the result,
@@ -65,9 +62,9 @@ namespace Debond
   /// done.
   template <int dim>
   AdaptiveResult<dim>
-  solve_adaptively(const SolveSettings      &settings,
-                   const AccuracyParameters &accuracy,
-                   const CertificateKind     certificate,
+  solve_adaptively(const SolveSettings                              &settings,
+                   const AccuracyParameters                         &accuracy,
+                   RefinementGoal<dim>                              *goal,
                    const std::function<void(const AdaptiveLevel &)> &report,
                    std::shared_ptr<const Scene<dim>>                &scene);
 } // namespace Debond

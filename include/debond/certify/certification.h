@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_certify_certification_h
+#define debond_certify_certification_h
+
+#include <debond/certify/certificate.h>
+#include <debond/input/accuracy_parameters.h>
+#include <debond/output/output_files.h>
+#include <debond/output/record.h>
+#include <debond/output/run_result.h>
+#include <debond/solve/refinement_goal.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace Debond
+{
+  /// The certificate of a run, as the goal of its refinement or of its result,
+  /// and what is said and written of it; nothing of all this for a scene
+  /// without one.
+  template <int dim>
+  class Certification : public RefinementGoal<dim>
+  {
+  public:
+    /// Of the scene on its first mesh. @p target: width relative to J, 0 for
+    /// any; @p proof: limits of branch and bound. Throws BadInput if the scene
+    /// can have no certificate.
+    Certification(const CertificateKind                    kind,
+                  const double                             target,
+                  const BranchAndBoundParameters          &proof,
+                  const std::shared_ptr<const Scene<dim>> &scene);
+
+    /// Null if no width is asked for.
+    RefinementGoal<dim> *
+    goal()
+    {
+      return target > 0. ? this : nullptr;
+    }
+
+    /// Of bonds that may break, which takes longer, as long as the interval for
+    /// their branches as they are is not narrow enough only that, unless
+    /// @p is_last.
+    GoalOnMesh
+    look(const std::shared_ptr<const Scene<dim>> &scene,
+         const SolveResult                       &result,
+         const bool                               is_last) override;
+
+    double
+    n_unknowns(const double n_cells) const override;
+
+    /// Of a success on the last mesh, which has none as a goal. A note of
+    /// @p result says why there is none.
+    void
+    certify(const std::shared_ptr<const Scene<dim>> &scene,
+            RunResult<dim>                          &result);
+
+    void
+    report(Record &record) const;
+
+    /// A table of the sides. Keeps references.
+    std::vector<OutputFile>
+    files(const OutputParameters &output, const Scene<dim> &scene) const;
+
+  private:
+    const CertificateKind          kind;
+    const double                   target;
+    const BranchAndBoundParameters proof;
+
+    /// Of the first mesh; null if rounding does not allow it.
+    std::unique_ptr<const Certifier<dim>> first;
+
+    std::optional<Certificate> certificate;
+
+    /// The latest one for bonds that may break, which makes the next one
+    /// narrower.
+    std::optional<Certificate> latest_global;
+  };
+} // namespace Debond
+
+#endif

@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/timer.h>
+
+#include <debond/base/interrupt.h>
+#include <debond/base/processes.h>
+#include <debond/base/text.h>
+#include <debond/certify/certification.h>
+#include <debond/input/bad_input.h>
+#include <debond/output/csv_table.h>
+
+#include <algorithm>
+#include <iomanip>
+#include <new>
+#include <sstream>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Of a Certifier that threw @p error: rounding and memory set limits to
+    /// certificates that displacements do not have.
+    std::string
+    no_certificate(const std::exception &error)
+    {
+      return std::string("There is no certificate: ") +
+             (dynamic_cast<const std::bad_alloc *>(&error) != nullptr ?
+                "there is not enough memory for the equilibrated stresses" :
+                error.what()) +
+             '.';
+    }
+
+
+
+    std::string
+    too_wide(const Certificate &certificate, const double target)
+    {
+      std::ostringstream text;
+      text << "The interval is " << std::setprecision(2) << certificate.width()
+           << " of |J| wide, Certificate/Target is " << target;
+      if (!certificate.loads_are_exact)
+        text << " (a vertex where a load jumps or bends makes it narrower)";
+      return text.str();
+    }
+
+
+
+    bool
+    may_go_on()
+    {
+      return !InterruptGuard::requested();
+    }
+
+
+
+    /// Of a certificate with stresses of the same mesh: the mean equilibrated
+    /// stress and the gap per area or volume.
+    template <int dim>
+    std::vector<CellField>
+    fields_of_cells(const Scene<dim> &scene, const Certificate &certificate)
+    {
+      if (certificate.gaps.empty())
+        return {};
+      std::vector<CellField>               fields;
+      std::vector<dealii::TableIndices<2>> components;
+      for (unsigned int k = 0;
+           k < dealii::SymmetricTensor<2, dim>::n_independent_components;
+           ++k)
+        {
+          const auto indices =
+            dealii::SymmetricTensor<2, dim>::unrolled_to_component_indices(k);
+          components.push_back(indices);
+          fields.push_back({std::string("equilibrated_stress_") +
+                              "xyz"[indices[0]] + "xyz" [indices[1]],
+                            {}});
+        }
+      fields.push_back({"gap_density", {}});
+      for (const auto &cell :
+           scene.problem().unknowns().dof_handler().active_cell_iterators())
+        {
+          const auto &stress = certificate.stresses[cell->active_cell_index()];
+          for (unsigned int k = 0; k < components.size(); ++k)
+            fields[k].second.push_back(stress[components[k]]);
+          fields.back().second.push_back(
+            certificate.gaps[cell->active_cell_index()] / cell->measure());
+        }
+      return fields;
+    }
+
+
+
+    /// Where a certificate has the state of bonds: the number of the law's
+    /// branch on which each face is in all minima, -1 where that is not known.
+    template <int dim>
+    std::vector<CellField>
+    fields_of_faces(const Scene<dim> &scene, const Certificate &certificate)
+    {
+      if (certificate.sides.empty())
+        return {};
+      CellField field = {"certain_branch", {}};
+      if constexpr (dim == 2)
+        for (const auto &face : scene.contact_boundary().faces)
+          {
+            const dealii::Point<2> middle =
+              0.5 * (face.vertices[0] + face.vertices[1]);
+            const auto side =
+              std::find_if(certificate.sides.begin(),
+                           certificate.sides.end(),
+                           [&](const CertifiedSide &other) {
+                             const auto &[a, b] = other.ends;
+                             return a.distance(middle) + middle.distance(b) <=
+                                    (1. + 1e-9) * a.distance(b);
+                           });
+            field.second.push_back(
+              side == certificate.sides.end() || !side->piece ? -1. :
+                                                                *side->piece);
+          }
+      return {field};
+    }
+    void
+    write_certified_sides(const Certificate &certificate,
+                          const AdhesiveLaw &law,
+                          const std::string &file_name)
+    {
+      CsvTable   table;
+      const auto add = [&](const std::string &title, const auto &value) {
+        table.add(title, certificate.sides, value);
+      };
+      add("x0", [](const auto &side) { return side.ends[0][0]; });
+      add("y0", [](const auto &side) { return side.ends[0][1]; });
+      add("x1", [](const auto &side) { return side.ends[1][0]; });
+      add("y1", [](const auto &side) { return side.ends[1][1]; });
+      add("least_mean", [](const auto &side) { return side.mean.lower; });
+      add("largest_mean", [](const auto &side) { return side.mean.upper; });
+      add("least_linear", [](const auto &side) { return side.linear().lower; });
+      add("largest_linear",
+          [](const auto &side) { return side.linear().upper; });
+      add("state", [&law](const auto &side) {
+        return side.piece ? law.name(*side.piece) : "uncertain";
+      });
+      table.write(file_name);
+    }
+
+
+
+    void
+    report_certificate(const Certificate &certificate, Record &record)
+    {
+      const bool is_global = certificate.minimum == CertifiedMinimum::global;
+      record.heading("Certificate");
+      record.add("/certificate/minimum", is_global ? "global" : "fixed state");
+      record.line("of",
+                  is_global ?
+                    "the least J of the continuous problem" :
+                    "the least J of the continuous problem with the bonds of "
+                    "each side as they are");
+      record.add("/certificate/loads_are_exact", certificate.loads_are_exact);
+      if (!certificate.loads_are_exact)
+        record.line("loads",
+                    "taken as linear on each side and constant in each "
+                    "element; the interval is wider by the work of the rest "
+                    "at the result");
+      record.add("/certificate/lower", certificate.lower);
+      record.add("/certificate/upper", certificate.upper);
+      record.line("interval",
+                  scientific_below(certificate.lower, 10) + " to " +
+                    scientific_above(certificate.upper, 10));
+      record.add("/certificate/relative_width", certificate.width());
+      record.line("certified to",
+                  scientific_above(certificate.width(), 1) + " of |J|");
+      for (const CertifiedLength &length : certificate.lengths)
+        {
+          record.add("/certificate/lengths/" + length.state,
+                     {{"least", length.least}, {"largest", length.largest}});
+          record.line(length.state + " in all minima",
+                      scientific_below(length.least, 3) + " to " +
+                        scientific_above(length.largest, 3));
+        }
+      record.add("/certificate/unknowns", certificate.n_unknowns);
+      record.add("/certificate/contact_sides", certificate.n_sides);
+      record.add("/certificate/proof_nodes", certificate.proof_nodes);
+      record.add("/certificate/proof_status",
+                 to_string(certificate.proof_status));
+      if (record.has_details())
+        record.line("equilibrated stresses",
+                    words(certificate.n_unknowns,
+                          " unknowns, ",
+                          certificate.n_sides,
+                          " contact sides, ",
+                          certificate.proof_nodes,
+                          " nodes of branch and bound (",
+                          to_string(certificate.proof_status),
+                          ")"));
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Certification<dim>::Certification(
+    const CertificateKind                    kind,
+    const double                             target,
+    const BranchAndBoundParameters          &proof,
+    const std::shared_ptr<const Scene<dim>> &scene)
+    : kind(kind)
+    , target(target)
+    , proof(proof)
+  {
+    if (kind == CertificateKind::none)
+      return;
+    const auto refuse = [&](const std::string &reason) {
+      const std::string entry = "Certificate/Kind";
+      throw BadInput({scene->parameters().locations.at(entry) + ": " + entry +
+                      ": " + reason});
+    };
+    if (n_started_ranks() > 1)
+      refuse("several ranks have no certificate; run the scene on one rank");
+    try
+      {
+        first = std::make_unique<const Certifier<dim>>(kind, scene);
+      }
+    catch (const EquilibriumError &error)
+      {
+        refuse(error.what());
+      }
+    catch (const std::exception &)
+      {
+        // It is no fault of the scene; certify() will say it.
+      }
+  }
+
+
+
+  template <int dim>
+  GoalOnMesh
+  Certification<dim>::look(const std::shared_ptr<const Scene<dim>> &scene,
+                           const SolveResult                       &result,
+                           const bool                               is_last)
+  {
+    const InterruptGuard guard;
+    const auto           certify = [&](const CertificateKind kind_of_this) {
+      certificate = Certifier<dim>(kind_of_this, scene)
+                      .certify(*scene,
+                               result.u,
+                               proof,
+                               may_go_on,
+                               latest_global ? &*latest_global : nullptr);
+      if (certificate->minimum == CertifiedMinimum::global)
+        latest_global = certificate;
+      certificate->include(result.functional);
+    };
+    const auto is_global = [&]() {
+      return certificate && certificate->minimum == CertifiedMinimum::global;
+    };
+    try
+      {
+        if (!is_last)
+          {
+            certificate.reset();
+            // Such as a body that only bonds hold has none for their branches
+            // as they are.
+            if (kind == CertificateKind::global)
+              try
+                {
+                  certify(CertificateKind::fixed_state);
+                }
+              catch (const std::exception &)
+                {}
+          }
+        const bool is_wide = certificate && certificate->width() > target;
+        if (!certificate || (kind == CertificateKind::global && !is_global() &&
+                             (is_last || !is_wide)))
+          certify(kind);
+      }
+    catch (const std::exception &error)
+      {
+        certificate.reset();
+        GoalOnMesh nothing;
+        nothing.failure = no_certificate(error);
+        return nothing;
+      }
+    return {certificate->width() <= target,
+            certificate->width(),
+            certificate->gaps,
+            too_wide(*certificate, target),
+            ""};
+  }
+
+
+
+  template <int dim>
+  double
+  Certification<dim>::n_unknowns(const double n_cells) const
+  {
+    // Four on each of 3/2 sides a triangle, or nine on each of two faces a
+    // tetrahedron.
+    return (dim == 2 ? 6. : 18.) * n_cells;
+  }
+
+
+
+  template <int dim>
+  void
+  Certification<dim>::certify(const std::shared_ptr<const Scene<dim>> &scene,
+                              RunResult<dim>                          &result)
+  {
+    if (kind != CertificateKind::none && result.is_success() && !certificate)
+      {
+        dealii::Timer        timer;
+        const InterruptGuard guard;
+        const auto           certify = [&](const Certifier<dim> &certifier) {
+          certificate =
+            certifier.certify(*scene, result.solve.u, proof, may_go_on);
+          certificate->include(result.solve.functional);
+          if (!may_go_on())
+            result.solve.minimum.interrupted = true;
+        };
+        try
+          {
+            const bool is_refined = !result.levels.empty();
+            if (first == nullptr ||
+                (is_refined && !first->is_for_finer_meshes()))
+              certify(Certifier<dim>(kind, scene));
+            else
+              certify(*first);
+          }
+        catch (const std::exception &error)
+          {
+            result.notes.push_back(no_certificate(error));
+          }
+        result.times.emplace_back("certificate", timer.wall_time());
+      }
+    if (certificate)
+      {
+        result.cell_fields = fields_of_cells(*scene, *certificate);
+        result.face_fields = fields_of_faces(*scene, *certificate);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Certification<dim>::report(Record &record) const
+  {
+    if (certificate)
+      report_certificate(*certificate, record);
+  }
+
+
+
+  template <int dim>
+  std::vector<OutputFile>
+  Certification<dim>::files(const OutputParameters &output,
+                            const Scene<dim>       &scene) const
+  {
+    return {{"certified_sides.csv",
+             [&]() {
+               return output.contact_profile && certificate &&
+                      !certificate->sides.empty();
+             },
+             [&](const std::string &path) {
+               write_certified_sides(*certificate, scene.law(), path);
+             }}};
+  }
+
+
+
+  template class Certification<2>;
+  template class Certification<3>;
+} // namespace Debond
