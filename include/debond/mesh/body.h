@@ -130,8 +130,8 @@ namespace Debond
 
 
 
-  /// A coarser mesh that need not be built: its vertices, by numbers of their
-  /// own, and its P1 fields at those of the next finer mesh.
+  /// A coarser mesh: its vertices, and its P1 fields at those of the next finer
+  /// mesh.
   template <int dim>
   struct CoarseLevel
   {
@@ -170,18 +170,22 @@ namespace Debond
     /// The P1 field with @p values at the vertices of @p mesh, which is the one
     /// of make_mesh(), at points of the body. Points beside the mesh, as on the
     /// curved side of a finer one, belong to a cell next to them.
-    virtual std::vector<dealii::Tensor<1, dim>>
+    std::vector<dealii::Tensor<1, dim>>
     interpolate(const dealii::Triangulation<dim>          &mesh,
                 const std::vector<dealii::Tensor<1, dim>> &values,
                 const std::vector<dealii::Point<dim>>     &points) const;
 
-    /// The meshes of the coarser bodies as far as they are good for multigrid,
-    /// finest first, down to one that takes nothing to solve; empty unless
+    /// The body of the next coarser level for multigrid, without parts; null if
+    /// this one takes nothing to solve, or if there is none.
+    virtual std::unique_ptr<Body>
+    coarser_level() const;
+
+    /// The meshes of the coarser levels, finest first; empty unless
     /// has_coarse_levels(). If @p with_own the body's own mesh comes first,
     /// for displacements of a higher degree there. The first interpolation is
     /// to @p points of the body, each next one to all vertices of the level
     /// before.
-    virtual std::vector<CoarseLevel<dim>>
+    std::vector<CoarseLevel<dim>>
     coarse_levels(const std::vector<dealii::Point<dim>> &points,
                   const bool with_own = false) const;
 
