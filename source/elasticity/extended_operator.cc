@@ -56,10 +56,8 @@ namespace Debond
         return;
       }
     // The points and gradients of strain_rule() and FE_SimplexP, which have the
-    // digits of double only: next to each vertex one point, where the others'
-    // coordinates are small.
-    const long double small =
-      dim == 2 ? 1.L / 6.L : (5.L - std::sqrt(5.L)) / 20.L;
+    // digits of double only.
+    const long double small = near_vertex<dim, long double>();
     for (unsigned int q = 0; q <= dim; ++q)
       {
         const auto coordinate = [&](const unsigned int v) {

@@ -2,13 +2,12 @@
 #ifndef debond_elasticity_correction_solver_h
 #define debond_elasticity_correction_solver_h
 
-#include <deal.II/lac/lapack_full_matrix.h>
-
 #include <debond/elasticity/contact_unknowns.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/majorise/bound_qp.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/SparseCore>
 
 #include <vector>
@@ -51,9 +50,9 @@ namespace Debond
     solve(const DofVector &r) const override;
 
   private:
-    const Condensation              &condensed;
-    std::vector<unsigned int>        free; ///< contact nodes
-    dealii::LAPACKFullMatrix<double> factor;
+    const Condensation         &condensed;
+    std::vector<int>            free; ///< contact nodes
+    Eigen::LLT<Eigen::MatrixXd> factor;
   };
 
 
