@@ -156,7 +156,7 @@ namespace Debond
   double
   Box<dim>::n_cells() const
   {
-    const auto &n = shape().cells;
+    const auto &n = parameters.cells;
     return dim == 2 ? 4. * n[0] * n[1] : 24. * n[0] * n[1] * n[2];
   }
 
@@ -166,28 +166,13 @@ namespace Debond
   double
   Box<dim>::n_vertices() const
   {
-    const auto &n = shape().cells;
+    const auto &n = parameters.cells;
     if (dim == 2)
-      return (n[0] + 1.) * (n[1] + 1.) + n[0] * n[1];
+      return (n[0] + 1.) * (n[1] + 1.) + 1. * n[0] * n[1];
     const double faces = (n[0] + 1.) * n[1] * n[2] + n[0] * (n[1] + 1.) * n[2] +
-                         n[0] * n[1] * (n[2] + 1.);
-    return (n[0] + 1.) * (n[1] + 1.) * (n[2] + 1.) + faces + n[0] * n[1] * n[2];
-  }
-
-
-
-  template <int dim>
-  BodyShape
-  Box<dim>::shape() const
-  {
-    BodyShape shape = {};
-    shape.is_box    = true;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        shape.lengths[d] = parameters.lengths[d];
-        shape.cells[d]   = parameters.cells[d];
-      }
-    return shape;
+                         (n[2] + 1.) * n[0] * n[1];
+    return (n[0] + 1.) * (n[1] + 1.) * (n[2] + 1.) + faces +
+           1. * n[0] * n[1] * n[2];
   }
 
 

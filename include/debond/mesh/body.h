@@ -78,17 +78,6 @@ namespace Debond
 
 
 
-  /// A box of about the body's extents and number of cells, for estimates. In
-  /// 2D the third entries are zero.
-  struct BodyShape
-  {
-    std::array<double, 3> lengths;
-    std::array<double, 3> cells;  ///< before they are cut into simplices
-    bool                  is_box; ///< not only about
-  };
-
-
-
   /**
    * What is known of a body without building its mesh, in either dimension.
    * Numbers of cells and vertices are double, as what a user writes may exceed
@@ -117,8 +106,9 @@ namespace Debond
     virtual double
     n_vertices() const = 0;
 
-    virtual BodyShape
-    shape() const = 0;
+    /// Of a box around it, along its edges.
+    virtual std::array<double, 3>
+    extents() const = 0;
 
     /// Whether Body::coarse_levels() has any.
     virtual bool

@@ -78,8 +78,11 @@ namespace Debond
     double
     n_vertices() const override;
 
-    BodyShape
-    shape() const override;
+    std::array<double, 3>
+    extents() const override
+    {
+      return parameters.lengths;
+    }
 
     bool
     has_coarse_levels() const override;
