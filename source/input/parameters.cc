@@ -227,7 +227,7 @@ namespace Debond
       use_names(p.supports.displacements);
       use_names(p.materials.of_regions());
       used.insert(p.contact_boundaries.begin(), p.contact_boundaries.end());
-      for (const std::string &name : p.supports.all_rollers())
+      for (const std::string &name : p.supports.rollers)
         used.insert(name);
       for (const SurfaceLoad &load : p.loads.on_boundaries())
         used.insert(load.boundary);

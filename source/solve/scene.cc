@@ -44,14 +44,12 @@ namespace Debond
 
 
     std::string
-    entry_of(const SupportError &error, const SupportParameters &supports)
+    entry_of(const SupportError &error)
     {
       switch (error.subject)
         {
           case SupportError::Subject::roller:
-            return supports.rollers.count(error.name) > 0 ?
-                     "Boundary conditions/Roller boundaries" :
-                     "Boundary conditions/Symmetry boundaries";
+            return "Boundary conditions/Roller boundaries";
           case SupportError::Subject::gap:
             return error.name.empty() ? "Contact law/Initial gap" :
                                         "Contact law/Initial gap " + error.name;
@@ -85,7 +83,7 @@ namespace Debond
       if (const auto *part = dynamic_cast<const PartError *>(&error))
         entry = "Parts/" + part->part;
       if (const auto *support = dynamic_cast<const SupportError *>(&error))
-        entry = entry_of(*support, given.supports);
+        entry = entry_of(*support);
       if (const auto *probe = dynamic_cast<const ProbeError *>(&error))
         entry = "Probes/" + probe->probe;
       if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))
