@@ -48,8 +48,10 @@ namespace Debond
   {
     return condensed.solve(r, [this](const Eigen::VectorXd &g) {
       Eigen::VectorXd s = Eigen::VectorXd::Zero(g.size());
-      if (!free.empty())
-        s(free) = factor.solve(g(free));
+      if (free.empty())
+        return s;
+      const Eigen::VectorXd g_free = g(free);
+      s(free)                      = factor.solve(g_free);
       return s;
     });
   }
