@@ -33,12 +33,12 @@ namespace Debond
       {
         Eigen::MatrixXd shifted = matrix;
         shifted.diagonal() *= 1. + shift;
-        factor.compute(shifted);
-        if (factor.info() == Eigen::Success)
+        factor.emplace(shifted);
+        if (factor->is_positive_definite())
           return;
       }
     // Any positive definite matrix is a preconditioner.
-    factor.compute(matrix.diagonal().cwiseAbs().asDiagonal().toDenseMatrix());
+    factor.emplace(matrix.diagonal().cwiseAbs().asDiagonal());
   }
 
 
@@ -50,8 +50,9 @@ namespace Debond
       Eigen::VectorXd s = Eigen::VectorXd::Zero(g.size());
       if (free.empty())
         return s;
-      const Eigen::VectorXd g_free = g(free);
-      s(free)                      = factor.solve(g_free);
+      Eigen::VectorXd s_free = g(free);
+      factor->solve_in_place(s_free);
+      s(free) = s_free;
       return s;
     });
   }

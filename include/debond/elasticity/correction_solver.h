@@ -3,13 +3,14 @@
 #define debond_elasticity_correction_solver_h
 
 #include <debond/elasticity/contact_unknowns.h>
+#include <debond/linear_algebra/cholesky.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/majorise/bound_qp.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/SparseCore>
 
+#include <optional>
 #include <vector>
 
 namespace Debond
@@ -50,9 +51,9 @@ namespace Debond
     solve(const DofVector &r) const override;
 
   private:
-    const Condensation         &condensed;
-    std::vector<int>            free; ///< contact nodes
-    Eigen::LLT<Eigen::MatrixXd> factor;
+    const Condensation          &condensed;
+    std::vector<int>             free; ///< contact nodes
+    std::optional<DenseCholesky> factor;
   };
 
 
