@@ -14,9 +14,6 @@ namespace Debond
     /// Of corrections, in the energy norm.
     constexpr double refinement_tolerance = 1e-13;
 
-    /// Of stresses, from which on it is worth a note.
-    constexpr double notable_stress_rounding = 1e-6;
-
     constexpr unsigned int maximum_refinement_iterations = 2000;
     constexpr unsigned int maximum_refinement_systems    = 500;
   } // namespace
@@ -162,15 +159,6 @@ namespace Debond
         for (const auto normal : normals)
           point(normal) = std::min(point(normal), 0.);
         return point;
-      }
-
-      double
-      stress_rounding() const
-      {
-        // A body at rest has no other stresses.
-        return energy() > least_energy ?
-                 A.stress_rounding(u, to_extended(rounded()) + lifting) :
-                 0.;
       }
 
     private:
@@ -356,7 +344,6 @@ namespace Debond
         return majorant.result;
     RefinementResult result = majorant.result;
     u                       = majorant.rounded();
-    result.stress_rounding  = majorant.stress_rounding();
     result.converged        = true;
     return result;
   }
@@ -434,10 +421,6 @@ namespace Debond
               "error of "
            << refined.error << " after " << refined.linear_iterations
            << " iterations: do not trust more digits than that.";
-    else if (refined.stress_rounding > notable_stress_rounding)
-      note << "displacements are written in double precision, which alone "
-              "changes stresses by up to "
-           << refined.stress_rounding << " of the largest one.";
     return {refined.converged, note.str()};
   }
 
