@@ -350,31 +350,6 @@ namespace Debond
 
 
 
-  namespace
-  {
-    /// Whether what forces do along the displacements nearly cancels: that is
-    /// rigid motion, whatever the shape of the body.
-    template <int dim>
-    bool
-    is_moved_as_a_whole(const ElasticProblem<dim> &problem,
-                        const LoadFactors          factors,
-                        const DofVector           &u)
-    {
-      constexpr double part_of_strain = 1e-3;
-      const DofVector  displacement =
-        problem.unknowns().cartesian_displacement(u, factors);
-      const DofVector forces = problem.fields().applied_nodal_forces(factors);
-      double          work   = 0.;
-      for (unsigned int i = 0; i < u.size(); ++i)
-        work += std::abs(forces(i) * displacement(i));
-      return problem.unknowns().has_lifting() &&
-             2. * problem.fields().strain_energy(u, factors) <=
-               part_of_strain * work;
-    }
-  } // namespace
-
-
-
   template <int dim>
   Refined
   refine_where_needed(const ElasticProblem<dim>   &problem,
@@ -412,15 +387,14 @@ namespace Debond
       !problem.unknowns().has_lifting() ||
       rounding * std::numeric_limits<double>::epsilon() < 1e-2;
     if (!refined.converged && has_stresses)
-      note << "in double precision rounding can change " << rounding
-           << " of the strain energy, for the "
-           << (is_moved_as_a_whole(problem, factors, u) ?
-                 "body moves far more than it is strained, as over a gap" :
-                 "body is slender or the material nearly incompressible")
-           << ", and the refinement in extended precision ended at a relative "
-              "error of "
-           << refined.error << " after " << refined.linear_iterations
-           << " iterations: do not trust more digits than that.";
+      note
+        << "in double precision rounding can change " << rounding
+        << " of the strain energy, for the body is slender, nearly "
+           "incompressible, or moves far more than it is strained, as over a "
+           "gap, and the refinement in extended precision ended at a relative "
+           "error of "
+        << refined.error << " after " << refined.linear_iterations
+        << " iterations: do not trust more digits than that.";
     return {refined.converged, note.str()};
   }
 

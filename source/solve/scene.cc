@@ -200,13 +200,6 @@ namespace Debond
   Scene<dim>::add_notes()
   {
     const ContactBoundary<dim> &boundary = contact_boundary();
-    if (boundary.n_near_limit > 0)
-      body_notes.push_back(
-        words("nodes of the contact boundary whose faces meet at 30.4 to 32.4 "
-              "degrees: ",
-              boundary.n_near_limit,
-              ". Below 31.4 they are one smooth side, above it a corner, so "
-              "that a mesh that is a little different may have another J"));
     if (boundary.nodes.empty() && !boundary_conditions.contact.empty())
       body_notes.push_back(
         "the contact boundary has no contact node, and contact and bonds "
