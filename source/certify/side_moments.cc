@@ -13,7 +13,7 @@ namespace Debond
   namespace
   {
     /// How far a traction may be from a linear one, relative to it.
-    constexpr double traction_rounding = 1e-10;
+    constexpr double linear_rounding = 1e-10;
 
 
 
@@ -78,7 +78,7 @@ namespace Debond
         largest = std::max(largest, values[q].norm());
         square += (dim - 1.) * rule.weight(q) * rest.norm_square();
       }
-    if (std::sqrt(square) <= traction_rounding * largest)
+    if (std::sqrt(square) <= linear_rounding * largest)
       square = 0.;
     return {conjugates(linear), square};
   }
