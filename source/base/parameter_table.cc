@@ -390,18 +390,12 @@ namespace Debond
       std::error_code unreadable;
       return std::filesystem::equivalent(path, other, unreadable);
     };
-    // Files that each include others twice have no end.
-    constexpr unsigned int most_included = 100;
-    std::ifstream          input         = open_plain_file(path);
-    if (n_included == most_included)
-      return;
+    std::ifstream     input = open_plain_file(path);
     const std::string error = location + ": include " + name + ": ";
     if (!input)
       errors.push_back(error + "there is no such file, or it cannot be read");
     else if (std::any_of(reading.begin(), reading.end(), is_this_file))
       errors.push_back(error + "the file includes itself");
-    else if (++n_included == most_included)
-      errors.push_back(error + "it is one of more than 100 files");
     else
       read(input, path.string());
     file_name = file;

@@ -53,9 +53,9 @@ namespace Debond
                                      scene.supports(),
                                      scene.materials(),
                                      scene.loads(),
-                                     mean_thermal_stresses(triangulation,
-                                                           scene.materials(),
-                                                           scene.loads()));
+                                     thermal_stresses(triangulation,
+                                                      scene.materials(),
+                                                      scene.loads()));
     }
 
 

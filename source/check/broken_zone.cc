@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 namespace Debond
 {
@@ -31,71 +32,37 @@ namespace Debond
 
 
 
-    /// The part of a face where a quadratic function with these coefficients
-    /// (see bernstein()) is positive; where it changes sign, that of the linear
-    /// interpolant on pieces.
-    template <std::size_t n>
+    /// The part of a face where a function of its barycentric coordinates is
+    /// positive: that of the linear interpolant on equal pieces.
+    template <int dim, typename Function>
     double
-    positive_part_of_quadratic(
-      const std::array<double, n_coefficients(n, 2)> &coefficients,
-      const unsigned int                              halvings)
+    positive_part_on_pieces(const Function &function)
     {
-      const auto [least, largest] =
-        std::minmax_element(coefficients.begin(), coefficients.end());
-      if (*largest <= 0.)
-        return 0.;
-      if (*least >= 0.)
-        return 1.;
-      if (halvings == 0)
-        {
-          std::array<double, n> at_vertices;
-          std::copy_n(coefficients.begin(), n, at_vertices.begin());
-          return positive_part(at_vertices);
-        }
-
-      // The polar form at two points that are vertices or middles of edges.
-      const auto polar = [&](const std::array<double, n> &x,
-                             const std::array<double, n> &y) {
-        double sum = 0.;
-        for (unsigned int v = 0; v < n; ++v)
-          sum += coefficients[v] * x[v] * y[v];
-        for (unsigned int e = 0; e < n_simplex_edges(n); ++e)
+      constexpr unsigned int n = dim == 2 ? 1024 : 32;
+      // A piece with its corner here, its legs along the axes or against them.
+      const auto part_of_piece =
+        [&](const unsigned int x, const unsigned int y, const double leg) {
+          std::array<double, dim> values, coordinates;
+          for (unsigned int k = 0; k < dim; ++k)
+            {
+              coordinates[dim - 1] = (y + (k == 2 ? leg : 0.)) / n;
+              coordinates[1]       = (x + (k == 1 ? leg : 0.)) / n;
+              coordinates[0]       = 1.;
+              for (unsigned int d = 1; d < dim; ++d)
+                coordinates[0] -= coordinates[d];
+              values[k] = function(coordinates);
+            }
+          return positive_part(values);
+        };
+      double sum = 0.;
+      for (unsigned int x = 0; x < n; ++x)
+        for (unsigned int y = 0; y < (dim == 2 ? 1 : n - x); ++y)
           {
-            const auto &[a, b] = simplex_edges[e];
-            sum += coefficients[n + e] * (x[a] * y[b] + x[b] * y[a]);
+            sum += part_of_piece(x, y, 1.);
+            if (dim == 3 && x + y + 1 < n)
+              sum += part_of_piece(x + 1, y + 1, -1.);
           }
-        return sum;
-      };
-      const auto part_of = [&](const std::array<std::array<double, n>, n> &x) {
-        std::array<double, n_coefficients(n, 2)> piece;
-        for (unsigned int v = 0; v < n; ++v)
-          piece[v] = polar(x[v], x[v]);
-        for (unsigned int e = 0; e < n_simplex_edges(n); ++e)
-          piece[n + e] = polar(x[simplex_edges[e][0]], x[simplex_edges[e][1]]);
-        return positive_part_of_quadratic<n>(piece, halvings - 1);
-      };
-      const auto middle = [](const unsigned int a, const unsigned int b) {
-        std::array<double, n> point = {};
-        point[a] += 0.5;
-        point[b] += 0.5;
-        return point;
-      };
-      // A piece at each vertex, of a triangle also that of the middles.
-      double       sum      = 0.;
-      unsigned int n_pieces = 0;
-      for (unsigned int v = 0; v < n; ++v, ++n_pieces)
-        {
-          std::array<std::array<double, n>, n> corners;
-          for (unsigned int w = 0; w < n; ++w)
-            corners[w] = middle(v, w);
-          sum += part_of(corners);
-        }
-      if constexpr (n == 3)
-        {
-          sum += part_of({{middle(0, 1), middle(1, 2), middle(2, 0)}});
-          ++n_pieces;
-        }
-      return sum / n_pieces;
+      return sum / (dim == 2 ? n : n * n);
     }
   } // namespace
 
@@ -130,18 +97,22 @@ namespace Debond
           }
         if (boundary.degree == 2)
           {
-            constexpr unsigned int halvings     = dim == 2 ? 20 : 5;
-            auto                   coefficients = adhesion.trace_on(face, s);
-            for (double &opening : coefficients)
-              opening *= -1.;
-            // The threshold is linear between the vertices.
-            for (unsigned int k = 0; k < dim; ++k)
-              coefficients[k] -= threshold[k];
-            for (unsigned int e = 0; e < n_simplex_edges(dim); ++e)
-              coefficients[dim + e] -= 0.5 * (threshold[simplex_edges[e][0]] +
-                                              threshold[simplex_edges[e][1]]);
-            sum += face.measure *
-                   positive_part_of_quadratic<dim>(coefficients, halvings);
+            const auto [least, largest] =
+              range_on_simplex<dim>(adhesion.trace_on(face, s), 2);
+            const auto [low, high] =
+              std::minmax_element(threshold.begin(), threshold.end());
+            if (-largest >= *high)
+              sum += face.measure;
+            else if (-least > *low)
+              sum += face.measure *
+                     positive_part_on_pieces<dim>(
+                       [&](const std::array<double, dim> &coordinates) {
+                         return -adhesion.trace(face, coordinates, s) -
+                                std::inner_product(coordinates.begin(),
+                                                   coordinates.end(),
+                                                   threshold.begin(),
+                                                   0.);
+                       });
             continue;
           }
         // Closed cracks are not open.

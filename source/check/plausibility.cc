@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace Debond
 {
@@ -45,27 +44,12 @@ namespace Debond
   {
     /// Beyond it the strains of linear elasticity are wrong by some percent.
     constexpr double largest_small_gradient = 0.05;
-
-    /// A body this slender bends.
-    constexpr double slender_ratio = 5.;
-
-    /// Cells larger than this part of the thickness, along or through it, make
-    /// a strip too stiff in bending: as measured, J is 1 / (1 + 0.6 (size /
-    /// thickness)^2) of the beam's, 96 % for a quarter.
-    constexpr double largest_cell = 0.3;
-    constexpr double locking      = 0.6;
-
-    constexpr double largest_stretch = 5.;
   } // namespace
 
 
 
   std::vector<std::string>
-  plausibility_notes(const BodyShape     &shape,
-                     const unsigned int   dim,
-                     const bool           has_load,
-                     const LargestValues &largest,
-                     const unsigned int   degree)
+  plausibility_notes(const bool has_load, const LargestValues &largest)
   {
     std::vector<std::string> notes;
     const auto               add = [&notes](const auto &...parts) {
@@ -80,42 +64,6 @@ namespace Debond
           " are beyond linear elasticity, which is for small strains and "
           "rotations, below about ",
           largest_small_gradient);
-
-    // How long and how thin a body of another shape is, is not known; quadratic
-    // displacements bend.
-    if (!shape.is_box || degree > 1)
-      return notes;
-
-    const double thickness =
-      *std::min_element(shape.lengths.begin(), shape.lengths.begin() + dim);
-    double shortest = std::numeric_limits<double>::max();
-    double longest  = 0.;
-    double bending  = 0.; // of cells that bend
-    bool   slender  = false;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        const double edge  = shape.lengths[d] / shape.cells[d];
-        const bool   thin  = shape.lengths[d] <= thickness;
-        const bool   along = shape.lengths[d] >= slender_ratio * thickness;
-        shortest           = std::min(shortest, edge);
-        longest            = std::max(longest, edge);
-        slender |= along;
-        if (thin || along)
-          bending = std::max(bending, edge);
-      }
-    if (slender && bending > largest_cell * thickness)
-      {
-        const double size = bending / thickness;
-        add("cells of ",
-            size,
-            " times the body's thickness: bent, a strip has about ",
-            std::round(100. / (1. + locking * size * size)),
-            " % of its J, with a quarter 96 %");
-      }
-    else if (longest > largest_stretch * shortest)
-      add("cells are stretched by a factor of ",
-          longest / shortest,
-          ", which makes them stiff where they bend");
     return notes;
   }
 

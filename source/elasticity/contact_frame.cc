@@ -43,12 +43,6 @@ namespace Debond
     const std::vector<double>                 &face_measures)
     : groups(join_faces(face_normals, 31.4))
   {
-    const auto n_groups = [&](const double degrees) {
-      const auto joined = join_faces(face_normals, degrees);
-      return std::set<unsigned int>(joined.begin(), joined.end()).size();
-    };
-    is_near_limit = n_groups(30.4) != n_groups(32.4);
-
     std::vector<dealii::Tensor<1, dim>> sums(groups.size());
     for (unsigned int f = 0; f < groups.size(); ++f)
       sums[groups[f]] += face_measures[f] * face_normals[f];

@@ -216,7 +216,6 @@ namespace Debond
         const VertexNormals<dim> groups(vertex.normals, vertex.measures);
         const std::vector<dealii::Tensor<1, dim>> &normals = groups.normals;
         vertex.groups                                      = groups.groups;
-        boundary.n_near_limit += groups.is_near_limit;
         std::vector<double> gaps(normals.size(),
                                  std::numeric_limits<double>::infinity());
         for (unsigned int k = 0; k < vertex.gaps.size(); ++k)

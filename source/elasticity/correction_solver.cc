@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/lac/exceptions.h>
-
 #include <debond/elasticity/correction_solver.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace Debond
@@ -21,48 +18,27 @@ namespace Debond
                                const ActiveSet                   &held)
   {
     free.clear();
-    std::vector<unsigned int> place(held.size());
     for (unsigned int i = 0; i < held.size(); ++i)
       if (held[i] == 0)
-        {
-          place[i] = static_cast<unsigned int>(free.size());
-          free.push_back(i);
-        }
+        free.push_back(static_cast<int>(i));
     if (free.empty())
       return;
 
-    const MatrixView   S = condensed.schur_complement();
-    const unsigned int n = static_cast<unsigned int>(free.size());
+    Eigen::MatrixXd whole = condensed.schur_complement();
+    whole += E;
+    const Eigen::MatrixXd matrix = whole(free, free);
     // Where rounding has made S + E indefinite a larger diagonal mends it.
     for (double shift = 0.; shift < 1e-3;
          shift = std::max(10. * shift, std::numeric_limits<double>::epsilon()))
       {
-        factor.reinit(n);
-        for (unsigned int k = 0; k < n; ++k)
-          for (unsigned int l = 0; l < n; ++l)
-            factor(k, l) = S(free[k], free[l]);
-        for (int j = 0; j < E.outerSize(); ++j)
-          for (Eigen::SparseMatrix<double>::InnerIterator entry(E, j); entry;
-               ++entry)
-            if (held[j] == 0 && held[entry.row()] == 0)
-              factor(place[entry.row()], place[j]) += entry.value();
-        for (unsigned int k = 0; k < n; ++k)
-          factor(k, k) *= 1. + shift;
-        factor.set_property(dealii::LAPACKSupport::symmetric);
-        try
-          {
-            factor.compute_cholesky_factorization();
-            return;
-          }
-        catch (const dealii::LACExceptions::ExcSingular &)
-          {}
+        Eigen::MatrixXd shifted = matrix;
+        shifted.diagonal() *= 1. + shift;
+        factor.emplace(shifted);
+        if (factor->is_positive_definite())
+          return;
       }
     // Any positive definite matrix is a preconditioner.
-    factor.reinit(n);
-    for (unsigned int k = 0; k < n; ++k)
-      factor(k, k) = std::abs(S(free[k], free[k]));
-    factor.set_property(dealii::LAPACKSupport::symmetric);
-    factor.compute_cholesky_factorization();
+    factor.emplace(matrix.diagonal().cwiseAbs().asDiagonal());
   }
 
 
@@ -74,12 +50,9 @@ namespace Debond
       Eigen::VectorXd s = Eigen::VectorXd::Zero(g.size());
       if (free.empty())
         return s;
-      dealii::Vector<double> s_free(static_cast<unsigned int>(free.size()));
-      for (unsigned int k = 0; k < free.size(); ++k)
-        s_free(k) = g(free[k]);
-      factor.solve(s_free);
-      for (unsigned int k = 0; k < free.size(); ++k)
-        s(free[k]) = s_free(k);
+      Eigen::VectorXd s_free = g(free);
+      factor->solve_in_place(s_free);
+      s(free) = s_free;
       return s;
     });
   }

@@ -33,7 +33,10 @@ namespace Debond
     std::vector<double> pressures;
     DofVector           applied_forces, dead_forces;
     on_all_ranks(ranks, [&]() {
-      pressures      = thermal_stresses(dofs, materials, loads);
+      pressures      = thermal_stresses(dofs.get_triangulation(),
+                                   materials,
+                                   loads,
+                                   dofs.get_fe().degree);
       applied_forces = load_vector(dofs, loads, &notes);
       add_thermal_forces(dofs, pressures, applied_forces);
       if (dead_loads.body_force || !dead_loads.tractions.empty())

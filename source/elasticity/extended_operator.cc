@@ -3,7 +3,6 @@
 #include <debond/elasticity/extended_operator.h>
 #include <debond/mesh/owned_cells.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace Debond
@@ -56,10 +55,8 @@ namespace Debond
         return;
       }
     // The points and gradients of strain_rule() and FE_SimplexP, which have the
-    // digits of double only: next to each vertex one point, where the others'
-    // coordinates are small.
-    const long double small =
-      dim == 2 ? 1.L / 6.L : (5.L - std::sqrt(5.L)) / 20.L;
+    // digits of double only.
+    const long double small = near_vertex<dim, long double>();
     for (unsigned int q = 0; q <= dim; ++q)
       {
         const auto coordinate = [&](const unsigned int v) {
@@ -115,36 +112,6 @@ namespace Debond
       if (problem.unknowns().is_constrained(i))
         forces(i) = 0.;
     return forces;
-  }
-
-
-
-  template <int dim>
-  double
-  ExtendedOperator<dim>::stress_rounding(const ExtendedVector &u,
-                                         const ExtendedVector &rounded_u) const
-  {
-    const ExtendedVector displacement = cartesian(u);
-    const ExtendedVector rounded      = cartesian(rounded_u);
-    long double          largest = 0., largest_change = 0.;
-    for (const Cell &cell : cells)
-      for (unsigned int q = 0; q < reference_gradients.size(); ++q)
-        {
-          const std::vector<Gradient> gradients = gradients_at(cell, q);
-          const Stress exact = stress(cell, gradients, displacement);
-          const Stress other = stress(cell, gradients, rounded);
-          for (unsigned int d = 0; d < dim; ++d)
-            for (unsigned int e = 0; e < dim; ++e)
-              {
-                largest = std::max(largest, std::abs(exact[d][e]));
-                largest_change =
-                  std::max(largest_change, std::abs(exact[d][e] - other[d][e]));
-              }
-        }
-    const MPI_Comm ranks = problem.unknowns().communicator();
-    largest              = dealii::Utilities::MPI::max(largest, ranks);
-    largest_change       = dealii::Utilities::MPI::max(largest_change, ranks);
-    return largest > 0. ? static_cast<double>(largest_change / largest) : 0.;
   }
 
 

@@ -30,22 +30,6 @@ namespace Debond
   {
     if (dead_forces.size() > 0)
       live_forces -= dead_forces;
-    const dealii::Quadrature<dim> rule = strain_rule<dim>(unknowns.degree());
-    if (unknowns.degree() == 2)
-      for (const dealii::Point<dim> &point : rule.get_points())
-        {
-          unsigned int vertex  = 0;
-          double       largest = 1.;
-          for (unsigned int d = 0; d < dim; ++d)
-            largest -= point[d];
-          for (unsigned int d = 0; d < dim; ++d)
-            if (point[d] > largest)
-              {
-                largest = point[d];
-                vertex  = d + 1;
-              }
-          vertices_of_points.push_back(vertex);
-        }
   }
 
 
@@ -150,7 +134,7 @@ namespace Debond
   {
     if (thermal_stresses.empty())
       return 0.;
-    if (vertices_of_points.empty())
+    if (elastic_unknowns.degree() == 1)
       return thermal_stresses[cell->active_cell_index()];
     // The linear function that has these values at the points, where the other
     // barycentric coordinates are small.
@@ -161,11 +145,10 @@ namespace Debond
         barycentric[d + 1] = unit_point[d];
         barycentric[0] -= unit_point[d];
       }
-    constexpr double small = dim == 2 ? 1. / 6. : 0.13819660112501051;
-    double           sum   = 0.;
+    const double small = near_vertex<dim, double>();
+    double       sum   = 0.;
     for (unsigned int q = 0; q <= dim; ++q)
-      sum += (barycentric[vertices_of_points[q]] - small) /
-             (1. - (dim + 1) * small) *
+      sum += (barycentric[q] - small) / (1. - (dim + 1) * small) *
              thermal_stresses[(dim + 1) * cell->active_cell_index() + q];
     return sum;
   }

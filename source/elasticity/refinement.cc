@@ -14,9 +14,6 @@ namespace Debond
     /// Of corrections, in the energy norm.
     constexpr double refinement_tolerance = 1e-13;
 
-    /// Of stresses, from which on it is worth a note.
-    constexpr double notable_stress_rounding = 1e-6;
-
     constexpr unsigned int maximum_refinement_iterations = 2000;
     constexpr unsigned int maximum_refinement_systems    = 500;
   } // namespace
@@ -162,15 +159,6 @@ namespace Debond
         for (const auto normal : normals)
           point(normal) = std::min(point(normal), 0.);
         return point;
-      }
-
-      double
-      stress_rounding() const
-      {
-        // A body at rest has no other stresses.
-        return energy() > least_energy ?
-                 A.stress_rounding(u, to_extended(rounded()) + lifting) :
-                 0.;
       }
 
     private:
@@ -356,35 +344,9 @@ namespace Debond
         return majorant.result;
     RefinementResult result = majorant.result;
     u                       = majorant.rounded();
-    result.stress_rounding  = majorant.stress_rounding();
     result.converged        = true;
     return result;
   }
-
-
-
-  namespace
-  {
-    /// Whether what forces do along the displacements nearly cancels: that is
-    /// rigid motion, whatever the shape of the body.
-    template <int dim>
-    bool
-    is_moved_as_a_whole(const ElasticProblem<dim> &problem,
-                        const LoadFactors          factors,
-                        const DofVector           &u)
-    {
-      constexpr double part_of_strain = 1e-3;
-      const DofVector  displacement =
-        problem.unknowns().cartesian_displacement(u, factors);
-      const DofVector forces = problem.fields().applied_nodal_forces(factors);
-      double          work   = 0.;
-      for (unsigned int i = 0; i < u.size(); ++i)
-        work += std::abs(forces(i) * displacement(i));
-      return problem.unknowns().has_lifting() &&
-             2. * problem.fields().strain_energy(u, factors) <=
-               part_of_strain * work;
-    }
-  } // namespace
 
 
 
@@ -425,19 +387,14 @@ namespace Debond
       !problem.unknowns().has_lifting() ||
       rounding * std::numeric_limits<double>::epsilon() < 1e-2;
     if (!refined.converged && has_stresses)
-      note << "in double precision rounding can change " << rounding
-           << " of the strain energy, for the "
-           << (is_moved_as_a_whole(problem, factors, u) ?
-                 "body moves far more than it is strained, as over a gap" :
-                 "body is slender or the material nearly incompressible")
-           << ", and the refinement in extended precision ended at a relative "
-              "error of "
-           << refined.error << " after " << refined.linear_iterations
-           << " iterations: do not trust more digits than that.";
-    else if (refined.stress_rounding > notable_stress_rounding)
-      note << "displacements are written in double precision, which alone "
-              "changes stresses by up to "
-           << refined.stress_rounding << " of the largest one.";
+      note
+        << "in double precision rounding can change " << rounding
+        << " of the strain energy, for the body is slender, nearly "
+           "incompressible, or moves far more than it is strained, as over a "
+           "gap, and the refinement in extended precision ended at a relative "
+           "error of "
+        << refined.error << " after " << refined.linear_iterations
+        << " iterations: do not trust more digits than that.";
     return {refined.converged, note.str()};
   }
 

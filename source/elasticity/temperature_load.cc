@@ -9,6 +9,8 @@
 #include <debond/elasticity/temperature_load.h>
 #include <debond/mesh/owned_cells.h>
 
+#include <numeric>
+
 namespace Debond
 {
   namespace
@@ -32,9 +34,10 @@ namespace Debond
 
   template <int dim>
   std::vector<double>
-  mean_thermal_stresses(const dealii::Triangulation<dim> &triangulation,
-                        const ByRegion<Material>         &materials,
-                        const Loads<dim>                 &loads)
+  thermal_stresses(const dealii::Triangulation<dim> &triangulation,
+                   const ByRegion<Material>         &materials,
+                   const Loads<dim>                 &loads,
+                   const unsigned int                degree)
   {
     std::vector<double> stresses;
     if (!loads.temperature_change)
@@ -44,55 +47,30 @@ namespace Debond
     const dealii::MappingFE<dim>   mapping(fe);
     dealii::FEValues<dim>          fe_values(mapping,
                                     fe,
-                                    dealii::QGaussSimplex<dim>(2),
-                                    dealii::update_quadrature_points |
-                                      dealii::update_JxW_values);
+                                    degree == 1 ?
+                                               dealii::QGaussSimplex<dim>(2) :
+                                               strain_rule<dim>(degree),
+                                    dealii::update_quadrature_points);
+    const std::vector<double>     &weights =
+      fe_values.get_quadrature().get_weights();
+    const double volume = std::accumulate(weights.begin(), weights.end(), 0.);
     for (const auto &cell : triangulation.active_cell_iterators())
       {
         fe_values.reinit(cell);
-        double sum = 0., volume = 0.;
+        const double stress_of_one =
+          materials(cell->material_id()).template thermal_stress<dim>();
+        double mean = 0.;
         for (const unsigned int q : fe_values.quadrature_point_indices())
           {
-            sum += fe_values.JxW(q) *
-                   temperature_at(loads, fe_values.quadrature_point(q));
-            volume += fe_values.JxW(q);
+            const double stress =
+              stress_of_one *
+              temperature_at(loads, fe_values.quadrature_point(q));
+            mean += weights[q] / volume * stress;
+            if (degree > 1)
+              stresses.push_back(stress);
           }
-        stresses.push_back(
-          materials(cell->material_id()).template thermal_stress<dim>() * sum /
-          volume);
-      }
-    return stresses;
-  }
-
-
-
-  template <int dim>
-  std::vector<double>
-  thermal_stresses(const dealii::DoFHandler<dim> &dof_handler,
-                   const ByRegion<Material>      &materials,
-                   const Loads<dim>              &loads)
-  {
-    if (dof_handler.get_fe().degree == 1)
-      return mean_thermal_stresses(dof_handler.get_triangulation(),
-                                   materials,
-                                   loads);
-    std::vector<double> stresses;
-    if (!loads.temperature_change)
-      return stresses;
-
-    const dealii::MappingFE<dim> mapping(dealii::FE_SimplexP<dim>(1));
-    dealii::FEValues<dim>        fe_values(mapping,
-                                    dof_handler.get_fe(),
-                                    strain_rule<dim>(2),
-                                    dealii::update_quadrature_points);
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      {
-        fe_values.reinit(cell);
-        for (const dealii::Point<dim> &point :
-             fe_values.get_quadrature_points())
-          stresses.push_back(
-            materials(cell->material_id()).template thermal_stress<dim>() *
-            temperature_at(loads, point));
+        if (degree == 1)
+          stresses.push_back(mean);
       }
     return stresses;
   }
@@ -135,10 +113,8 @@ namespace Debond
 
 
 
-  template decltype(mean_thermal_stresses<2>) mean_thermal_stresses<2>;
-  template decltype(mean_thermal_stresses<3>) mean_thermal_stresses<3>;
-  template decltype(thermal_stresses<2>)      thermal_stresses<2>;
-  template decltype(thermal_stresses<3>)      thermal_stresses<3>;
-  template decltype(add_thermal_forces<2>)    add_thermal_forces<2>;
-  template decltype(add_thermal_forces<3>)    add_thermal_forces<3>;
+  template decltype(thermal_stresses<2>)   thermal_stresses<2>;
+  template decltype(thermal_stresses<3>)   thermal_stresses<3>;
+  template decltype(add_thermal_forces<2>) add_thermal_forces<2>;
+  template decltype(add_thermal_forces<3>) add_thermal_forces<3>;
 } // namespace Debond

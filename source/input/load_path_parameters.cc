@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
+#include <debond/base/append.h>
 #include <debond/base/text.h>
 #include <debond/input/load_path_parameters.h>
 
@@ -84,14 +85,12 @@ namespace Debond
 
 
   std::vector<double>
-  parse_load_factors(const std::string &text, const bool repeats)
+  parse_load_factors(const std::string &text)
   {
     std::vector<double> factors;
     for (const std::string &item :
          dealii::Utilities::split_string_list(text, ','))
-      for (const double factor : parse_item(item))
-        if (repeats || factors.empty() || factor != factors.back())
-          factors.push_back(factor);
+      append(parse_item(item), factors);
     if (factors.size() > most_factors)
       throw std::invalid_argument("there are more than " +
                                   std::to_string(most_factors) + " factors");
@@ -111,7 +110,7 @@ namespace Debond
       "Multiples of all loads that are applied one after the other, each solved from the state before it, the first one from rest, such as '0:0.05:1.2, 1.2:-0.05:0' for loading and unloading; empty for the loads as they are. Needs another method than euclidean bundle",
       "none",
       [&load_path](const std::string &text) {
-        load_path.factors = parse_load_factors(text, true);
+        load_path.factors = parse_load_factors(text);
       });
     table.declare(
       "Load path/Displacement factors",
@@ -121,7 +120,7 @@ namespace Debond
       "Multiples of the prescribed displacements, step by step beside Factors, each list as long as the other; a single factor holds for all steps, and if Factors is empty the loads stay as they are. Empty: those of the loads",
       "none",
       [&load_path](const std::string &text) {
-        load_path.displacement_factors = parse_load_factors(text, true);
+        load_path.displacement_factors = parse_load_factors(text);
       });
     table.bind(
       "Load path/Dead loads",

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/utilities.h>
-
 #include <debond/base/run_watch.h>
 #include <debond/base/text.h>
 #include <debond/input/material_parameters.h>
@@ -210,51 +208,6 @@ namespace Debond
 
 
 
-    /// Names of the file's groups, and of parts, that no entry has.
-    std::vector<std::string>
-    unused_names(const Parameters                         &p,
-                 const BodyParameters                     &body,
-                 const std::map<std::string, std::string> &parts)
-    {
-      std::set<std::string> used      = p.clamped_boundaries;
-      const auto            use_names = [&used](const auto &texts) {
-        for (const auto &[name, unused] : texts)
-          used.insert(name);
-      };
-      use_names(p.law.boundaries);
-      use_names(p.supports.gaps);
-      use_names(p.tangential_displacements);
-      use_names(p.supports.displacements);
-      use_names(p.materials.of_regions());
-      used.insert(p.contact_boundaries.begin(), p.contact_boundaries.end());
-      for (const std::string &name : p.supports.all_rollers())
-        used.insert(name);
-      for (const SurfaceLoad &load : p.loads.on_boundaries())
-        used.insert(load.boundary);
-      for (const auto &[unused, text] : p.probes)
-        if (const std::size_t space = text.find(' ');
-            space != std::string::npos)
-          used.insert(dealii::Utilities::trim(text.substr(space)));
-      for (const auto &[unused, text] : parts)
-        used.insert(dealii::Utilities::trim(text.substr(0, text.find(':'))));
-
-      std::vector<std::string> names;
-      const auto               add = [&](const std::set<std::string> &known) {
-        for (const std::string &name : known)
-          if (used.count(name) == 0 &&
-              (body.source == BodyParameters::Source::file ||
-               parts.count(name) > 0))
-            names.push_back(name);
-      };
-      add(p.body->boundaries());
-      // The only region need not be named.
-      if (p.body->regions().size() > 1 || !parts.empty())
-        add(p.body->regions());
-      return names;
-    }
-
-
-
     /// Entries that the run does not look at.
     void
     note_entries_without_effect(const Parameters     &p,
@@ -425,10 +378,7 @@ namespace Debond
     if (!errors.empty())
       throw BadInput(errors);
 
-    p.notes                               = notes;
-    const std::vector<std::string> unused = unused_names(p, body, parts);
-    if (!unused.empty())
-      p.notes.push_back("no entry of the scene uses " + join(unused, ", "));
+    p.notes = notes;
     std::ostringstream effective;
     print(effective, false);
     p.effective_scene = effective.str();

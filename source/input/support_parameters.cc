@@ -14,11 +14,7 @@ namespace Debond
     table.bind(
       "Boundary conditions/Roller boundaries",
       supports.rollers,
-      "Flat boundaries where the normal displacement alone is zero: rollers, or planes of symmetry");
-    table.bind(
-      "Boundary conditions/Symmetry boundaries",
-      supports.symmetry_planes,
-      "Flat boundaries that are planes of symmetry, with the other half of the body behind them: rollers by another name");
+      "Flat boundaries where the normal displacement alone is zero: rollers, or planes of symmetry with the other half of the body behind them");
     table.bind_family(
       "Boundary conditions/Displacement",
       supports.displacements,
@@ -37,16 +33,6 @@ namespace Debond
                       documentation +
                         "; of the contact boundary or part of this name",
                       "length");
-  }
-
-
-
-  std::set<std::string>
-  SupportParameters::all_rollers() const
-  {
-    std::set<std::string> names = rollers;
-    names.insert(symmetry_planes.begin(), symmetry_planes.end());
-    return names;
   }
 
 
@@ -73,10 +59,6 @@ namespace Debond
   {
     check_names("Boundary conditions/Roller boundaries",
                 supports.rollers,
-                body,
-                table);
-    check_names("Boundary conditions/Symmetry boundaries",
-                supports.symmetry_planes,
                 body,
                 table);
     for (const auto &[name, text] : supports.displacements)

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/mesh/bisected_body.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace Debond
 {
   template <int dim>
@@ -42,20 +39,6 @@ namespace Debond
   BisectedBody<dim>::n_vertices() const
   {
     return static_cast<double>(bisection.vertices().size());
-  }
-
-
-
-  template <int dim>
-  BodyShape
-  BisectedBody<dim>::shape() const
-  {
-    BodyShape    shape = whole->shape();
-    const double finer = std::pow(n_cells() / whole->n_cells(), 1. / dim);
-    for (double &cells : shape.cells)
-      cells *= finer;
-    shape.is_box = shape.is_box && finer == 1.;
-    return shape;
   }
 
 

@@ -102,43 +102,48 @@ namespace Debond
       /// The tree keeps a reference to the boxes.
       CellSearch(const CellSearch &) = delete;
 
-      /// The vertices of the cell that the point is farthest inside of, and its
-      /// barycentric coordinates there.
+      /// The vertices of a cell that the point is inside of, or least outside,
+      /// and its barycentric coordinates there.
       std::array<std::pair<unsigned int, double>, dim + 1>
       operator()(const dealii::Point<dim> &point) const
       {
         namespace index = boost::geometry::index;
-        std::vector<std::size_t> candidates;
-        tree.query(index::intersects(point), std::back_inserter(candidates));
-        if (candidates.empty())
-          tree.query(index::nearest(point, 1), std::back_inserter(candidates));
-
-        double farthest = -std::numeric_limits<double>::max();
+        std::vector<std::size_t> nearest;
+        double                   farthest = -std::numeric_limits<double>::max();
         std::array<std::pair<unsigned int, double>, dim + 1> result;
-        for (const std::size_t candidate : candidates)
-          {
-            const auto              &cell   = cells[candidate];
-            const dealii::Point<dim> origin = cell->vertex(0);
-            dealii::Tensor<2, dim>   edges; // as columns
-            for (unsigned int d = 0; d < dim; ++d)
-              for (unsigned int c = 0; c < dim; ++c)
-                edges[c][d] = cell->vertex(d + 1)[c] - origin[c];
-            const dealii::Tensor<1, dim> xi =
-              dealii::invert(edges) * (point - origin);
-            double first = 1., least = 1.;
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                first -= xi[d];
-                least = std::min(least, xi[d]);
-              }
-            least = std::min(least, first);
-            if (least <= farthest)
-              continue;
-            farthest  = least;
-            result[0] = {cell->vertex_index(0), first};
-            for (unsigned int d = 0; d < dim; ++d)
-              result[d + 1] = {cell->vertex_index(d + 1), xi[d]};
-          }
+        const auto look_at = [&](const std::size_t candidate) {
+          const auto              &cell   = cells[candidate];
+          const dealii::Point<dim> origin = cell->vertex(0);
+          dealii::Tensor<2, dim>   edges; // as columns
+          for (unsigned int d = 0; d < dim; ++d)
+            for (unsigned int c = 0; c < dim; ++c)
+              edges[c][d] = cell->vertex(d + 1)[c] - origin[c];
+          const dealii::Tensor<1, dim> xi =
+            dealii::invert(edges) * (point - origin);
+          double first = 1., least = 1.;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              first -= xi[d];
+              least = std::min(least, xi[d]);
+            }
+          least = std::min(least, first);
+          if (least <= farthest)
+            return;
+          farthest  = least;
+          result[0] = {cell->vertex_index(0), first};
+          for (unsigned int d = 0; d < dim; ++d)
+            result[d + 1] = {cell->vertex_index(d + 1), xi[d]};
+        };
+        // Any cell that the point is inside of will do.
+        constexpr double rounding = 1e-12;
+        for (auto found = tree.qbegin(index::intersects(point));
+             found != tree.qend() && farthest < -rounding;
+             ++found)
+          look_at(*found);
+        if (farthest == -std::numeric_limits<double>::max())
+          tree.query(index::nearest(point, 1), std::back_inserter(nearest));
+        for (const std::size_t candidate : nearest)
+          look_at(candidate);
         return result;
       }
 
@@ -179,6 +184,15 @@ namespace Debond
 
 
   template <int dim>
+  std::unique_ptr<Body<dim>>
+  Body<dim>::coarser_level() const
+  {
+    return n_vertices() < fewest_vertices_of_level ? nullptr : coarser_whole();
+  }
+
+
+
+  template <int dim>
   std::vector<CoarseLevel<dim>>
   Body<dim>::coarse_levels(const std::vector<dealii::Point<dim>> &points,
                            const bool with_own) const
@@ -188,7 +202,7 @@ namespace Debond
       return levels;
     std::unique_ptr<const Body> coarse;
     for (const Body *body = this; body != nullptr;
-         coarse = body->coarser_whole(), body = coarse.get())
+         coarse = body->coarser_level(), body = coarse.get())
       {
         if (body == this && !with_own)
           continue;
@@ -218,8 +232,6 @@ namespace Debond
           }
         level.vertices = mesh.get_vertices();
         levels.push_back(std::move(level));
-        if (body->n_vertices() < fewest_vertices_of_level)
-          break;
       }
     return levels;
   }

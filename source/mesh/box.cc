@@ -5,7 +5,6 @@
 #include <deal.II/physics/transformations.h>
 
 #include <debond/mesh/box.h>
-#include <debond/mesh/crossed_lattice.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,30 +22,6 @@ namespace Debond
     /// Of a coarser cell, the longest side over the shortest, where finer ones
     /// are rounder.
     constexpr double most_stretched = 1.9;
-
-
-
-    /// The vertices of the lattice and P1 interpolation from them to points.
-    template <int dim>
-    CoarseLevel<dim>
-    coarse_level(const CrossedLattice<dim>             &lattice,
-                 const std::vector<dealii::Point<dim>> &points)
-    {
-      CoarseLevel<dim>          level;
-      std::vector<unsigned int> numbers(lattice.size());
-      for (std::size_t i = 0; i < lattice.size(); ++i)
-        if (lattice.is_vertex(i))
-          {
-            numbers[i] = static_cast<unsigned int>(level.vertices.size());
-            level.vertices.push_back(lattice.point(i));
-          }
-
-      level.to_finer =
-        lattice.interpolation(points,
-                              static_cast<unsigned int>(level.vertices.size()),
-                              [&](const std::size_t i) { return numbers[i]; });
-      return level;
-    }
 
 
 
@@ -181,7 +156,7 @@ namespace Debond
   double
   Box<dim>::n_cells() const
   {
-    const auto &n = shape().cells;
+    const auto &n = parameters.cells;
     return dim == 2 ? 4. * n[0] * n[1] : 24. * n[0] * n[1] * n[2];
   }
 
@@ -191,28 +166,13 @@ namespace Debond
   double
   Box<dim>::n_vertices() const
   {
-    const auto &n = shape().cells;
+    const auto &n = parameters.cells;
     if (dim == 2)
-      return (n[0] + 1.) * (n[1] + 1.) + n[0] * n[1];
+      return (n[0] + 1.) * (n[1] + 1.) + 1. * n[0] * n[1];
     const double faces = (n[0] + 1.) * n[1] * n[2] + n[0] * (n[1] + 1.) * n[2] +
-                         n[0] * n[1] * (n[2] + 1.);
-    return (n[0] + 1.) * (n[1] + 1.) * (n[2] + 1.) + faces + n[0] * n[1] * n[2];
-  }
-
-
-
-  template <int dim>
-  BodyShape
-  Box<dim>::shape() const
-  {
-    BodyShape shape = {};
-    shape.is_box    = true;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        shape.lengths[d] = parameters.lengths[d];
-        shape.cells[d]   = parameters.cells[d];
-      }
-    return shape;
+                         (n[2] + 1.) * n[0] * n[1];
+    return (n[0] + 1.) * (n[1] + 1.) * (n[2] + 1.) + faces +
+           1. * n[0] * n[1] * n[2];
   }
 
 
@@ -250,68 +210,27 @@ namespace Debond
 
 
   template <int dim>
-  std::vector<dealii::Tensor<1, dim>>
-  Box<dim>::interpolate(const dealii::Triangulation<dim>          &mesh,
-                        const std::vector<dealii::Tensor<1, dim>> &values,
-                        const std::vector<dealii::Point<dim>>     &points) const
+  std::unique_ptr<Body<dim>>
+  Box<dim>::coarser_level() const
   {
-    const CrossedLattice<dim>           lattice(parameters);
-    std::vector<dealii::Tensor<1, dim>> field(lattice.size());
-    const auto                         &vertices = mesh.get_vertices();
-    for (std::size_t v = 0; v < vertices.size(); ++v)
-      field[lattice.index(vertices[v])] = values[v];
-
-    std::vector<dealii::Tensor<1, dim>> result(points.size());
-    for (std::size_t p = 0; p < points.size(); ++p)
-      lattice.visit_weights(points[p],
-                            [&](const std::size_t i, const double weight) {
-                              result[p] += weight * field[i];
-                            });
-    return result;
+    std::unique_ptr<Body<dim>> coarser = Body<dim>::coarser_level();
+    // Where the thickness has one cell left, others would grow longer.
+    if (coarser && stretch<dim>(static_cast<const Box &>(*coarser).parameters) >
+                     std::max(most_stretched, 1.1 * stretch<dim>(parameters)))
+      return nullptr;
+    return coarser;
   }
 
 
 
   template <int dim>
-  std::vector<CoarseLevel<dim>>
-  Box<dim>::coarse_levels(const std::vector<dealii::Point<dim>> &points,
-                          const bool                             with_own) const
+  bool
+  Box<dim>::has_coarse_levels() const
   {
-    std::vector<CoarseLevel<dim>> levels;
-    std::vector<BoxParameters>    boxes = coarse_boxes();
-    if (with_own)
-      boxes.insert(boxes.begin(), parameters);
-    for (const BoxParameters &box : boxes)
-      levels.push_back(
-        coarse_level(CrossedLattice<dim>(box),
-                     levels.empty() ? points : levels.back().vertices));
-    return levels;
-  }
-
-
-
-  template <int dim>
-  std::vector<BoxParameters>
-  Box<dim>::coarse_boxes() const
-  {
-    std::vector<BoxParameters> boxes;
-    BoxParameters              finer = parameters;
-    while (Box(finer).n_vertices() >= fewest_vertices_of_level)
-      {
-        const std::unique_ptr<const Body<dim>> body = Box(finer).coarser();
-        if (!body)
-          break;
-        const BoxParameters coarse = static_cast<const Box &>(*body).parameters;
-        // Where the thickness has one cell left, others would grow longer.
-        if (stretch<dim>(coarse) >
-            std::max(most_stretched, 1.1 * stretch<dim>(finer)))
-          break;
-        boxes.push_back(coarse);
-        finer = coarse;
-      }
-    if (Box(finer).n_vertices() > most_coarsest_vertices)
-      boxes.clear();
-    return boxes;
+    std::unique_ptr<const Body<dim>> last;
+    for (auto level = coarser_level(); level; level = last->coarser_level())
+      last = std::move(level);
+    return last && last->n_vertices() <= most_coarsest_vertices;
   }
 
 

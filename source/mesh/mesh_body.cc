@@ -4,19 +4,12 @@
 #include <debond/mesh/crossed_mesh.h>
 #include <debond/mesh/mesh_body.h>
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 namespace Debond
 {
   namespace
   {
-    /// Of the cells of a mesh on which a body's shape is measured.
-    constexpr std::size_t fewest_measured = 512;
-
-
-
     template <typename Names>
     std::set<std::string>
     keys(const Names &names)
@@ -53,21 +46,17 @@ namespace Debond
     : make(make)
     , n_refinements(n_refinements)
   {
-    std::unique_ptr<SourceMesh<dim>>  coarsest = make(0);
-    const dealii::Triangulation<dim> &mesh     = coarsest->mesh;
-    is_simplicial  = mesh.all_reference_cells_are_simplex();
-    measured_level = is_simplicial ? n_refinements : 0;
-    for (std::size_t n = mesh.n_active_cells();
-         n < fewest_measured && measured_level < n_refinements;
-         n <<= dim)
-      ++measured_level;
+    source                                 = make(0);
+    const dealii::Triangulation<dim> &mesh = source->mesh;
+    is_simplicial      = mesh.all_reference_cells_are_simplex();
     all                = {static_cast<double>(mesh.n_used_vertices()),
                           static_cast<double>(mesh.n_active_lines()),
                           static_cast<double>(dim == 2 ? mesh.n_active_cells() :
                                                          mesh.n_active_faces()),
                           static_cast<double>(dim == 2 ? 0 : mesh.n_active_cells())};
-    this->inner_groups = coarsest->inner_groups;
-    source = measured_level == 0 ? std::move(coarsest) : make(measured_level);
+    this->inner_groups = source->inner_groups;
+    if (is_simplicial && n_refinements > 0)
+      make(n_refinements); // says that they are not halved
   }
 
 
@@ -123,23 +112,14 @@ namespace Debond
 
 
   template <int dim>
-  BodyShape
-  MeshBody<dim>::shape() const
+  std::array<double, 3>
+  MeshBody<dim>::extents() const
   {
     const dealii::BoundingBox<dim> box(source->mesh.get_vertices());
-    double                         measure = 0.;
-    for (const auto &cell : source->mesh.active_cell_iterators())
-      measure += cell->measure();
-    const double edge =
-      std::pow(measure / n_cells() * (dim == 2 ? 4. : 24.), 1. / dim);
-
-    BodyShape shape = {};
+    std::array<double, 3>          result = {};
     for (unsigned int d = 0; d < dim; ++d)
-      {
-        shape.lengths[d] = box.side_length(d);
-        shape.cells[d]   = std::max(1., std::round(shape.lengths[d] / edge));
-      }
-    return shape;
+      result[d] = box.side_length(d);
+    return result;
   }
 
 
@@ -154,7 +134,7 @@ namespace Debond
         // Sides are flat between the vertices, wherever they came from.
         mesh.reset_all_manifolds();
       }
-    else if (measured_level == n_refinements)
+    else if (n_refinements == 0)
       crossed_subdivision(source->mesh, mesh);
     else
       crossed_subdivision(make(n_refinements)->mesh, mesh);

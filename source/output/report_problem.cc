@@ -63,8 +63,6 @@ namespace Debond
       record.line("clamped", list(problem.clamped_boundaries));
       if (!problem.supports.rollers.empty())
         record.line("roller", list(problem.supports.rollers));
-      if (!problem.supports.symmetry_planes.empty())
-        record.line("symmetry", list(problem.supports.symmetry_planes));
       lines("displacement", problem.supports.displacements);
       if (!problem.supports.gap.empty())
         record.line("initial gap", problem.supports.gap);

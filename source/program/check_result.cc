@@ -248,12 +248,7 @@ namespace Debond
         result.times.emplace_back("error estimate", timer.wall_time());
       }
 
-    append(plausibility_notes(scene.body().shape(),
-                              dim,
-                              is_loaded,
-                              result.largest,
-                              scene.parameters().degree),
-           result.notes);
+    append(plausibility_notes(is_loaded, result.largest), result.notes);
     result.displacement_error =
       error_of(verification.exact_displacement, scene, result.solve.u);
   }

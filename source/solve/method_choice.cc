@@ -69,7 +69,7 @@ namespace Debond
                            const bool               has_levels,
                            const double             n)
     {
-      const auto  &lengths = problem.body->shape().lengths;
+      const auto   lengths = problem.body->extents();
       const double slenderness =
         *std::max_element(lengths.begin(),
                           lengths.begin() + problem.dimension) /

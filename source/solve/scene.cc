@@ -44,14 +44,12 @@ namespace Debond
 
 
     std::string
-    entry_of(const SupportError &error, const SupportParameters &supports)
+    entry_of(const SupportError &error)
     {
       switch (error.subject)
         {
           case SupportError::Subject::roller:
-            return supports.rollers.count(error.name) > 0 ?
-                     "Boundary conditions/Roller boundaries" :
-                     "Boundary conditions/Symmetry boundaries";
+            return "Boundary conditions/Roller boundaries";
           case SupportError::Subject::gap:
             return error.name.empty() ? "Contact law/Initial gap" :
                                         "Contact law/Initial gap " + error.name;
@@ -85,7 +83,7 @@ namespace Debond
       if (const auto *part = dynamic_cast<const PartError *>(&error))
         entry = "Parts/" + part->part;
       if (const auto *support = dynamic_cast<const SupportError *>(&error))
-        entry = entry_of(*support, given.supports);
+        entry = entry_of(*support);
       if (const auto *probe = dynamic_cast<const ProbeError *>(&error))
         entry = "Probes/" + probe->probe;
       if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))
@@ -202,13 +200,6 @@ namespace Debond
   Scene<dim>::add_notes()
   {
     const ContactBoundary<dim> &boundary = contact_boundary();
-    if (boundary.n_near_limit > 0)
-      body_notes.push_back(
-        words("nodes of the contact boundary whose faces meet at 30.4 to 32.4 "
-              "degrees: ",
-              boundary.n_near_limit,
-              ". Below 31.4 they are one smooth side, above it a corner, so "
-              "that a mesh that is a little different may have another J"));
     if (boundary.nodes.empty() && !boundary_conditions.contact.empty())
       body_notes.push_back(
         "the contact boundary has no contact node, and contact and bonds "

@@ -147,7 +147,7 @@ namespace Debond
           prescribed_displacement<dim>(name, text, constants));
         supports.displacements.back().boundaries = boundaries.at(name);
       }
-    for (const std::string &name : given.supports.all_rollers())
+    for (const std::string &name : given.supports.rollers)
       supports.displacements.push_back({name, boundaries.at(name), true});
     if (!given.supports.gap.empty())
       for (const dealii::types::boundary_id id : conditions.contact)

@@ -40,7 +40,7 @@ MORE = """Parts/glued=bottom: x > 0.05|Parts/core=y > 0.02|Parts/bottom=y > 0.02
 Material/Young modulus core=7|Material/Poisson ratio core=0.2
 Material/Poisson ratio upper=0.2|Material/Thermal expansion core=1e-5
 Material/Thermal expansion=1e-5|Material/Young modulus nowhere=7
-Boundary conditions/Roller boundaries=right|Boundary conditions/Symmetry boundaries=right
+Boundary conditions/Roller boundaries=right
 Boundary conditions/Clamped boundaries=|Boundary conditions/Contact boundary=bottom, top
 Boundary conditions/Displacement right=free; 0.0001
 Boundary conditions/Displacement top=free; 0.0001
@@ -66,7 +66,7 @@ Certificate/Kind=global|Accuracy/Maximum unknowns=300""".replace("\n", "|").spli
 # Small scenes with bodies of all kinds.
 SMALL = ["""Mesh/Lengths=0.2, 0.04|Mesh/Cells=10, 2|Parts/glued=bottom: x > 0.05
 Parts/core=y > 0.02|Material/Young modulus core=7|Material/Thermal expansion=1e-5
-Boundary conditions/Clamped boundaries=left|Boundary conditions/Symmetry boundaries=right
+Boundary conditions/Clamped boundaries=left|Boundary conditions/Roller boundaries=right
 Boundary conditions/Contact boundary=bottom, top|Contact law/Bond stiffness=if(x>0.1,0,69)
 Contact law/Bond threshold glued=0.001|Contact law/Bond stiffness top=7
 Contact law/Initial gap top=0.0001*x|Contact law/Tangential displacement top=free

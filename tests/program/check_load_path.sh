@@ -113,7 +113,7 @@ subsection Material
 end
 subsection Boundary conditions
   set Clamped boundaries  =
-  set Symmetry boundaries = left, back
+  set Roller boundaries = left, back
   set Contact boundary    = bottom
   set Displacement shaft  = free; 0.0095; free
 end

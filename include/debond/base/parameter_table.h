@@ -259,8 +259,7 @@ namespace Debond
     std::map<std::string, Entry>  entries;  ///< by path
     std::map<std::string, Family> families; ///< by path
     std::string                   file_name;
-    std::vector<std::string>      reading;        ///< files that include others
-    unsigned int                  n_included = 0; ///< files in all
+    std::vector<std::string>      reading; ///< files that include others
   };
 
 

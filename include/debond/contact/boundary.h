@@ -118,9 +118,6 @@ namespace Debond
 
     /// Empty if they are all at the foundation and stay there.
     std::vector<HeldVertex> held_vertices;
-
-    /// Nodes and vertices where a degree would make another number of normals.
-    unsigned int n_near_limit = 0;
   };
 } // namespace Debond
 

@@ -35,9 +35,6 @@ namespace Debond
 
     /// Integral of the vertex' basis function over the faces of each group.
     std::vector<double> measures;
-
-    /// Whether a degree more or less would make other groups.
-    bool is_near_limit;
   };
 
 

@@ -2,15 +2,15 @@
 #ifndef debond_elasticity_correction_solver_h
 #define debond_elasticity_correction_solver_h
 
-#include <deal.II/lac/lapack_full_matrix.h>
-
 #include <debond/elasticity/contact_unknowns.h>
+#include <debond/linear_algebra/cholesky.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/majorise/bound_qp.h>
 
 #include <Eigen/SparseCore>
 
+#include <optional>
 #include <vector>
 
 namespace Debond
@@ -51,9 +51,9 @@ namespace Debond
     solve(const DofVector &r) const override;
 
   private:
-    const Condensation              &condensed;
-    std::vector<unsigned int>        free; ///< contact nodes
-    dealii::LAPACKFullMatrix<double> factor;
+    const Condensation          &condensed;
+    std::vector<int>             free; ///< contact nodes
+    std::optional<DenseCholesky> factor;
   };
 
 

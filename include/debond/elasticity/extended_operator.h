@@ -34,12 +34,6 @@ namespace Debond
     ExtendedVector
     operator*(const ExtendedVector &u) const;
 
-    /// How much the largest change of a stress is, relative to the largest
-    /// stress, if @p u is rounded to @p rounded_u.
-    double
-    stress_rounding(const ExtendedVector &u,
-                    const ExtendedVector &rounded_u) const;
-
   private:
     using Gradient = dealii::Tensor<1, dim, long double>;
     using Stress   = dealii::Tensor<2, dim, long double>;

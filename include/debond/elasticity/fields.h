@@ -12,6 +12,7 @@
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/by_region.h>
 
+#include <cmath>
 #include <vector>
 
 namespace Debond
@@ -124,22 +125,37 @@ namespace Debond
     DofVector                                 live_forces;
     DofVector                                 dead_forces; ///< or empty
     std::vector<double>                       thermal_stresses;
-
-    /// The vertex that each point of strain_rule() is closest to.
-    std::vector<unsigned int> vertices_of_points;
   };
 
 
 
+  /// Of the points of strain_rule() of degree 2, one next to each vertex, all
+  /// barycentric coordinates but the one of that vertex.
+  template <int dim, typename Number>
+  Number
+  near_vertex()
+  {
+    return dim == 2 ? Number(1) / 6 : (5 - std::sqrt(Number(5))) / 20;
+  }
+
+
+
   /// The rule that integrates products of two strains: one point of degree 1,
-  /// dim + 1 points of degree 2, of which QGaussSimplex would have more.
+  /// dim + 1 points of degree 2, in the order of the vertices; QGaussSimplex
+  /// would have more.
   template <int dim>
   dealii::Quadrature<dim>
   strain_rule(const unsigned int degree)
   {
     if (degree == 1)
       return dealii::QGaussSimplex<dim>(1);
-    return dealii::QWitherdenVincentSimplex<dim>(1, /*use_odd_order=*/false);
+    const double                    small = near_vertex<dim, double>();
+    std::vector<dealii::Point<dim>> points(dim + 1);
+    for (unsigned int q = 0; q <= dim; ++q)
+      for (unsigned int d = 0; d < dim; ++d)
+        points[q][d] = q == d + 1 ? 1. - dim * small : small;
+    return {points,
+            std::vector<double>(dim + 1, 1. / (dim == 2 ? 2 * 3 : 6 * 4))};
   }
 
 

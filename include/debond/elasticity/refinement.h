@@ -21,10 +21,6 @@ namespace Debond
     /// Of the last point in the energy norm, relative, as the solver of
     /// corrections sees it.
     double error = 0.;
-
-    /// How far rounding u to double precision moves stresses, relative to the
-    /// largest of them.
-    double stress_rounding = 0.;
   };
 
 

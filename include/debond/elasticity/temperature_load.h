@@ -24,23 +24,18 @@ namespace Debond
 
 
 
-  /// The stress of each active cell that the mean of its change of temperature
-  /// makes if the body does not move, Material::thermal_stress() times that, as
-  /// a pressure; empty if there is none. Throws TemperatureError with the place
-  /// if the change is not finite somewhere.
+  /// The stress of each active cell that the change of temperature makes if the
+  /// body does not move, Material::thermal_stress() times that, as a pressure,
+  /// as displacements of this @p degree see it: of degree 1 the mean, of degree
+  /// 2 the values at the points of strain_rule(). Empty if there is none.
+  /// Throws TemperatureError with the place if the change is not finite
+  /// somewhere.
   template <int dim>
   std::vector<double>
-  mean_thermal_stresses(const dealii::Triangulation<dim> &triangulation,
-                        const ByRegion<Material>         &materials,
-                        const Loads<dim>                 &loads);
-
-  /// The same as the displacements see it: of degree 1 the means, of degree 2
-  /// for each cell the values at the points of strain_rule().
-  template <int dim>
-  std::vector<double>
-  thermal_stresses(const dealii::DoFHandler<dim> &dof_handler,
-                   const ByRegion<Material>      &materials,
-                   const Loads<dim>              &loads);
+  thermal_stresses(const dealii::Triangulation<dim> &triangulation,
+                   const ByRegion<Material>         &materials,
+                   const Loads<dim>                 &loads,
+                   const unsigned int                degree = 1);
 
   /// Adds the nodal forces that they are as a load, to the Cartesian ones at
   /// every degree of freedom.

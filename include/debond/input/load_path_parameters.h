@@ -76,13 +76,12 @@ namespace Debond
   };
 
   /// Reads numbers and ranges FIRST:STEP:LAST, separated by commas, such as
-  /// "0:0.05:1.2, 1.2:-0.05:0". A factor that equals the one before it is left
-  /// out unless @p repeats are wanted. The values of a range are rounded to 12
+  /// "0:0.05:1.2, 1.2:-0.05:0". The values of a range are rounded to 12
   /// decimal digits, so that loading and unloading meet the same factors.
   /// Throws std::invalid_argument that says what is wrong with which part of
   /// the list.
   std::vector<double>
-  parse_load_factors(const std::string &text, const bool repeats = false);
+  parse_load_factors(const std::string &text);
 
   /// The section Load path.
   void

@@ -18,13 +18,6 @@ namespace Debond
   {
     std::set<std::string> rollers; ///< boundaries
 
-    /// Boundaries that are planes of symmetry: rollers by another name.
-    std::set<std::string> symmetry_planes;
-
-    /// Both.
-    std::set<std::string>
-    all_rollers() const;
-
     /// By the name of the boundary: for each component "free" or an
     /// expression.
     std::map<std::string, std::string> displacements;

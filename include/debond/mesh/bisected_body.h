@@ -57,10 +57,11 @@ namespace Debond
     double
     n_vertices() const override;
 
-    /// With as many cells as there would be if they were alike. Refined it is
-    /// no box of so many cells.
-    BodyShape
-    shape() const override;
+    std::array<double, 3>
+    extents() const override
+    {
+      return whole->extents();
+    }
 
     PieceNames
     make_whole_mesh(dealii::Triangulation<dim> &mesh) const override;

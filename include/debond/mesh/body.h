@@ -78,17 +78,6 @@ namespace Debond
 
 
 
-  /// A box of about the body's extents and number of cells, for estimates. In
-  /// 2D the third entries are zero.
-  struct BodyShape
-  {
-    std::array<double, 3> lengths;
-    std::array<double, 3> cells;  ///< before they are cut into simplices
-    bool                  is_box; ///< not only about
-  };
-
-
-
   /**
    * What is known of a body without building its mesh, in either dimension.
    * Numbers of cells and vertices are double, as what a user writes may exceed
@@ -117,8 +106,9 @@ namespace Debond
     virtual double
     n_vertices() const = 0;
 
-    virtual BodyShape
-    shape() const = 0;
+    /// Of a box around it, along its edges.
+    virtual std::array<double, 3>
+    extents() const = 0;
 
     /// Whether Body::coarse_levels() has any.
     virtual bool
@@ -130,8 +120,8 @@ namespace Debond
 
 
 
-  /// A coarser mesh that need not be built: its vertices, by numbers of their
-  /// own, and its P1 fields at those of the next finer mesh.
+  /// A coarser mesh: its vertices, and its P1 fields at those of the next finer
+  /// mesh.
   template <int dim>
   struct CoarseLevel
   {
@@ -170,18 +160,22 @@ namespace Debond
     /// The P1 field with @p values at the vertices of @p mesh, which is the one
     /// of make_mesh(), at points of the body. Points beside the mesh, as on the
     /// curved side of a finer one, belong to a cell next to them.
-    virtual std::vector<dealii::Tensor<1, dim>>
+    std::vector<dealii::Tensor<1, dim>>
     interpolate(const dealii::Triangulation<dim>          &mesh,
                 const std::vector<dealii::Tensor<1, dim>> &values,
                 const std::vector<dealii::Point<dim>>     &points) const;
 
-    /// The meshes of the coarser bodies as far as they are good for multigrid,
-    /// finest first, down to one that takes nothing to solve; empty unless
+    /// The body of the next coarser level for multigrid, without parts; null if
+    /// this one takes nothing to solve, or if there is none.
+    virtual std::unique_ptr<Body>
+    coarser_level() const;
+
+    /// The meshes of the coarser levels, finest first; empty unless
     /// has_coarse_levels(). If @p with_own the body's own mesh comes first,
     /// for displacements of a higher degree there. The first interpolation is
     /// to @p points of the body, each next one to all vertices of the level
     /// before.
-    virtual std::vector<CoarseLevel<dim>>
+    std::vector<CoarseLevel<dim>>
     coarse_levels(const std::vector<dealii::Point<dim>> &points,
                   const bool with_own = false) const;
 

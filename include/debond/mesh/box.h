@@ -78,14 +78,14 @@ namespace Debond
     double
     n_vertices() const override;
 
-    BodyShape
-    shape() const override;
+    std::array<double, 3>
+    extents() const override
+    {
+      return parameters.lengths;
+    }
 
     bool
-    has_coarse_levels() const override
-    {
-      return !coarse_boxes().empty();
-    }
+    has_coarse_levels() const override;
 
     PieceNames
     make_whole_mesh(dealii::Triangulation<dim> &mesh) const override;
@@ -96,18 +96,9 @@ namespace Debond
     std::unique_ptr<Body<dim>>
     coarser_whole() const override;
 
-    std::vector<dealii::Tensor<1, dim>>
-    interpolate(const dealii::Triangulation<dim>          &mesh,
-                const std::vector<dealii::Tensor<1, dim>> &values,
-                const std::vector<dealii::Point<dim>> &points) const override;
-
-    std::vector<CoarseLevel<dim>>
-    coarse_levels(const std::vector<dealii::Point<dim>> &points,
-                  const bool with_own) const override;
-
-    /// Those of coarse_levels().
-    std::vector<BoxParameters>
-    coarse_boxes() const;
+    /// Not where its cells would be longer than those of this one.
+    std::unique_ptr<Body<dim>>
+    coarser_level() const override;
 
     const BoxParameters parameters;
   };

@@ -34,11 +34,8 @@ namespace Debond
     double
     n_vertices() const override;
 
-    /// The box that encloses the body, measured on a mesh of some hundred
-    /// cells, and as many cells in it as there would be if it was filled as the
-    /// body is.
-    BodyShape
-    shape() const override;
+    std::array<double, 3>
+    extents() const override;
 
     /// If quadrilaterals or hexahedra are halved, from a mesh that is coarse
     /// enough.
@@ -56,8 +53,7 @@ namespace Debond
     const Source       make;
     const unsigned int n_refinements;
 
-    bool         is_simplicial  = false;
-    unsigned int measured_level = 0; ///< on which the shape is measured
+    bool is_simplicial = false;
 
     /// Of the crossed mesh.
     double
@@ -75,7 +71,7 @@ namespace Debond
 
     Counts all; ///< of the mesh before it is halved
 
-    /// Halved so often: all that there is beforehand.
+    /// Before it is halved: all that there is beforehand.
     std::unique_ptr<const SourceMesh<dim>> source;
   };
 } // namespace Debond
