@@ -149,6 +149,28 @@ namespace Debond
 
   template <int dim>
   void
+  LoadPathOutput<dim>::go_on_after(const std::vector<LoadPathStep<dim>> &done)
+  {
+    so_far.assign(done.begin(), done.end() - 1);
+    const auto find =
+      [this](const std::string &body, const unsigned int step, Series &series) {
+        const std::string name = name_of_step(body, step);
+        for (const std::string &file :
+             {name, name.substr(0, name.size() - 3) + "pvtu"})
+          if (std::filesystem::exists(path(file)))
+            series.emplace_back(step, file);
+      };
+    for (const LoadPathStep<dim> &step : so_far)
+      {
+        find("body", step.step, bodies);
+        find("contact", step.step, contacts);
+      }
+  }
+
+
+
+  template <int dim>
+  void
   LoadPathOutput<dim>::add(const LoadPathStep<dim> &step,
                            const DofVector         &u,
                            const Verification<dim> &verification)

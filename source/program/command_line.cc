@@ -68,7 +68,11 @@ namespace Debond
         ("set",
          po::value<std::vector<std::string>>()->value_name(
            "\"SECTION/PARAMETER=VALUE\""),
-         "give a parameter another value than the scene; can be repeated");
+         "give a parameter another value than the scene; can be repeated") //
+        ("restart",
+         "go on from the state in the output directory that an earlier run of "
+         "the scene left after each load step and mesh, or when it was "
+         "interrupted, on any number of ranks");
       return options;
     }
 
@@ -111,12 +115,24 @@ namespace Debond
 
 
 
+    /// The options for each scene.
+    struct SceneOptions
+    {
+      std::vector<std::string> assignments;
+      bool                     validate = false;
+      bool                     restart  = false;
+    };
+
+
+
     template <int dim>
     ExitCode
-    run_or_validate(const Parameters &parameters, const bool only_validate)
+    run_or_validate(const Parameters &parameters, const SceneOptions &options)
     {
-      if (!only_validate)
-        return run<dim>(parameters, std::cout, isatty(STDOUT_FILENO) == 1);
+      if (!options.validate)
+        return run<dim>(parameters,
+                        std::cout,
+                        {isatty(STDOUT_FILENO) == 1, options.restart});
 
       MethodChoice     choice = choose_method(parameters, parameters.solver);
       const Scene<dim> scene(parameters,
@@ -144,13 +160,6 @@ namespace Debond
 
 
 
-    /// The options for each scene.
-    struct SceneOptions
-    {
-      std::vector<std::string> assignments;
-      bool                     validate = false;
-    };
-
     /// The output directories of scenes that have been read, with the scenes.
     using Directories = std::map<std::filesystem::path, std::string>;
 
@@ -170,8 +179,8 @@ namespace Debond
                         parameters.output.directory + " is that of " +
                         other->second + " as well; set Output/Directory"});
       return parameters.dimension == 2 ?
-               run_or_validate<2>(parameters, options.validate) :
-               run_or_validate<3>(parameters, options.validate);
+               run_or_validate<2>(parameters, options) :
+               run_or_validate<3>(parameters, options);
     }
 
 
@@ -278,6 +287,7 @@ namespace Debond
       if (values.count("set") > 0)
         options.assignments = values["set"].as<std::vector<std::string>>();
       options.validate = values.count("validate") > 0;
+      options.restart  = values.count("restart") > 0;
 
       if (values.count("print-parameters") > 0)
         {

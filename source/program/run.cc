@@ -17,7 +17,9 @@
 #include <debond/output/run_result.h>
 #include <debond/program/check_result.h>
 #include <debond/program/run.h>
+#include <debond/solve/displacement.h>
 #include <debond/solve/load_path.h>
+#include <debond/solve/run_state.h>
 
 #include <filesystem>
 #include <memory>
@@ -43,16 +45,24 @@ namespace Debond
       /// Mesh, assembly and choice of the method.
       SceneRun(const Parameters &parameters,
                std::ostream     &out,
-               const bool        terminal)
+               const RunOptions  options)
         : parameters(parameters)
         , out(out)
-        , terminal(terminal)
+        , options(options)
         , choice(choose_method(parameters, parameters.solver))
         , record(parameters.output.machine_details)
       {
-        scene = make_first_scene<dim>(parameters,
+        if (options.restart)
+          read_state_before();
+        state.scene  = parameters.effective_scene;
+        scene        = make_first_scene<dim>(parameters,
                                       parameters.accuracy,
-                                      parameters.solver.start);
+                                      parameters.solver.start,
+                                      state.meshes.divisions);
+        begun        = state.meshes;
+        begun.start  = on_these_ranks(state.meshes.start);
+        begun_path   = state.path;
+        begun_path.u = on_these_ranks(state.path.u);
         choose_linear_solver(*scene, parameters.solver, choice);
         check_supports_of_method(choice, parameters.solver, *scene);
         // Before the solve, so that nothing is lost if it is not finite
@@ -81,7 +91,10 @@ namespace Debond
                 lock.emplace(parameters.output.directory);
             });
             remove_files(files, parameters.output.directory);
-            path_output->remove_steps();
+            if (begun_path.steps.empty())
+              path_output->remove_steps();
+            if (!options.restart && is_first_rank())
+              std::filesystem::remove(state_file());
             written.push_back(
               output_path(parameters.output.directory, "parameters.prm"));
             write_atomically(written.back(), [&](std::ostream &file) {
@@ -116,8 +129,7 @@ namespace Debond
         if (parameters.accuracy.is_adaptive())
           refine();
         else if (!has_path)
-          result.solve =
-            Debond::solve(choice, parameters.solver, *scene, log(), terminal);
+          minimise();
         // On a refined mesh the states are computed again, now with all that
         // is written of them.
         if (has_path && result.solve.status != SolverStatus::interrupted)
@@ -166,6 +178,8 @@ namespace Debond
               output_path(parameters.output.directory, "summary.json");
             record.write(summary);
             written.push_back(summary);
+            if (has_state)
+              written.push_back(state_file());
           }
         catch (const std::runtime_error &error)
           {
@@ -214,6 +228,86 @@ namespace Debond
         append(certification->files(parameters.output, *scene), files);
       }
 
+      std::string
+      state_file() const
+      {
+        return output_path(parameters.output.directory, "restart.state");
+      }
+
+      void
+      read_state_before()
+      {
+        if (!std::filesystem::exists(state_file()))
+          {
+            out << "There is no " << state_file()
+                << ": the run starts from the beginning.\n\n";
+            return;
+          }
+        state = read_state<dim>(state_file(), parameters.effective_scene);
+        const LoadPathParameters &load_path = parameters.load_path;
+        for (unsigned int k = 0; k < state.path.steps.size(); ++k)
+          {
+            const LoadFactors before = state.path.steps[k].factors();
+            if (k == load_path.factors.size() ||
+                load_path.at(k).loads != before.loads ||
+                load_path.at(k).displacements != before.displacements)
+              throw BadInput(
+                {state_file() + ": Load path/Factors: step " +
+                 std::to_string(k + 1) + " was with " + load_path.name(before) +
+                 "; only later steps may differ, or run without --restart"});
+          }
+      }
+
+      /// A displacement of an earlier run.
+      DofVector
+      on_these_ranks(const DofVector &u) const
+      {
+        const auto &unknowns = scene->problem().unknowns();
+        if (u.size() == 0)
+          return u;
+        if (u.size() != unknowns.n_dofs())
+          throw BadInput(
+            {state_file() + " is of a mesh with " + std::to_string(u.size()) +
+             " degrees of freedom, this one has " +
+             std::to_string(unknowns.n_dofs()) + "; run without --restart"});
+        return from_serial_order(unknowns, u);
+      }
+
+      /// For --restart. A run whose state cannot be written goes on.
+      void
+      save_state()
+      {
+        try
+          {
+            write_state(state, state_file());
+            has_state = true;
+          }
+        catch (const std::runtime_error &error)
+          {
+            output_error = error.what();
+          }
+      }
+
+      void
+      minimise()
+      {
+        result.solve =
+          Debond::solve(choice,
+                        parameters.solver,
+                        *scene,
+                        log(),
+                        options.terminal,
+                        begun.start.size() > 0 ? &begun.start : nullptr);
+        if (result.solve.u.size() > 0 &&
+            (result.solve.status == SolverStatus::interrupted ||
+             result.solve.minimum.interrupted))
+          {
+            state.meshes.start =
+              in_serial_order(scene->problem().unknowns(), result.solve.u);
+            save_state();
+          }
+      }
+
       /// For the iterations; null if there is none.
       std::ostream *
       log() const
@@ -230,21 +324,38 @@ namespace Debond
       void
       refine()
       {
+        AdaptiveObserver<dim> observer;
+        observer.level_is_done = [this](const AdaptiveLevel &level) {
+          report_level(static_cast<unsigned int>(result.levels.size()),
+                       level,
+                       record);
+          record.print(out);
+          result.levels.push_back(level);
+        };
+        observer.next_mesh_is_made = [this](const AdaptiveProgress &progress,
+                                            const Scene<dim>       &next) {
+          state.meshes = progress;
+          state.meshes.start =
+            in_serial_order(next.problem().unknowns(), progress.start);
+          save_state();
+        };
+        // A path that has begun stays on its mesh.
+        if (state.has_last_mesh)
+          {
+            for (const AdaptiveLevel &level : begun.levels)
+              observer.level_is_done(level);
+            shortfall = state.shortfall;
+            return;
+          }
         AdaptiveResult<dim> adaptive;
         try
           {
-            adaptive = solve_adaptively(
-              settings(),
-              parameters.accuracy,
-              certification->goal(),
-              [this](const AdaptiveLevel &level) {
-                report_level(static_cast<unsigned int>(result.levels.size()),
-                             level,
-                             record);
-                record.print(out);
-                result.levels.push_back(level);
-              },
-              scene);
+            adaptive = solve_adaptively(settings(),
+                                        parameters.accuracy,
+                                        certification->goal(),
+                                        begun,
+                                        observer,
+                                        scene);
           }
         catch (const BadInput &)
           {
@@ -257,25 +368,36 @@ namespace Debond
               }
             throw;
           }
-        result.solve = std::move(adaptive.solve);
-        shortfall    = adaptive.shortfall;
-        path         = std::move(adaptive.path);
+        result.solve        = std::move(adaptive.solve);
+        shortfall           = adaptive.shortfall;
+        path                = std::move(adaptive.path);
+        state.meshes.levels = result.levels;
+        state.has_last_mesh = true;
+        state.shortfall     = shortfall;
         list_files();
       }
 
       void
       follow()
       {
+        if (!begun_path.steps.empty())
+          path_output->go_on_after(begun_path.steps);
         path = follow_load_path<dim>(
           parameters.load_path,
           settings(),
           *scene,
-          {},
+          begun_path,
           [this](const PathProgress<dim> &progress,
                  const Verification<dim> &verification,
                  const AdhesionIntegral<dim> &) {
             result.verification = verification;
             path_output->add(progress.steps.back(), progress.u, verification);
+            if (!progress.steps.back().message.empty())
+              return;
+            state.path = progress;
+            state.path.u =
+              in_serial_order(scene->problem().unknowns(), progress.u);
+            save_state();
           },
           log());
         result.solve = std::move(path.result);
@@ -286,13 +408,17 @@ namespace Debond
       const dealii::Timer total;
       const Parameters   &parameters;
       std::ostream       &out;
-      const bool          terminal; ///< whether out is one
+      const RunOptions    options;
 
       MethodChoice                      choice;
       Record                            record;
       std::shared_ptr<const Scene<dim>> scene;
       std::optional<Certification<dim>> certification;
 
+      RunState<dim>     state; ///< as it is to be saved
+      bool              has_state = false;
+      AdaptiveProgress  begun;      ///< by an earlier run
+      PathProgress<dim> begun_path; ///< the same
       RunResult<dim>    result;
       FollowedPath<dim> path;      ///< of which result has the steps
       std::string       shortfall; ///< of refinement
@@ -309,9 +435,9 @@ namespace Debond
 
   template <int dim>
   ExitCode
-  run(const Parameters &parameters, std::ostream &out, const bool terminal)
+  run(const Parameters &parameters, std::ostream &out, const RunOptions options)
   {
-    SceneRun<dim> scene(parameters, out, terminal);
+    SceneRun<dim> scene(parameters, out, options);
     if (!scene.open_output())
       return ExitCode::output_not_saved;
     scene.say_problem();

@@ -9,141 +9,19 @@
 #include <debond/mesh/owned_cells.h>
 #include <debond/solve/adaptive_loop.h>
 #include <debond/solve/load_path.h>
+#include <debond/solve/mesh_growth.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iomanip>
-#include <limits>
-#include <queue>
 #include <sstream>
 
 namespace Debond
 {
   namespace
   {
-    /// The next mesh has at most, and unless it would be too large at least, so
-    /// many times the cells, without those that have to be cut for others. The
-    /// error of a mesh with so many cells does not depend on how many meshes
-    /// led to it with linear displacements; with quadratic ones it does
-    /// (doc/notes/speed.md).
-    constexpr double
-    largest_growth(const unsigned int degree)
-    {
-      return degree == 1 ? 4. : 1.4;
-    }
-
-    constexpr double
-    least_growth(const unsigned int degree)
-    {
-      return degree == 1 ? 1.25 : 1.1;
-    }
-
-    /// The same if a goal besides the estimate has not been reached.
+    /// How many times the cells the next mesh has if a goal besides the
+    /// estimate has not been reached.
     constexpr double growth_for_goal = 1.7;
-
-    /// The part of Accuracy/Target that a mesh is made for.
-    constexpr double aim = 0.9;
-
-    /// Cells that are cut for others.
-    constexpr double closure = 1.1;
-
-
-
-    /// How the estimate falls from mesh to mesh.
-    class MeshGrowth
-    {
-    public:
-      MeshGrowth(const AccuracyParameters &accuracy,
-                 const unsigned int        dim,
-                 const unsigned int        degree)
-        : accuracy(accuracy)
-        , least(least_growth(degree))
-        , largest(largest_growth(degree))
-        , smooth_rate(2. * degree / dim)
-        , rate(smooth_rate)
-      {}
-
-      /// A mesh has been estimated.
-      void
-      add(const double n_unknowns, const double relative_error)
-      {
-        if (unknowns > 0. && error > 0. && relative_error > 0.)
-          rate = std::clamp(std::log(error / relative_error) /
-                              std::log(n_unknowns / unknowns),
-                            0.5 * smooth_rate,
-                            1.5 * smooth_rate);
-        unknowns = n_unknowns;
-        error    = relative_error;
-      }
-
-      /// That of the next mesh: equal steps to the mesh that meets the target,
-      /// or to the largest one that is allowed.
-      double
-      next() const
-      {
-        double whole = std::numeric_limits<double>::infinity();
-        if (accuracy.target > 0.)
-          whole = std::pow(error / (aim * accuracy.target), 1. / rate);
-        if (accuracy.maximum_unknowns > 0)
-          whole =
-            std::min(whole, accuracy.maximum_unknowns / (closure * unknowns));
-        if (!std::isfinite(whole))
-          return largest;
-        const double steps =
-          std::max(1., std::ceil(std::log(whole) / std::log(largest)));
-        return std::max(least, std::pow(whole, 1. / steps));
-      }
-
-    private:
-      const AccuracyParameters &accuracy;
-      const double              least;
-      const double              largest;
-      const double              smooth_rate;
-      double                    rate; ///< error ~ unknowns^-rate
-      double                    unknowns = 0.;
-      double                    error    = 0.;
-    };
-
-
-
-    /// How often each cell is to be cut. The cell with the largest part of the
-    /// estimate is next until there are enough; where the solution is smooth, a
-    /// half has 2^(-(2 + dim) / dim) of its part, and at corners more: with
-    /// less for quadratic displacements those are cut too little where a mesh
-    /// may grow but once.
-    std::vector<unsigned int>
-    divisions(const std::vector<double> &parts,
-              const unsigned int         dim,
-              const double               growth)
-    {
-      struct Piece
-      {
-        double       part;
-        unsigned int cell;
-
-        bool
-        operator<(const Piece &other) const
-        {
-          return part != other.part ? part < other.part : cell > other.cell;
-        }
-      };
-      std::priority_queue<Piece> pieces;
-      for (unsigned int cell = 0; cell < parts.size(); ++cell)
-        pieces.push({parts[cell], cell});
-
-      const double              of_a_half = std::pow(2., -(2. + dim) / dim);
-      std::vector<unsigned int> times(parts.size(), 0);
-      double                    n    = static_cast<double>(parts.size());
-      const double              goal = growth * n;
-      while (n < goal && pieces.top().part > 0.)
-        {
-          const Piece largest = pieces.top();
-          pieces.pop();
-          n += std::ldexp(1., static_cast<int>(times[largest.cell]++));
-          pieces.push({largest.part * of_a_half, largest.cell});
-        }
-      return times;
-    }
 
 
 
@@ -238,23 +116,29 @@ namespace Debond
     class AdaptiveLoop
     {
     public:
-      using Report = std::function<void(const AdaptiveLevel &)>;
-
       AdaptiveLoop(const SolveSettings               &settings,
                    const AccuracyParameters          &accuracy,
                    RefinementGoal<dim>               *goal,
-                   const Report                      &report,
+                   const AdaptiveProgress            &begun,
+                   const AdaptiveObserver<dim>       &observer,
                    std::shared_ptr<const Scene<dim>> &scene)
         : settings(settings)
         , accuracy(accuracy)
         , goal(goal)
-        , report(report)
+        , observer(observer)
         , scene(scene)
         , problem(scene->parameters())
         , ranks(scene->ranks())
         , wanted(choose_method(problem, settings.parameters))
+        , progress(begun)
         , growth(accuracy, dim, problem.degree)
-      {}
+      {
+        for (const AdaptiveLevel &level : progress.levels)
+          {
+            observer.level_is_done(level);
+            growth.add(level.unknowns, level.estimated_error);
+          }
+      }
 
       AdaptiveResult<dim>
       run()
@@ -292,11 +176,11 @@ namespace Debond
                 interrupt();
                 break;
               }
-            start = std::make_unique<const DofVector>(
-              divided_displacement(scene->problem(),
-                                   result.solve.u,
-                                   body->ancestors(),
-                                   next->problem()));
+            progress.start = divided_displacement(scene->problem(),
+                                                  result.solve.u,
+                                                  body->ancestors(),
+                                                  next->problem());
+            observer.next_mesh_is_made(progress, *next);
             // Its memory is for the next mesh; the state of a path knows it.
             const std::shared_ptr<const Body<dim>> finished = latest;
             latest                                          = body;
@@ -348,12 +232,13 @@ namespace Debond
           {
             if (problem.load_path.factors.empty())
               {
-                solution   = solve(on_mesh.choice,
-                                 on_mesh.parameters,
-                                 *here,
-                                 nullptr,
-                                 false,
-                                 start.get());
+                solution =
+                  solve(on_mesh.choice,
+                        on_mesh.parameters,
+                        *here,
+                        nullptr,
+                        false,
+                        progress.start.size() > 0 ? &progress.start : nullptr);
                 functional = solution.functional;
                 if (can_be_verified(solution.status) &&
                     !solution.minimum.interrupted)
@@ -375,8 +260,8 @@ namespace Debond
               std::string("The error of the mesh is not known, ") +
               error.what() + '.';
           }
-        const bool is_first = !start;
-        if (!is_first && solution.status == SolverStatus::interrupted)
+        const bool has_result = result.solve.u.size() > 0;
+        if (has_result && solution.status == SolverStatus::interrupted)
           {
             interrupt();
             return false;
@@ -398,14 +283,15 @@ namespace Debond
         if (!ended)
           {
             const ElasticUnknowns<dim> &unknowns = scene->problem().unknowns();
-            report({scene->n_cells(),
-                    unknowns.n_free_dofs(),
-                    unknowns.contact().size(),
-                    result.solve.iterations,
-                    functional,
-                    estimate.relative(),
-                    goal_here.width,
-                    seconds + timer.wall_time()});
+            progress.levels.push_back({scene->n_cells(),
+                                       unknowns.n_free_dofs(),
+                                       unknowns.contact().size(),
+                                       result.solve.iterations,
+                                       functional,
+                                       estimate.relative(),
+                                       goal_here.width,
+                                       seconds + timer.wall_time()});
+            observer.level_is_done(progress.levels.back());
             growth.add(unknowns.n_free_dofs(), estimate.relative());
           }
         return true;
@@ -470,20 +356,23 @@ namespace Debond
         return goal_here.is_reached && (is_accurate() || accuracy.target == 0.);
       }
 
-      /// @p limit becomes why there can be none.
+      /// Its divisions are added to those of progress. @p limit becomes why
+      /// there can be none.
       std::shared_ptr<const BisectedBody<dim>>
       next_body(std::string &limit)
       {
         const bool by_goal = !goal_here.is_reached && !goal_here.parts.empty();
         double     times   = goal ? growth_for_goal : growth.next();
+        progress.divisions.emplace_back();
         while (true)
           {
+            progress.divisions.back() =
+              divisions(by_goal ? goal_here.parts :
+                                  of_whole_mesh(*scene, estimate.cells),
+                        dim,
+                        times);
             std::shared_ptr<const BisectedBody<dim>> body =
-              bisected(*scene).refined(
-                divisions(by_goal ? goal_here.parts :
-                                    of_whole_mesh(*scene, estimate.cells),
-                          dim,
-                          times));
+              bisected(*scene).refined(progress.divisions.back());
             limit =
               too_large<dim>(problem,
                              accuracy,
@@ -491,9 +380,9 @@ namespace Debond
                              goal,
                              memory_left(settings.parameters.memory_limit),
                              *body);
-            if (limit.empty() || times <= least_growth(problem.degree))
+            if (limit.empty() || times <= growth.least())
               return body;
-            times = std::max(least_growth(problem.degree), 0.75 * times);
+            times = std::max(growth.least(), 0.75 * times);
           }
       }
 
@@ -528,7 +417,7 @@ namespace Debond
       const SolveSettings               &settings;
       const AccuracyParameters          &accuracy;
       RefinementGoal<dim> *const         goal; ///< null without one
-      const Report                      &report;
+      const AdaptiveObserver<dim>       &observer;
       std::shared_ptr<const Scene<dim>> &scene;
 
       // Of all meshes.
@@ -539,6 +428,7 @@ namespace Debond
 
       AdaptiveResult<dim> result;
       bool                ended = false; ///< by no result, or no estimate
+      AdaptiveProgress    progress;
       ErrorEstimate       estimate;
       double              functional = 0.; ///< that it is relative to
       MeshGrowth          growth;
@@ -548,7 +438,6 @@ namespace Debond
 
       MethodChoice                     choice; ///< on the mesh of the result
       std::shared_ptr<const Body<dim>> latest;
-      std::unique_ptr<const DofVector> start; ///< on the next mesh
     };
   } // namespace
 
@@ -556,17 +445,25 @@ namespace Debond
 
   template <int dim>
   std::shared_ptr<const Scene<dim>>
-  make_first_scene(const ProblemParameters  &problem,
-                   const AccuracyParameters &accuracy,
-                   const std::string        &start)
+  make_first_scene(const ProblemParameters                      &problem,
+                   const AccuracyParameters                     &accuracy,
+                   const std::string                            &start,
+                   const std::vector<std::vector<unsigned int>> &divisions)
   {
     if (!accuracy.is_adaptive())
       return std::make_shared<const Scene<dim>>(problem, start, MPI_COMM_WORLD);
-    std::shared_ptr<const Body<dim>> body;
+    std::shared_ptr<const BisectedBody<dim>> body;
     try
       {
         body = std::make_shared<const BisectedBody<dim>>(
           std::dynamic_pointer_cast<const Body<dim>>(problem.body));
+        for (const std::vector<unsigned int> &times : divisions)
+          {
+            if (static_cast<double>(times.size()) != body->n_cells())
+              throw std::invalid_argument("the mesh is not that of the run "
+                                          "before; run without --restart");
+            body = body->refined(times);
+          }
       }
     catch (const PartError &)
       {
@@ -589,13 +486,15 @@ namespace Debond
 
   template <int dim>
   AdaptiveResult<dim>
-  solve_adaptively(const SolveSettings                              &settings,
-                   const AccuracyParameters                         &accuracy,
-                   RefinementGoal<dim>                              *goal,
-                   const std::function<void(const AdaptiveLevel &)> &report,
-                   std::shared_ptr<const Scene<dim>>                &scene)
+  solve_adaptively(const SolveSettings               &settings,
+                   const AccuracyParameters          &accuracy,
+                   RefinementGoal<dim>               *goal,
+                   const AdaptiveProgress            &begun,
+                   const AdaptiveObserver<dim>       &observer,
+                   std::shared_ptr<const Scene<dim>> &scene)
   {
-    return AdaptiveLoop<dim>(settings, accuracy, goal, report, scene).run();
+    return AdaptiveLoop<dim>(settings, accuracy, goal, begun, observer, scene)
+      .run();
   }
 
 

@@ -8,15 +8,38 @@
 namespace Debond
 {
   template <int dim>
+  DofVector
+  in_serial_order(const ElasticUnknowns<dim> &unknowns, const DofVector &u)
+  {
+    const auto order = unknowns.serial_order();
+    DofVector  result(u.size());
+    for (unsigned int i = 0; i < u.size(); ++i)
+      result(order[i]) = u(i);
+    return result;
+  }
+
+
+
+  template <int dim>
+  DofVector
+  from_serial_order(const ElasticUnknowns<dim> &unknowns, const DofVector &u)
+  {
+    const auto order = unknowns.serial_order();
+    DofVector  result(u.size());
+    for (unsigned int i = 0; i < u.size(); ++i)
+      result(i) = u(order[i]);
+    return result;
+  }
+
+
+
+  template <int dim>
   void
   write_displacement(const ElasticUnknowns<dim> &unknowns,
                      const DofVector            &u,
                      const std::string          &file_name)
   {
-    const auto order = unknowns.serial_order();
-    DofVector  in_order(u.size());
-    for (unsigned int i = 0; i < u.size(); ++i)
-      in_order(order[i]) = u(i);
+    const DofVector in_order = in_serial_order(unknowns, u);
     write_atomically(file_name, [&in_order](std::ostream &out) {
       out.precision(std::numeric_limits<double>::max_digits10);
       for (const double value : in_order)
@@ -40,15 +63,15 @@ namespace Debond
       throw std::invalid_argument(
         file_name + " is not the displacement of a scene with " +
         std::to_string(n_dofs) + " degrees of freedom");
-    const auto order = unknowns.serial_order();
-    DofVector  result(n_dofs);
-    for (unsigned int i = 0; i < n_dofs; ++i)
-      result(i) = u(order[i]);
-    return result;
+    return from_serial_order(unknowns, u);
   }
 
 
 
+  template decltype(in_serial_order<2>)    in_serial_order<2>;
+  template decltype(in_serial_order<3>)    in_serial_order<3>;
+  template decltype(from_serial_order<2>)  from_serial_order<2>;
+  template decltype(from_serial_order<3>)  from_serial_order<3>;
   template decltype(write_displacement<2>) write_displacement<2>;
   template decltype(write_displacement<3>) write_displacement<3>;
   template decltype(read_displacement<2>)  read_displacement<2>;

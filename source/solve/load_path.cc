@@ -89,8 +89,7 @@ namespace Debond
       bool
       is_whole() const
       {
-        return !steps.empty() && steps.back().message.empty() &&
-               result.status == SolverStatus::success;
+        return !steps.empty() && steps.back().message.empty();
       }
 
       /// Where only bonds hold the body J may fall without end.

@@ -26,13 +26,14 @@ namespace Debond
     void
     solve_by_euclidean_bundle(const ProximalBundleParameters &parameters,
                               const Scene<dim>               &scene,
+                              const Vector                   *start,
                               Watch                          &watch,
                               SolveResult                    &result)
     {
       const double energy =
         prescribed_energy(scene.problem(), scene.adhesion());
       watch.add_energy(energy);
-      result.u = scene.start();
+      result.u = start != nullptr ? *start : scene.start();
       add_bundle_result(
         ProximalBundle(parameters)
           .minimize(scene.functional(),
@@ -106,7 +107,8 @@ namespace Debond
                                      std::make_unique<Watch>(guard, *out, terminal) :
                                      std::make_unique<Watch>(guard);
       if (choice.method == SolverMethod::euclidean_bundle)
-        solve_by_euclidean_bundle(parameters.bundle, scene, *watch, result);
+        solve_by_euclidean_bundle(
+          parameters.bundle, scene, start, *watch, result);
       else if (choice.is_condensed)
         solve_condensed(choice, parameters, scene, start, *watch, result);
       else

@@ -37,6 +37,11 @@ namespace Debond
     void
     remove_steps() const;
 
+    /// After the steps @p done of an earlier run, whose files are there. The
+    /// last one is to be added again.
+    void
+    go_on_after(const std::vector<LoadPathStep<dim>> &done);
+
     /// Writes the files of one factor, and the table as it is. A file that
     /// cannot be written ends no path: the last of files() throws for it.
     void

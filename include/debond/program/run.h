@@ -9,10 +9,17 @@
 
 namespace Debond
 {
+  struct RunOptions
+  {
+    bool terminal = false; ///< whether the log is one
+    bool restart  = false; ///< whether to go on where an earlier run ended
+  };
+
   /**
    * Solves a scene: sets up the problem, minimises J from its start, verifies
-   * the result, writes files and the log. @p terminal says whether the log
-   * @p out is a terminal, on which progress is one line that changes.
+   * the result, writes files and the log to @p out. On a terminal progress is
+   * one line that changes. A restart goes on after the last load step or mesh
+   * in restart.state, which a run leaves in its output directory, see RunState.
    *
    * The output directory is created, and the effective parameters are written
    * there, before the solve, so that a directory without access costs no
@@ -23,7 +30,9 @@ namespace Debond
    */
   template <int dim>
   ExitCode
-  run(const Parameters &parameters, std::ostream &out, const bool terminal);
+  run(const Parameters &parameters,
+      std::ostream     &out,
+      const RunOptions  options);
 } // namespace Debond
 
 #endif

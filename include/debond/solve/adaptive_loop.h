@@ -31,6 +31,33 @@ namespace Debond
 
 
 
+  /// How far the loop has come.
+  struct AdaptiveProgress
+  {
+    /// Of the meshes that are done.
+    std::vector<AdaptiveLevel> levels;
+
+    /// How often the cells of each mesh are cut for the next one, see
+    /// BisectedBody::refined().
+    std::vector<std::vector<unsigned int>> divisions;
+
+    /// Where to start on the last of these meshes; empty for rest.
+    DofVector start;
+  };
+
+  /// Who is told what the loop does.
+  template <int dim>
+  struct AdaptiveObserver
+  {
+    std::function<void(const AdaptiveLevel &)> level_is_done;
+
+    /// The scene on the next mesh, before it is solved.
+    std::function<void(const AdaptiveProgress &, const Scene<dim> &)>
+      next_mesh_is_made;
+  };
+
+
+
   template <int dim>
   struct AdaptiveResult
   {
@@ -42,13 +69,16 @@ namespace Debond
   };
 
   /// The scene on the first mesh, which can be refined if @p accuracy asks for
-  /// it, with @p start as of Scene. Throws as Scene does, and BadInput if the
-  /// mesh cannot be refined.
+  /// it, with @p start as of Scene, or after the @p divisions of an earlier
+  /// run. Throws as Scene does, and BadInput if the mesh cannot be refined or
+  /// is not that of the divisions.
   template <int dim>
   std::shared_ptr<const Scene<dim>>
-  make_first_scene(const ProblemParameters  &problem,
-                   const AccuracyParameters &accuracy,
-                   const std::string        &start = "");
+  make_first_scene(
+    const ProblemParameters                      &problem,
+    const AccuracyParameters                     &accuracy,
+    const std::string                            &start     = "",
+    const std::vector<std::vector<unsigned int>> &divisions = {});
 
   /// Solves the scene of make_first_scene(), and again and again on a mesh that
   /// is refined where the estimate is large, or what @p goal says, from the
@@ -58,15 +88,16 @@ namespace Debond
   /// followed on each mesh, without its global branch and its arc, for the
   /// estimate of the factor that has the largest one relative to its J; the
   /// result is that of the last factor. @p scene becomes that of the result,
-  /// the last mesh on which there is one. @p report gets each level when it is
-  /// done.
+  /// the last mesh on which there is one. @p begun is what an earlier run had
+  /// done before @p scene, of which the observer is told again.
   template <int dim>
   AdaptiveResult<dim>
-  solve_adaptively(const SolveSettings                              &settings,
-                   const AccuracyParameters                         &accuracy,
-                   RefinementGoal<dim>                              *goal,
-                   const std::function<void(const AdaptiveLevel &)> &report,
-                   std::shared_ptr<const Scene<dim>>                &scene);
+  solve_adaptively(const SolveSettings               &settings,
+                   const AccuracyParameters          &accuracy,
+                   RefinementGoal<dim>               *goal,
+                   const AdaptiveProgress            &begun,
+                   const AdaptiveObserver<dim>       &observer,
+                   std::shared_ptr<const Scene<dim>> &scene);
 } // namespace Debond
 
 #endif

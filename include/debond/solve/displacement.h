@@ -9,6 +9,16 @@
 
 namespace Debond
 {
+  /// The entries by the numbers that degrees of freedom have on one rank, and
+  /// back. To be called by all ranks.
+  template <int dim>
+  DofVector
+  in_serial_order(const ElasticUnknowns<dim> &unknowns, const DofVector &u);
+
+  template <int dim>
+  DofVector
+  from_serial_order(const ElasticUnknowns<dim> &unknowns, const DofVector &u);
+
   /// Writes all degrees of freedom as text, a line each, with all digits, in
   /// the order that they have on one rank. Throws std::runtime_error naming the
   /// file if it cannot be written.

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_solve_run_state_h
+#define debond_solve_run_state_h
+
+#include <debond/linear_algebra/dof_vector.h>
+#include <debond/solve/adaptive_loop.h>
+#include <debond/solve/load_path.h>
+
+#include <string>
+
+namespace Debond
+{
+  /// How far a run has come, for one on any number of ranks that goes on from
+  /// there.
+  template <int dim>
+  struct RunState
+  {
+    /// Its scene with all entries, as Parameters::effective_scene.
+    std::string scene;
+
+    /// The mesh, those before it and where to start on it.
+    AdaptiveProgress meshes;
+
+    /// Whether no finer mesh follows; then why the last one does not meet its
+    /// target, empty if it does.
+    bool        has_last_mesh = false;
+    std::string shortfall;
+
+    /// The steps of the load path on that mesh.
+    PathProgress<dim> path;
+  };
+
+  /// Displacements in the state, and in the file, are in_serial_order(). To be
+  /// called by all ranks. Throws std::runtime_error if the file cannot be
+  /// written.
+  template <int dim>
+  void
+  write_state(const RunState<dim> &state, const std::string &file_name);
+
+  /// Throws BadInput if the file is not from a run of a scene whose mesh,
+  /// material, law and loads are those of @p scene, naming the first entry that
+  /// differs. Solver, accuracy, what is checked and written, and more load
+  /// factors may differ.
+  template <int dim>
+  RunState<dim>
+  read_state(const std::string &file_name, const std::string &scene);
+} // namespace Debond
+
+#endif

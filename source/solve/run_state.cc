@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/atomic_file.h>
+#include <debond/input/bad_input.h>
+#include <debond/solve/run_state.h>
+
+#include <boost/archive/archive_exception.hpp>
+#include <boost/archive/binary_iarchive.hpp>
+#include <boost/archive/binary_oarchive.hpp>
+#include <boost/serialization/string.hpp>
+#include <boost/serialization/utility.hpp>
+#include <boost/serialization/vector.hpp>
+
+#include <map>
+#include <sstream>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Of the file. A change of what follows needs another number.
+    const std::string format = "Debond run state 1";
+
+
+
+    // Boost's serialization knows neither std::optional nor Eigen.
+    template <class Archive, typename T>
+    void
+    exchange(Archive &archive, std::optional<T> &value)
+    {
+      bool             exists = value.has_value();
+      T                number = value.value_or(T());
+      archive &exists &number;
+      value = exists ? std::make_optional(number) : std::nullopt;
+    }
+
+
+
+    template <class Archive>
+    void
+    exchange(Archive &archive, Eigen::VectorXd &vector)
+    {
+      std::vector<double> entries(vector.begin(), vector.end());
+      archive            &entries;
+      vector = Eigen::Map<const Eigen::VectorXd>(
+        entries.data(), static_cast<Eigen::Index>(entries.size()));
+    }
+
+
+
+    /// To or from the file, by the type of the archive.
+    template <class Archive, int dim>
+    void
+    exchange(Archive &archive, LoadPathState<dim> &state)
+    {
+      archive &state.minimum &state.functional &state.elastic_energy &state
+        .adhesion_energy &state.unit_load_work &state
+        .unit_displacement_work &state.contact_part &state.bonded_part &state
+        .broken_part &state.other_parts &state.mean_gap &state
+        .largest_gap &state.normal_force &state.contact_reaction &state
+        .clamped_reaction &state.law_violation &state
+        .equilibrium_residual &state.force_imbalance &state.broken_zone &state
+        .fronts &state.dissipated_energy &state.vectors;
+    }
+
+
+
+    /// Of a step without its global branch, which comes when the path is whole.
+    template <class Archive, int dim>
+    void
+    exchange(Archive &archive, LoadPathStep<dim> &step)
+    {
+      archive &step.step &step.factor &step.displacement_factor &step
+        .status &step.iterations &step.message;
+      exchange(archive, step.change_factor);
+      exchange(archive, step.state);
+    }
+
+
+
+    template <class Archive>
+    void
+    exchange(Archive &archive, AdaptiveLevel &level)
+    {
+      archive &level.cells &level.unknowns &level.contact_nodes &level
+        .iterations &level.functional &level.estimated_error &level.gap &level
+        .seconds;
+    }
+
+
+
+    template <class Archive, typename T>
+    void
+    exchange(Archive &archive, std::vector<T> &list)
+    {
+      std::size_t size = list.size();
+      archive    &size;
+      list.resize(size);
+      for (T &entry : list)
+        exchange(archive, entry);
+    }
+
+
+
+    template <class Archive, int dim>
+    void
+    exchange(Archive &archive, RunState<dim> &state)
+    {
+      archive &state.scene &state.meshes.divisions &state.has_last_mesh &state
+        .shortfall &state.path.kinds &state.path.memory.nodes &state.path.memory
+        .held &state.path.memory.points &state.meshes.start &state.path.u;
+      exchange(archive, state.meshes.levels);
+      exchange(archive, state.path.steps);
+      exchange(archive, state.path.points);
+    }
+
+
+
+    /// The values by the paths of their entries.
+    std::map<std::string, std::string>
+    entries_of(const std::string &scene)
+    {
+      std::map<std::string, std::string> entries;
+      std::istringstream                 lines(scene);
+      std::string                        line, section;
+      while (std::getline(lines >> std::ws, line))
+        if (line.rfind("subsection ", 0) == 0)
+          section += line.substr(11) + '/';
+        else if (line == "end")
+          section.erase(section.rfind('/', section.size() - 2) + 1);
+        else if (line.rfind("set ", 0) == 0)
+          {
+            const std::size_t equals = line.find('=');
+            std::string       name   = line.substr(4, equals - 4);
+            name.erase(name.find_last_not_of(' ') + 1);
+            entries[section + name] = line.substr(equals + 1);
+          }
+      return entries;
+    }
+
+
+
+    /// Whether a run may go on with another value.
+    bool
+    may_differ(const std::string &entry)
+    {
+      for (const std::string beginning : {"Accuracy/",
+                                          "Certificate/",
+                                          "Output/",
+                                          "Solver/",
+                                          "Verification/",
+                                          "Load path/Arc",
+                                          "Load path/Displacement factors",
+                                          "Load path/Factors",
+                                          "Load path/Global branch"})
+        if (entry.rfind(beginning, 0) == 0)
+          return true;
+      return false;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  write_state(const RunState<dim> &state, const std::string &file_name)
+  {
+    write_atomically(file_name, [&state](std::ostream &out) {
+      boost::archive::binary_oarchive archive(out);
+      archive                        &format;
+      RunState<dim>                   copy = state;
+      exchange(archive, copy);
+    });
+  }
+
+
+
+  template <int dim>
+  RunState<dim>
+  read_state(const std::string &file_name, const std::string &scene)
+  {
+    RunState<dim> state;
+    std::ifstream file = open_plain_file(file_name);
+    std::string   found;
+    try
+      {
+        boost::archive::binary_iarchive archive(file);
+        archive                        &found;
+        if (found == format)
+          exchange(archive, state);
+      }
+    catch (const std::exception &)
+      {
+        found.clear();
+      }
+    if (found != format)
+      throw BadInput({file_name + " is not the state of a run of this version "
+                                  "of Debond; run without --restart"});
+
+    const auto before = entries_of(state.scene), now = entries_of(scene);
+    for (const auto *const entries : {&before, &now})
+      for (const auto &[name, value] : *entries)
+        {
+          const auto of = [&name = name](const auto &all) {
+            const auto entry = all.find(name);
+            return entry == all.end() ? " nothing" : entry->second;
+          };
+          if (!may_differ(name) && of(before) != of(now))
+            throw BadInput({file_name + " is of another scene: " + name +
+                            " was" + of(before) + " and is" + of(now) +
+                            "; run without --restart"});
+        }
+    return state;
+  }
+
+
+
+  template decltype(write_state<2>) write_state<2>;
+  template decltype(write_state<3>) write_state<3>;
+  template decltype(read_state<2>)  read_state<2>;
+  template decltype(read_state<3>)  read_state<3>;
+} // namespace Debond
