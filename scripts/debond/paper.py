@@ -35,7 +35,15 @@ SCENES = [
     ("cookbook/tape", "", "mm, MPa", {"body": "cookbook-tape",
                                       "contact": "cookbook-tape-front"}),
     *((f"cookbook/{name}", "", "mm, MPa", {"body": f"cookbook-{name}"})
-      for name in ("ring", "double-cantilever", "bimaterial-strip", "peel"))]
+      for name in ("ring", "double-cantilever", "bimaterial-strip", "peel", "blister",
+                   "wafer")),
+    *((f"cookbook/{name}", "", "mm, MPa", {"load_path": f"cookbook-{name}"})
+      for name in ("double-cantilever-path", "r-curve", "punch"))]
+
+# What the pictures of these load paths show over the displacement's factor.
+PATHS = {"cookbook/double-cantilever-path": ("reaction_left_y", "fronts"),
+         "cookbook/r-curve": ("reaction_left_y", "fronts"),
+         "cookbook/punch": ("reaction_top_y", "largest_gap")}
 
 
 def make_pictures(program):
@@ -45,7 +53,8 @@ def make_pictures(program):
                         f"Output/Directory={directory}",
                         *(["--set", f"Mesh/Cells={cells}"] if cells else [])],
                        check=True, stdout=subprocess.DEVNULL)
-        picture.draw(directory, units)
+        picture.draw(directory, units, path=[
+            f"{column} over displacement_factor" for column in PATHS.get(name, ())])
         for own, shown in pictures.items():
             shutil.copy(f"{directory}/{own}.png", f"doc/pictures/{shown}.png")
 
