@@ -27,9 +27,7 @@ STUDIES = {
 
 # Scenes, settings and units, and which of their pictures the pages show.
 SCENES = [
-    ("benchmark-40x4", "", "m, GPa", {"body": "body", "history": "convergence",
-                                      "contact": "contact-profile"}),
-    ("bar-3d", "", "m, GPa", {"body": "body-3d"}),
+    ("benchmark-40x4", "", "m, GPa", {"body": "body"}),
     ("load-path-690", "40, 4", "m, GPa", {"load_path": "load-path-40x4"}),
     ("load-path-690", "80, 8", "m, GPa", {"load_path": "load-path-80x8"}),
     ("cookbook/tape", "", "mm, MPa", {"body": "cookbook-tape",
