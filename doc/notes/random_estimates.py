@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """doc/notes/random_estimates.py PROGRAM SEED SCENES KIND: the estimated error of J
 beside the true one on random scenes, of KIND two (materials, in 2D), one or 3d; the
-table of doc/notes/error-estimate.md.
+table of doc/notes/accuracy.md.
 
 The true J is that of quadratic displacements on meshes that are refined to 8000 (3D:
 14000) unknowns, less what they say that it is still too high. Left out are scenes where

@@ -26,8 +26,8 @@ def build(targets="debond"):
 
 
 def read_csv(path):
-    """The columns of a table by their titles: arrays of numbers, or lists of
-    words where not all are numbers; empty if there is no such file."""
+    """The columns of a table by their titles: arrays of numbers, of places their x,
+    or lists of words where not all are numbers; empty if there is no such file."""
     if not os.path.exists(path):
         return {}
     with open(path, newline="", encoding="utf8") as file:
@@ -35,7 +35,7 @@ def read_csv(path):
                                if line.strip() and line[0] != "#"))
     columns = {}
     for title, *cells in zip(*rows):
-        numbers = [prm.number(cell or "nan") for cell in cells]
+        numbers = [prm.number(cell.partition(" ")[0] or "nan") for cell in cells]
         columns[title] = cells if None in numbers else numpy.array(numbers)
     return columns
 

@@ -27,15 +27,21 @@ STUDIES = {
 
 # Scenes, settings and units, and which of their pictures the pages show.
 SCENES = [
-    ("benchmark-40x4", "", "m, GPa", {"body": "body", "history": "convergence",
-                                      "contact": "contact-profile"}),
-    ("bar-3d", "", "m, GPa", {"body": "body-3d"}),
+    ("benchmark-40x4", "", "m, GPa", {"body": "body"}),
     ("load-path-690", "40, 4", "m, GPa", {"load_path": "load-path-40x4"}),
     ("load-path-690", "80, 8", "m, GPa", {"load_path": "load-path-80x8"}),
     ("cookbook/tape", "", "mm, MPa", {"body": "cookbook-tape",
                                       "contact": "cookbook-tape-front"}),
     *((f"cookbook/{name}", "", "mm, MPa", {"body": f"cookbook-{name}"})
-      for name in ("ring", "double-cantilever", "bimaterial-strip", "peel"))]
+      for name in ("ring", "double-cantilever", "bimaterial-strip", "peel", "blister",
+                   "wafer")),
+    *((f"cookbook/{name}", "", "mm, MPa", {"load_path": f"cookbook-{name}"})
+      for name in ("double-cantilever-path", "r-curve", "punch"))]
+
+# What the pictures of these load paths show over the displacement's factor.
+PATHS = {"cookbook/double-cantilever-path": ("reaction_left_y", "fronts"),
+         "cookbook/r-curve": ("reaction_left_y", "fronts"),
+         "cookbook/punch": ("reaction_top_y", "largest_gap")}
 
 
 def make_pictures(program):
@@ -45,7 +51,8 @@ def make_pictures(program):
                         f"Output/Directory={directory}",
                         *(["--set", f"Mesh/Cells={cells}"] if cells else [])],
                        check=True, stdout=subprocess.DEVNULL)
-        picture.draw(directory, units)
+        picture.draw(directory, units, path=[
+            f"{column} over displacement_factor" for column in PATHS.get(name, ())])
         for own, shown in pictures.items():
             shutil.copy(f"{directory}/{own}.png", f"doc/pictures/{shown}.png")
 

@@ -267,7 +267,7 @@ def draw_path(directory, wanted):
         if not {x, y} <= set(path):
             raise BadInput(f"load_path.csv has no '{kind}', but the columns "
                            + ", ".join(path))
-        if f"global_{y}" in path:
+        if not numpy.isnan(path.get(f"global_{y}", numpy.nan)).all():
             axes.plot(path.get(f"global_{x}", path[x]), path[f"global_{y}"],
                       "--", color="0.5", label="lowest minimum")
         for begin, end in zip(turns, turns[1:]):

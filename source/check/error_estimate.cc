@@ -20,7 +20,7 @@ namespace Debond
   namespace
   {
     /// What the estimate of the faces is multiplied by, see
-    /// doc/notes/error-estimate.md.
+    /// doc/notes/accuracy.md.
     template <int dim>
     double
     calibration(const unsigned int degree)

@@ -43,7 +43,7 @@ namespace Debond
     constexpr double largest_relative_descent = 1e-6;
 
     /// Up to here estimates are from half of the error to twice of it, see
-    /// doc/notes/error-estimate.md.
+    /// doc/notes/accuracy.md.
     constexpr double largest_judged_error = 0.2;
 
 

@@ -23,7 +23,7 @@ namespace Debond
     bool   is_of_J = true;
 
     /// What the constant of the estimate was not measured for, in words; empty
-    /// if the body is like those of doc/notes/error-estimate.md.
+    /// if the body is like those of doc/notes/accuracy.md.
     std::string outside_calibration;
 
     /// The parts of the active cells, which add up to `functional`.
@@ -73,7 +73,7 @@ namespace Debond
    * square: a stretched cell's own is larger, as if it had to yield by itself,
    * and made the estimate too low by the stretch. The sum of these numbers over
    * all faces, times a constant that depends on dimension and degree only, is
-   * the estimate; doc/notes/error-estimate.md compares it with errors that are
+   * the estimate; doc/notes/accuracy.md compares it with errors that are
    * known.
    *
    * Directions in which the boundary is held have no r; where all nodes of a

@@ -33,7 +33,7 @@ namespace Debond
    * DescentRule::minimum goes through 1, 1/2, 1/4, ... to the first t with
    * (14), on as long as J falls, and ends with the minimum of the parabola
    * through 0, t and 2t if that is lower still. t_R is found by bisection
-   * between t_L and 2 t_L (0 and 1 for a null step). doc/notes/line-search.md
+   * between t_L and 2 t_L (0 and 1 for a null step). doc/notes/reproduction.md
    * compares the rules.
    *
    * A short step for which no t_R has (15) takes y_{k+1} = x_{k+1}.
