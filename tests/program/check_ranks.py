@@ -10,6 +10,7 @@ import json, os, re, signal, subprocess, sys, tempfile, time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
+import msh
 from vtu import Piece
 
 DEBOND, PRM = sys.argv[1:3]
@@ -19,7 +20,7 @@ ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1",
 MM = ["Solver/Method=majorise minimise"]
 BAR = ["Dimension=3", "Mesh/Lengths=0.4, 0.04, 0.04", "Mesh/Cells=16, 4, 4",
        "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345); 0"]
-TRI = ["Mesh/Source=file", "Mesh/File=" + HERE + "/../golden/tri.msh"]
+TRI = ["Mesh/Source=file", "Mesh/File=tri.msh"]
 MG = MM + ["Solver/Linear solver=multigrid"]
 
 # Of each a name, a scene and what differs in it.
@@ -138,7 +139,8 @@ def cells(paths):
 def check_scenes(directory):
     for number, (name, scene, settings) in enumerate(SCENES):
         file = os.path.join(PRM, scene + ".prm")
-        settings = settings + ["Output/Displacement=true", "Output/Machine details=false"]
+        settings = [s.replace("tri.msh", directory + "/tri.msh") for s in settings] + [
+            "Output/Displacement=true", "Output/Machine details=false"]
         one = os.path.join(directory, "one")
         subprocess.run(["rm", "-rf", one])
         code, out, errors = run(1, file, settings, one)
@@ -225,6 +227,8 @@ def check_ends(directory):
 
 
 with tempfile.TemporaryDirectory() as directory:
+    with open(directory + "/tri.msh", "w") as file:
+        file.write(msh.triangles())
     check_ends(directory)
     check_start(directory)
     check_scenes(directory)

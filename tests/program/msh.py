@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Meshes of tests and Gmsh files of them. Faces and cells are (groups, vertices)."""
+import random
 from itertools import product
 
 KINDS = {(1, 2): 1, (2, 3): 2, (2, 4): 3, (3, 4): 4, (3, 8): 5}
@@ -83,3 +84,20 @@ def text(points, faces, cells, names=None, version="2.2", is_odd=False, order=No
                     count += 1
                     lines.append(" ".join(map(str, (count, *map(number, v)))))
     return "\n".join(map(str, lines + ["$EndElements", ""]))
+
+
+def triangles():
+    """A file with the benchmark's bar in triangles that are no grid: inner vertices are
+    moved, diagonals go either way, elements are in no order."""
+    order = random.Random(1)
+    n, lengths = (40, 4), (0.4, 0.04)
+    points, faces, cells = box(n, lengths)
+    inner = [all(0. < x < length for x, length in zip(point, lengths)) for point in points]
+    points = [tuple(x + 0.003 * (2. * order.random() - 1.) * is_inner for x in point)
+              for point, is_inner in zip(points, inner)]
+    cut = []
+    for _, (a, b, c, d) in cells:
+        cut += [[a, b, c], [a, c, d]] if order.random() < 0.5 else [[a, b, d], [b, c, d]]
+    cut.sort(key=lambda _: order.random())
+    names = {(1, k): side for k, side in enumerate(SIDES[:4], 1)}
+    return text(points, faces, [((7,), cell) for cell in cut], {**names, (2, 7): "bar"})
