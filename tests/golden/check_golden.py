@@ -8,7 +8,7 @@ whose files stay in a folder that is printed."""
 import concurrent.futures, json, os, re, shutil, subprocess, sys, tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.join(HERE, "../program"))
+sys.path.insert(0, os.path.join(HERE, ".."))
 import msh
 
 WORDS = ["", "stationary", "local minimum", "best known", "global"]
