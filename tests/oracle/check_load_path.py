@@ -419,6 +419,24 @@ def check_estimate_for_good():
         check("not that with bonds", abs(estimate() / none - 1.) > 0.1)
 
 
+def check_search_beside_path():
+    """Where one step from rest leads is a state that the search knows, whatever the method
+    starts from and wherever the points of the quadrature are."""
+    scenes.section("The search beside a path from rest")
+    for cells, M in ((5, 0.0037), (6, 0.0036)):
+        plate = ["Dimension=3", "Mesh/Lengths=30, 1.1, 30", f"Mesh/Cells={cells}, 1, {cells}",
+                 "Mesh/Degree=2", "Parts/shaft=top: x < 4.5 && z < 4.5",
+                 "Material/Young modulus=70000", "Boundary conditions/Clamped boundaries=",
+                 "Boundary conditions/Symmetry boundaries=left, back",
+                 "Boundary conditions/Displacement shaft=free; 0.0095; free",
+                 "Contact law/Tangential displacement=free", "Contact law/Quadrature=gauss 2",
+                 "Contact law/Bond stiffness=5000", f"Contact law/Bond threshold={M}"]
+        found = solve(*plate)
+        path = solve(*plate, "Load path/Factors=0, 1", NO_GLOBAL)
+        check("word", found["minimum"]["state"] == "best known")
+        check("J", 0. < found["functional"] <= path["functional"] * (1. + 1e-9))
+
+
 for dim, rules in ((2, ("gauss 3", "gauss 3")), (3, ("gauss 3", "gauss 2"))):
     check_column(dim)
     check_column(dim, "Mesh/Degree=2", "Contact law/Quadrature=" + rules[0])
@@ -433,4 +451,5 @@ check_other_laws()
 check_arcs()
 check_refined()
 check_estimate_for_good()
+check_search_beside_path()
 scenes.end()

@@ -234,18 +234,23 @@ test_integral(const unsigned int degree,
 
   std::mt19937                           random(7);
   std::uniform_real_distribution<double> number(-2.5, 0.);
-  double value_error = 0., gradient_error = 0., curvature_error = 0.;
-  bool   intervals_hold = true, goldstein_holds = true;
+  double value_error = 0., exact_error = 0., gradient_error = 0.,
+         curvature_error = 0.;
+  bool intervals_hold = true, goldstein_holds = true;
   for (unsigned int trial = 0; trial < (dim == 2 ? 20 : 5); ++trial)
     {
       Eigen::VectorXd s(n);
       for (double &entry : s)
         entry = M * number(random);
       if (tolerance > 0.)
-        raise(value_error,
-              std::abs(integral.energy(s) -
-                       fine_sum(boundary, integral, law, s)) /
-                (scale * M));
+        {
+          const double sum = fine_sum(boundary, integral, law, s);
+          raise(value_error, std::abs(integral.energy(s) - sum) / (scale * M));
+          if constexpr (dim == 2)
+            raise(exact_error,
+                  std::abs(exact_energy(integral, boundary, law, s) - sum) /
+                    (scale * M));
+        }
 
       const Eigen::VectorXd             xi        = integral.subgradient(s);
       const Eigen::SparseMatrix<double> curvature = integral.curvature(s);
@@ -293,6 +298,7 @@ test_integral(const unsigned int degree,
   const std::string name = std::to_string(dim) + "D, degree " +
                            std::to_string(degree) + ", " + rule + ": ";
   check(name + "int j_1 against a fine sum", value_error, tolerance);
+  check(name + "its exact value in 2D", exact_error, 1e-8);
   check(name + "subgradient against differences", gradient_error, 1e-6);
   // Where no point changes its branch.
   check(name + "curvature against differences", curvature_error, 1e-6);
