@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A search that has no time, and search and proof of a law of another shape.
 
+#include <debond/elasticity/contact_condensation.h>
 #include <debond/input/bad_input.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/which_minimum.h>
