@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Two faces that meet in a node, each with bonds of its own, against the sum of
-// the faces' energies. Bonds that vary with the exact rule, against sampling of
-// what it stands for and against the bonds themselves.
+// the faces' energies.
 
 #include <debond/contact/adhesion_integral.h>
 #include <debond/contact/laws/winkler.h>
@@ -65,178 +64,6 @@ namespace
   {
     return 0.5 * a * std::min(s * s, M * M);
   }
-
-
-
-  /// Bonds that vary with the place, relative to a_1 and M_1.
-  template <int dim>
-  double
-  stiffness_at(const dealii::Point<dim> &point)
-  {
-    return 2. + std::sin(3. * point[0]) + (dim == 3 ? point[dim - 1] : 0.);
-  }
-
-  template <int dim>
-  double
-  threshold_at(const dealii::Point<dim> &point)
-  {
-    return 0.2 + 0.1 * point[0] * point[0];
-  }
-
-
-
-  template <int dim>
-  BondField<dim>
-  varying_field()
-  {
-    const auto function = [](double (*f)(const dealii::Point<dim> &)) {
-      return std::make_shared<
-        const dealii::ScalarFunctionFromFunctionObject<dim>>(f);
-    };
-    return {a_1,
-            M_1,
-            {"", function(&stiffness_at<dim>), function(&threshold_at<dim>)},
-            {}};
-  }
-
-
-
-  /// n faces from 0 to 1, or 2 n^2 triangles of a unit square.
-  template <int dim>
-  ContactBoundary<dim>
-  uniform_boundary(const unsigned int n)
-  {
-    ContactBoundary<dim> boundary;
-    const unsigned int   rows = dim == 2 ? 1 : n + 1;
-    for (unsigned int j = 0; j < rows; ++j)
-      for (unsigned int i = 0; i <= n; ++i)
-        {
-          typename ContactBoundary<dim>::Node node = {};
-          node.position[0]                         = double(i) / n;
-          if (dim == 3)
-            node.position[dim - 1] = double(j) / n;
-          boundary.nodes.push_back(node);
-        }
-    const auto add = [&](const std::array<unsigned int, dim> &nodes) {
-      typename ContactBoundary<dim>::Face face = {};
-      face.nodes                               = nodes;
-      for (unsigned int k = 0; k < dim; ++k)
-        face.vertices[k] = boundary.nodes[nodes[k]].position;
-      face.measure = dim == 2 ? 1. / n : 0.5 / (n * n);
-      boundary.faces.push_back(face);
-    };
-    for (unsigned int i = 0; i < n; ++i)
-      if constexpr (dim == 2)
-        add({{i, i + 1}});
-      else
-        for (unsigned int j = 0; j < n; ++j)
-          {
-            const unsigned int corner = j * (n + 1) + i, above = corner + n + 1;
-            add({{corner, corner + 1, above + 1}});
-            add({{corner, above, above + 1}});
-          }
-    return boundary;
-  }
-
-
-
-  template <int dim>
-  Eigen::VectorXd
-  varying_trace(const ContactBoundary<dim> &boundary)
-  {
-    Eigen::VectorXd s(boundary.nodes.size());
-    for (unsigned int i = 0; i < s.size(); ++i)
-      {
-        const auto &x = boundary.nodes[i].position;
-        s(i)          = -0.4 * x[0] - (dim == 3 ? 0.1 * x[dim - 1] : 0.);
-      }
-    return s;
-  }
-
-
-
-  /// The energy by midpoints of n^(dim - 1) pieces of each face.
-  template <int dim>
-  double
-  sampled(const ContactBoundary<dim> &boundary,
-          const Eigen::VectorXd      &s,
-          const unsigned int          n)
-  {
-    double sum = 0.;
-    for (const auto &face : boundary.faces)
-      {
-        const auto add = [&](const std::array<double, 3> &shape,
-                             const double                 weight) {
-          double             trace = 0.;
-          dealii::Point<dim> point;
-          for (unsigned int k = 0; k < dim; ++k)
-            {
-              trace += shape[k] * s(face.nodes[k]);
-              point += shape[k] * face.vertices[k];
-            }
-          sum += face.measure * weight *
-                 j(stiffness_at(point), threshold_at(point), trace);
-        };
-        for (unsigned int i = 0; i < n; ++i)
-          if constexpr (dim == 2)
-            add({{(i + 0.5) / n, 1. - (i + 0.5) / n, 0.}}, 1. / n);
-          else
-            for (unsigned int l = 0; i + l < n; ++l)
-              {
-                const double weight = 1. / (n * n), third = 1. / 3.;
-                const auto   at = [&](const double p, const double q) {
-                  add({{p / n, q / n, 1. - (p + q) / n}}, weight);
-                };
-                at(i + third, l + third);
-                if (i + l + 1 < n)
-                  at(i + 2. * third, l + 2. * third);
-              }
-      }
-    return sum;
-  }
-
-
-
-  template <int dim>
-  void
-  test_varying_bonds()
-  {
-    std::cout << "Bonds that vary, " << dim << "D\n";
-    const AdhesiveLaw            law(winkler_law(a_1, M_1).branches);
-    const BondField<dim>         field = varying_field<dim>();
-    const ContactQuadrature<dim> gauss(
-      ContactQuadratureParameters::parse("gauss 7"));
-    double error = 0.;
-    for (const unsigned int n : {4u, 8u, 16u})
-      {
-        const ContactBoundary<dim>  boundary = uniform_boundary<dim>(n);
-        const AdhesionIntegral<dim> phi(boundary, law, gauss, &field);
-        const Eigen::VectorXd       s     = varying_trace(boundary);
-        const double                value = phi.value(s);
-        // The trace is linear, and the sum that of the bonds themselves.
-        error = std::abs(
-          value / sampled(boundary, s, (dim == 2 ? 32000 : 512) / n) - 1.);
-        if (n > 4)
-          continue;
-        const Eigen::VectorXd xi         = phi.subgradient(s);
-        double                difference = 0., largest = 0.;
-        for (unsigned int i = 0; i < s.size(); ++i)
-          {
-            constexpr double step  = 1e-6;
-            Eigen::VectorXd  above = s, below = s;
-            above(i) += step;
-            below(i) -= step;
-            difference =
-              std::max(difference,
-                       std::abs((phi.value(above) - phi.value(below)) /
-                                  (2. * step) -
-                                xi(i)));
-            largest = std::max(largest, std::abs(xi(i)));
-          }
-        check("derivative beside differences", difference / largest, 1e-6);
-      }
-    check("error beside sampling on the finest", error, 1e-3);
-  }
 } // namespace
 
 
@@ -295,8 +122,6 @@ main(int argc, char **)
     traces(0.3);
     check("equal bonds, to the last bit", phi.value(s) == one.value(s));
   }
-  test_varying_bonds<2>();
-  test_varying_bonds<3>();
   {
     // k (1 - x) as it is written, with rounding at its end: zero. More than
     // that is negative.

@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 
-// The adhesive laws, the quadrature rules on the contact boundary and the
-// integral of the one by the other, against closed formulas and differences.
+// The adhesive laws and the quadrature rules on the contact boundary, against
+// closed formulas and differences.
 
 #include <debond/base/parameter_table.h>
-#include <debond/contact/adhesion_integral.h>
-#include <debond/contact/exact_energy.h>
 #include <debond/contact/laws/none.h>
 #include <debond/contact/laws/stepped.h>
 #include <debond/contact/laws/winkler.h>
+#include <debond/contact/quadrature.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iostream>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 
 #include "../check.h"
@@ -421,48 +418,6 @@ namespace
 
 
 
-  /// f[s_0, ..., s_n] of distinct points.
-  double
-  divided_difference(const std::function<double(double)> &f,
-                     const std::vector<double>           &s)
-  {
-    double sum = 0.;
-    for (unsigned int i = 0; i < s.size(); ++i)
-      {
-        double product = 1.;
-        for (unsigned int j = 0; j < s.size(); ++j)
-          if (j != i)
-            product *= s[i] - s[j];
-        sum += f(s[i]) / product;
-      }
-    return sum;
-  }
-
-
-
-  /// The mean of j_1 (a = 1, M = 1) over a simplex on which the trace is the
-  /// linear interpolant of s: n! times the divided difference of the n-th
-  /// antiderivative of j_1 (Hermite and Genocchi).
-  template <int dim>
-  double
-  mean_of_law(const std::array<double, dim> &s)
-  {
-    const auto antiderivative = [](const double x) {
-      const double t = x + 1.;
-      if (dim == 2)
-        return x > 0. ? 0. : x > -1. ? x * x * x / 6. : -1. / 6. + t / 2.;
-      else
-        return x > 0.  ? 0. :
-               x > -1. ? x * x * x * x / 24. :
-                         1. / 24. - t / 6. + t * t / 4.;
-    };
-    return (dim - 1) *
-           divided_difference(antiderivative,
-                              std::vector<double>(s.begin(), s.end()));
-  }
-
-
-
   template <int dim>
   void
   test_quadrature()
@@ -481,116 +436,6 @@ namespace
     for (unsigned int n = 1; n <= 7; ++n)
       degree_is("gauss " + std::to_string(n), 2 * n - 1);
   }
-
-
-
-  template <int dim>
-  ContactBoundary<dim>
-  make_boundary()
-  {
-    constexpr unsigned int fixed = dealii::numbers::invalid_unsigned_int;
-
-    std::vector<std::array<unsigned int, dim>> faces;
-    std::vector<double>                        measures;
-    if constexpr (dim == 2)
-      {
-        faces    = {{{fixed, 0}}, {{0, 1}}, {{1, 2}}, {{2, 3}}};
-        measures = {0.1, 0.2, 0.15, 0.1};
-      }
-    else
-      {
-        faces    = {{{0, 1, 4}}, {{1, 2, 4}}, {{2, fixed, 4}}, {{fixed, 0, 4}}};
-        measures = {0.02, 0.02, 0.03, 0.02};
-      }
-
-    ContactBoundary<dim> boundary;
-    boundary.nodes.resize(dim == 2 ? 4 : 5);
-    for (auto &node : boundary.nodes)
-      node.measure = 0.;
-    for (unsigned int f = 0; f < faces.size(); ++f)
-      {
-        typename ContactBoundary<dim>::Face face;
-        face.nodes   = faces[f];
-        face.measure = measures[f];
-        boundary.faces.push_back(face);
-        for (const unsigned int node : face.nodes)
-          if (node != fixed)
-            boundary.nodes[node].measure += face.measure / dim;
-      }
-    return boundary;
-  }
-
-
-
-  template <int dim>
-  void
-  test_integrals()
-  {
-    section("Integral in ", dim, "D");
-    const double a = 6.9e10;
-    const double M = 0.002;
-    // The nodal rule in closed form, with a node on the kink.
-    const ContactBoundary<dim>   boundary = make_boundary<dim>();
-    const AdhesiveLaw            law(winkler_law(a, M).branches);
-    const ContactQuadrature<dim> quadrature(
-      ContactQuadratureParameters::parse("nodal"));
-    const AdhesionIntegral<dim> integral(boundary, law, quadrature);
-    const unsigned int          n = boundary.nodes.size();
-
-    Eigen::VectorXd s(n);
-    double          energy = 0.;
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        s(i) = i == 0 ? -M : -0.3 * M * i;
-        energy += boundary.nodes[i].measure * law.value(s(i));
-      }
-    check("nodal: sum of nodal energies",
-          std::abs(integral.value(s) / energy - 1.) < 1e-14);
-
-    const double          force  = a * M * boundary.nodes[0].measure;
-    std::vector<Interval> forces = integral.force_intervals(s, 0.);
-    check("nodal: [-aM, 0] times the measure of a node on the kink",
-          equal(forces[0], -force, 0., force));
-    const Eigen::VectorXd xi = integral.subgradient(s);
-    check("nodal: the subgradient at the kink is that of the bonds",
-          std::abs(xi(0) / force + 1.) < 1e-14);
-
-    s(0)   = -0.5 * M;
-    forces = integral.force_intervals(s, 0.25 * M);
-    check("nodal: Goldstein interval of a bonded node",
-          equal(forces[0], -0.75 * force, -0.25 * force, force));
-    std::vector<double> radii(n, 0.);
-    radii[0]                          = 0.25 * M;
-    const std::vector<Interval> mixed = integral.force_intervals(s, radii),
-                                exact = integral.force_intervals(s, 0.);
-    bool own = equal(mixed[0], -0.75 * force, -0.25 * force, force);
-    for (unsigned int i = 1; i < n; ++i)
-      own = own && equal(mixed[i], exact[i].lower, exact[i].upper, force);
-    check("nodal: radii act on their own node", own);
-
-    // The exact integral on all faces against the closed formula.
-    if constexpr (dim == 3)
-      return;
-    else
-      {
-        energy = 0.;
-        for (unsigned int i = 0; i < n; ++i)
-          s(i) = M * (0.4 - 0.53 * i);
-        for (const auto &face : boundary.faces)
-          {
-            std::array<double, dim> trace;
-            for (unsigned int k = 0; k < dim; ++k)
-              trace[k] =
-                face.nodes[k] == dealii::numbers::invalid_unsigned_int ?
-                  0. :
-                  s(face.nodes[k]) / M;
-            energy += a * M * M * face.measure * mean_of_law<dim>(trace);
-          }
-        check("exact: sum of the closed integrals of the faces",
-              std::abs(exact_energy(integral, boundary, law, s) / energy - 1.) <
-                1e-12);
-      }
-  }
 } // namespace
 
 
@@ -602,6 +447,4 @@ main()
   test_parse();
   test_quadrature<2>();
   test_quadrature<3>();
-  test_integrals<2>();
-  test_integrals<3>();
 }

@@ -8,6 +8,9 @@ whose files stay in a folder that is printed."""
 import concurrent.futures, json, os, re, shutil, subprocess, sys, tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, ".."))
+import msh
+
 WORDS = ["", "stationary", "local minimum", "best known", "global"]
 
 
@@ -25,12 +28,15 @@ def scene_text(base, settings):
 def write_scenes(rows, prm, directory):
     """A copy of the scenes' folder with a scene for each row beside its own."""
     shutil.copytree(prm, os.path.join(directory, "prm"))
+    mesh = os.path.join(directory, "tri.msh")
+    with open(mesh, "w") as file:
+        file.write(msh.triangles())
     for number, row in enumerate(rows):
         name, scene, settings = row[:3]
         folder, base = os.path.split(scene)
         settings = [s for s in settings.split(" | ") if s]
         row.append([s[1:] for s in settings if s.startswith("@")])
-        settings = [s.replace("tri.msh", os.path.join(HERE, "tri.msh"))
+        settings = [s.replace("tri.msh", mesh)
                     for s in settings if not s.startswith("@")]
         results = os.path.join(directory, "results", str(number))
         settings += ["Output/Directory=" + results, "Output/Body VTU=false",

@@ -79,6 +79,6 @@ SCRIPT
 "$debond" plane.prm >log
 grep -q "^  mesh  *80 triangles, quadratic displacements$" log ||
   fail "the log does not say it: $(cat log)"
-python3 check.py output/plane 22 3 "$tests/program"
+python3 check.py output/plane 22 3 "$tests"
 "$debond" solid.prm >/dev/null
-python3 check.py output/solid 24 4 "$tests/program"
+python3 check.py output/solid 24 4 "$tests"

@@ -1,0 +1,455 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""check_load_path.py DEBOND: load paths. A column that is pulled off its bonds uniformly has
+closed formulas for both branches, for the factors where it snaps, closes and changes its
+global minimum, and for its arc. On the benchmark: what follows from the structure of the
+problem (between changes of the bonds displacements are proportional to the factor and J is
+quadratic in it; dJ/d(factor) = -<f, u>; the least J is concave in the squared factor), values
+of J from an independent code, and meshes that are refined for a path."""
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from run_scenes import Scenes
+
+scenes = Scenes(sys.argv[1])
+solve, check, close = scenes.solve, scenes.check, scenes.close
+# Height H, nu = 0, clamped at the top, pulled off its bonds at the bottom by the traction
+# 1 times the factor. Bonded: |u_nu| = t / (k + a), k = E/H, until that is M. Broken:
+# |u_nu| = t / k as long as that is more than M.
+E, H, a, M = 10., 0.2, 150., 0.01
+k = E / H
+FACTORS = "Load path/Factors=0:0.07:2.8, 2.8:-0.07:0"
+BENCHMARK = ["Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)",
+             "Contact law/Bond stiffness=690", "Solver/Method=majorise minimise"]
+NO_GLOBAL = "Load path/Global branch=none"
+
+
+def area_of(dim):
+    return 0.3 if dim == 2 else 0.3 * 0.1
+
+
+def column(dim, *others):
+    """With the entries that a path needs."""
+    body = ["Mesh/Lengths=0.3, 0.2", "Mesh/Cells=3, 2", "Loads/Traction bottom=0; 1"]
+    if dim == 3:
+        body = ["Dimension=3", "Mesh/Lengths=0.3, 0.2, 0.1", "Mesh/Cells=2, 2, 1",
+                "Loads/Traction bottom=0; 1; 0"]
+    return solve(f"Material/Young modulus={E}", "Material/Poisson ratio=0",
+                 "Boundary conditions/Contact boundary=bottom",
+                 "Boundary conditions/Clamped boundaries=top", f"Contact law/Bond stiffness={a}",
+                 f"Contact law/Bond threshold={M}", "Contact law/Tangential displacement=free",
+                 *body, *others)
+
+
+def moved(dim):
+    """By its top, as far as the factor is."""
+    return ["Boundary conditions/Clamped boundaries=", "Loads/Traction bottom=",
+            "Boundary conditions/Displacement top=0; 1" + "; 0" * (dim == 3)]
+
+
+def check_column(dim, *quadratic):
+    """Both branches; the least J changes at the mean of snap and closing."""
+    scenes.section(f"Column in {dim}D {quadratic}")
+    path = column(dim, FACTORS, "Load path/Global branch="
+                  + ("search" if quadratic else "prove"), *quadratic)["path"]
+    area, snap, closing = area_of(dim), M * (k + a), M * k
+    exchange = math.sqrt(snap * closing)
+
+    def energy(t, broken):
+        return area * (0.5 * a * M * M - 0.5 * t * t / k if broken else -0.5 * t * t / (k + a))
+
+    check("81 steps that verify", len(path) == 81
+          and all(row["status"] == "success" for row in path))
+    check("loading and unloading meet the same factors",
+          all(one["factor"] == other["factor"] for one, other in zip(path, path[::-1])))
+    broken, scale = False, abs(energy(2.8, True))
+    for row in path:
+        t, was_broken = row["factor"], broken
+        broken = t > closing if broken else t > snap
+        if broken != was_broken:
+            close("factor of the change", row["change_factor"], snap if broken else closing,
+                  1e-12, 1.)
+        else:
+            check("no change", row["change_factor"] == "")
+        close("broken part", row["broken_part"], broken, 1e-12, 1.)
+        close("J", row["J"], energy(t, broken), 1e-12, scale)
+        close("gap", row["mean_gap"], t / (k if broken else k + a), 1e-13, 1.)
+        check("law", row["law_violation"] <= 1e-11, row["law_violation"])
+        least = t > exchange
+        close("broken part of the least J", row["global_broken_part"], least, 1e-12, 1.)
+        close("the least J", row["global_J"], energy(t, least), 1e-12, scale)
+        known = "best known" if quadratic and t != 0. else "global"
+        check("words", row["global_minimum"] == known and row["minimum"] == (
+            known if broken == least else "local minimum"))
+
+
+def check_column_for_good(dim, quadrature, degree):
+    """Bonds that do not heal: once broken, it stays on the second branch, also where it
+    would close, and is pressed on the foundation without bonds."""
+    scenes.section(f"Bonds that do not heal in {dim}D, degree {degree}, {quadrature}")
+    path = column(dim, f"Mesh/Degree={degree}", "Contact law/Quadrature=" + quadrature,
+                  "Load path/Factors=-1, 0:0.07:2.8, 2.8:-0.07:0, -1, 1",
+                  "Load path/Bonds heal=false")["path"]
+    area, snap, broken = area_of(dim), M * (k + a), False
+    scale = area * a * M * M
+    check("all steps", len(path) == 84)
+    for row in path:
+        was_broken, broken = broken, broken or row["factor"] > snap
+        pull = max(0., row["factor"])
+        close("J", row["J"], area * (0.5 * a * M * M - 0.5 * pull**2 / k if broken else
+                                     -0.5 * pull**2 / (k + a)), 1e-12, scale)
+        close("dissipated energy", row["dissipated_energy"], 0.5 * scale * broken, 1e-12, scale)
+        # Closed cracks are not open.
+        close("broken zone", row["broken_zone"], area * (broken and pull > 0.), 1e-12, area)
+        if broken != was_broken:
+            close("snap", row["change_factor"], snap, 1e-12, 1.)
+        else:
+            check("one change, the snap", row["change_factor"] == "")
+
+
+def check_moved_column(dim, name, n_steps, *entries):
+    """Pulled by its top, it has a linear way from the displacement d = 0 to the snap at
+    M (1 + a/k), has no force then, and closes at M."""
+    scenes.section(f"Column moved in {dim}D, {name}")
+    path = column(dim, *moved(dim), *entries)["path"]
+    area, snap, broken = area_of(dim), M * (1. + a / k), False
+    check("all steps verify", len(path) == n_steps
+          and all(row["status"] == "success" for row in path))
+    for row in path:
+        d, was_broken = row["displacement_factor"], broken
+        broken = d > M if broken else d > snap
+        if broken != was_broken:
+            close("snap or closing", row["change_factor"], snap if broken else M, 1e-12, snap)
+        stiffness = k if d < 0. else 0. if broken else k * a / (k + a)
+        close("J", row["J"], area * (0.5 * stiffness * d * d + 0.5 * a * M * M * broken), 1e-12,
+              area * a * M * M)
+        close("dJ/d(factor)", row["unit_displacement_work"], area * stiffness * d, 1e-11,
+              area * a * M)
+
+
+def check_moved_columns(dim, quadrature):
+    """Clamped at its top, with quadratic displacements; and a tack test, in which it is
+    pressed on the foundation and lifted again, in 2D on a fine mesh: rounding adds up in the
+    sum of all forces."""
+    check_moved_column(dim, "quadratic", 43, "Mesh/Degree=2",
+                       "Contact law/Quadrature=" + quadrature,
+                       "Load path/Displacement factors=-0.01, 0:0.003:0.06, 0.06:-0.003:0")
+    free = "; free" * (dim == 3)
+    check_moved_column(dim, "tack test", 16,
+                       "Mesh/Cells=" + ("24, 16" if dim == 2 else "3, 3, 2"),
+                       "Boundary conditions/Roller boundaries=left" + ", back" * (dim == 3),
+                       "Boundary conditions/Displacement top=free; 1" + free,
+                       "Load path/Displacement factors="
+                       "0:0.011:0.099, -0.01, 0.03, 0.05, 0.2, 0, 0.1")
+
+
+def check_without_pressure(dim):
+    """Nothing but the foundation holds the block, and without a pressure on it there are many
+    minima with one J. Pressed by q times the factor t over a gap g: J = -A (t q g + (t q)^2
+    H/(2 E)), stretched by t e: E (t e)^2 / 2 for each volume, cooled so that it shrinks by
+    t e: -E (t e)^2 / (1 - nu), in 3D -3/2 E (t e)^2 / (1 - 2 nu)."""
+    nu, g, q, e, area = 0.3, 0.02, 0.4, 0.005, area_of(dim)
+    volume = area * H
+    block = [f"Material/Young modulus={E}", f"Material/Poisson ratio={nu}", NO_GLOBAL,
+             "Material/Thermal expansion=1e-3", "Boundary conditions/Clamped boundaries=",
+             "Boundary conditions/Contact boundary=bottom", "Contact law/Law=none",
+             "Contact law/Tangential displacement=free"]
+    block += ["Mesh/Lengths=0.3, 0.2", "Mesh/Cells=6, 4",
+              "Boundary conditions/Roller boundaries=left"] if dim == 2 else [
+        "Dimension=3", "Mesh/Lengths=0.3, 0.2, 0.1", "Mesh/Cells=3, 3, 2",
+        "Boundary conditions/Roller boundaries=left, back"]
+    for name, entries, energy in (
+            ("over a gap", [f"Contact law/Initial gap={g}", "Load path/Factors=0, 0.5, 0, 2, 0",
+                            f"Loads/Traction top=0; {-q}" + "; 0" * (dim == 3)],
+             lambda t: -area * (t * q * g + (t * q)**2 * H / (2. * E))),
+            ("stretched", ["Load path/Displacement factors=0, 1, -1, 2, 0",
+                           f"Boundary conditions/Displacement right={0.3 * e}; free"
+                           + "; free" * (dim == 3)],
+             lambda t: 0.5 * E * (t * e)**2 * volume),
+            ("cooled", ["Loads/Temperature change=-5", "Load path/Factors=0, 1, -1, 2, 0"],
+             lambda t: -E * (t * e)**2 * volume * (
+                 1. / (1. - nu) if dim == 2 else 1.5 / (1. - 2. * nu)))):
+        scenes.section(f"Without pressure on the foundation in {dim}D, {name}")
+        path = solve(*block, *entries)["path"]
+        check("all steps", len(path) == 5 and all(r["status"] == "success" for r in path))
+        for row in path:
+            close("J", row["J"], energy(row["displacement_factor"]), 1e-11, abs(energy(2.)))
+
+
+def check_column_arc(dim, is_moved):
+    """From 0 along the bonded states to the snap, then with the gap M and a falling pull of
+    the bonds back to where they close, then along the broken states."""
+    scenes.section(f"Arc of the column in {dim}D, {'moved' if is_moved else 'loaded'}")
+    area = area_of(dim)
+    snap, closing = (M * (1. + a / k), M) if is_moved else (M * (k + a), M * k)
+    end = round(1.4 * snap, 6)
+    factors = f"0:{end / 20.}:{end}"
+    result = column(dim, NO_GLOBAL, "Load path/Arc=true",
+                    *(moved(dim) + ["Load path/Displacement factors=" + factors] if is_moved
+                      else ["Load path/Factors=" + factors]))
+    # From rest the body leaves the foundation at once.
+    arc = result["arc"]
+    arc = arc[sum(row["largest_gap"] == 0. for row in arc) - 1:]
+    check("rest, snap, closing and end", len(arc) == 4, len(arc))
+    for row, t, w, word in zip(arc, (0., snap, closing, end),
+                               (0., M, M, end if is_moved else end / k),
+                               ("stable", "stable", "unstable", "stable")):
+        bonds = 0.5 * a * min(w, M)**2
+        energy, work = (0.5 * k * (t - w)**2 + bonds, k * (t - w)) if is_moved else (
+            0.5 * k * w * w + bonds - t * w, w)
+        close("factor", row["displacement_factor" if is_moved else "factor"], t, 1e-12, snap)
+        for gap in ("mean_gap", "largest_gap"):
+            close("gap", row[gap], w, 1e-12, M)
+        close("J", row["J"], area * energy, 1e-12, area * a * M * M)
+        close("work on the unit load or displacement",
+              row["unit_displacement_work" if is_moved else "unit_load_work"], area * work,
+              1e-12, area * (a * M if is_moved else M))
+        # Of a column that moves without bonds all forces are rounding.
+        check("law", abs(work) <= 1e-12 or row["law_violation"] <= 1e-9)
+        check("the way back is unstable", row["status"] == word)
+    for row in result["path"]:
+        if row["change_factor"] != "":
+            close("the followed path snaps there", row["change_factor"], snap, 1e-12)
+
+
+def check_structure(path, least, n_steps):
+    """What holds for any path; of differences, at so many of the first steps."""
+    n_compared = 0
+    for number, row in enumerate(path):
+        J, t = row["J"], row["factor"]
+        scale = row["elastic_energy"] + row["adhesion_energy"] + abs(t * row["unit_load_work"])
+        check("law and equilibrium", max(row["law_violation"], row["equilibrium_residual"],
+                                         row["force_imbalance"]) <= 1e-9)
+        if row["global_J"] != "":
+            check("global branch above the followed one", row["global_J"] <= J + 1e-12 * scale)
+        if 0 < number < min(len(path) - 1, n_steps):
+            left, right = path[number - 1], path[number + 1]
+            if (left["broken_part"] == row["broken_part"] == right["broken_part"]
+                    and left["factor"] != right["factor"]):
+                n_compared += 1
+                h = right["factor"] - left["factor"]
+                close("dJ/d(factor) = -<f, u>", right["J"] - left["J"],
+                      -h * row["unit_load_work"], 1e-10, scale)
+                close("second differences of J", right["J"] - 2. * J + left["J"],
+                      -0.25 * h * (right["unit_load_work"] - left["unit_load_work"]), 1e-10,
+                      scale)
+    check("differences at many steps", n_compared >= least, n_compared)
+
+
+def first_change(path):
+    """The factor where bonds break first."""
+    return next(row["change_factor"] for row in path if row["change_factor"] != "")
+
+
+def at_rest(row):
+    return row["J"] == 0. and row["largest_gap"] == 0.
+
+
+def check_benchmark():
+    """Beside an independent code, and with half the steps."""
+    scenes.section("Benchmark with a = 690")
+    result = solve(*BENCHMARK, "Load path/Factors=0:0.1:2.5, 2.5:-0.1:0")
+    path, totals = result["path"], result["load_path"]
+    check_structure(path, 30, 1000)
+    full = path[10]
+    close("J of the intact state at factor 1", full["J"], -7.354549556e-05, 1e-9)
+    close("J of the global branch at factor 1", full["global_J"], -2.3973127534e-04, 1e-10)
+    check("which is told", full["minimum"] == "local minimum"
+          and full["global_minimum"] == "global")
+    # The gap of the intact state is proportional to the factor.
+    snap = 0.002 / full["largest_gap"]
+    close("the snap where the largest gap is M", totals["largest_break"]["change_factor"],
+          snap, 1e-11)
+    check("in the step that passes this factor",
+          snap < totals["largest_break"]["factor"] < snap + 0.1)
+    check("bonds close below factor 1", totals["largest_closing"]["factor"] < 1.)
+    check("nothing is left at rest", at_rest(path[-1]) and path[-1]["minimum"] == "global")
+    # The least of parabolas in the factor is concave in its square.
+    for left, row, right in zip(path[:24], path[1:25], path[2:26]):
+        x = [one["factor"]**2 for one in (left, row, right)]
+        line = (left["global_J"] * (x[2] - x[1]) + right["global_J"] * (x[1] - x[0])) / (
+            x[2] - x[0])
+        check("global branch concave in the squared factor",
+              line - row["global_J"] <= 1e-12 * abs(right["global_J"]))
+    halved = solve(*BENCHMARK, "Load path/Factors=0:0.05:2.5, 2.5:-0.05:0", NO_GLOBAL)
+    close("snap with half the steps",
+          halved["load_path"]["largest_break"]["change_factor"], snap, 1e-11)
+    for step in range(21):
+        close("J with half the steps", halved["path"][2 * step]["J"], path[step]["J"], 1e-12,
+              abs(path[20]["J"]))
+    check("no global branch if none is wanted", halved["path"][10]["global_J"] == "")
+
+    scenes.section("One factor")
+    single = solve(*BENCHMARK, "Solver/Search=none")
+    one = solve(*BENCHMARK, "Load path/Factors=1")
+    check("as many iterations as a single run", single["iterations"] == one["iterations"])
+    for mine, other in zip(one["profile"], single["profile"]):
+        close("u_nu", mine["u_nu"], other["u_nu"], 1e-13, single["largest_displacement"])
+    for factor, result in ((1., one), (0.5, solve(*BENCHMARK, "Load path/Factors=0.5"))):
+        close("J, a quarter under half the load", result["functional"],
+              factor**2 * single["functional"], 1e-12)
+
+
+def check_other_laws():
+    """Other quadratures, no bonds, and what ends a path."""
+    for name, *entries in (("gauss 2",), ("gauss 4", "Mesh/Degree=2")):
+        scenes.section(name)
+        result = solve(*BENCHMARK, "Load path/Factors=0:0.1:2.5, 2.5:-0.1:0", NO_GLOBAL,
+                       "Contact law/Quadrature=" + name, *entries)
+        path = result["path"]
+        check_structure(path, 19, 20)  # later points break between nodes
+        check("bonds break", max(row["broken_part"] for row in path) > 0.5)
+        change = result["load_path"]["largest_break"]
+        check("the factor of the snap is in its step",
+              change["factor"] - 0.1 <= change["change_factor"] <= change["factor"])
+        # Where the largest gap is M; that at a Gauss point is less.
+        check("after that of nodes",
+              change["change_factor"] >= 0.002 / path[10]["largest_gap"] * 0.99)
+        check("nothing is left at rest", at_rest(path[-1]))
+
+    scenes.section("No adhesion, both signs of the load")
+    path = solve(*BENCHMARK, "Load path/Factors=-1, -0.5, 0.25, 0.5, 1", "Mesh/Cells=20, 2",
+                 "Contact law/Law=none")["path"]
+    close("J, quadratic for a pressure", path[0]["J"], 4. * path[1]["J"], 1e-12)
+    close("and for a pull", path[4]["J"], 4. * path[3]["J"], 1e-12)
+    check("global", path[0]["minimum"] == path[3]["minimum"] == "global")
+    check("no bond that changes", all(row["change_factor"] == "" for row in path))
+
+    scenes.section("What ends a path")
+    for entry, n_steps, message in (
+            ("Solver/Majorise minimise/Maximum iterations=2", 6,
+             "load path, step 6, factor 2.5: majorise-minimise: relative residual"),
+            ("Verification/Tolerance=1e-300", 2,
+             "load path, step 2, factor 0.5: verification")):
+        result = solve(*BENCHMARK, "Load path/Factors=0:0.5:4", entry)
+        check(entry, len(result["path"]) == n_steps and message in result["errors"],
+              result["errors"])
+    off = solve("Contact law/Bond stiffness=69", "Boundary conditions/Clamped boundaries=",
+                "Loads/Traction top=0; if(x < 0.2, 0.069, 0.0345)", "Mesh/Cells=20,2",
+                "Load path/Factors=0.5, 1, 10", "Accuracy/Target=1e-4")
+    check("a body that comes off, on a refined mesh", off["status"] == "comes off"
+          and len(off["path"]) == 2 and len(off["levels"]) > 2
+          and off["levels"][-1]["estimated_error"] < 1e-4)
+
+
+def check_arcs():
+    """Along a curve of stationary states the derivative of J by the factor is the work on the
+    unit load or displacement, which is linear between breakpoints."""
+    # Without bonds at the corner that is moved: they break between breakpoints.
+    moving = ["Loads/Traction top=", "Parts/Glued=bottom: x < 0.39",
+              "Boundary conditions/Contact boundary=Glued",
+              "Boundary conditions/Displacement right=free; 0.02",
+              "Boundary conditions/Clamped boundaries=left",
+              "Load path/Displacement factors=0:0.25:1"]
+    for name, scene in (("loaded", ["Load path/Factors=0:0.5:2.5"]), ("moved", moving),
+                        ("moved, bonds do not heal", moving + ["Load path/Bonds heal=false"])):
+        scenes.section("Arc of the benchmark, " + name)
+        result = solve(*BENCHMARK, NO_GLOBAL, "Load path/Arc=true", *scene)
+        arc, path = result["arc"], result["path"]
+        factor = "factor" if name == "loaded" else "displacement_factor"
+        check("ends where the path ends", arc[-1][factor] == path[-1][factor])
+        words = [row["status"] for row in arc]
+        check("has unstable states", words.count("unstable") > 2)
+        check("and no others", set(words) == {"stable", "unstable"})
+        check("law", all(row["law_violation"] <= 1e-9 for row in arc))
+        changes = [(after["displacement_factor"] - before["displacement_factor"])
+                   * (before["unit_displacement_work"] + after["unit_displacement_work"]) / 2.
+                   - (after["factor"] - before["factor"])
+                   * (before["unit_load_work"] + after["unit_load_work"]) / 2.
+                   for before, after in zip(arc, arc[1:])]
+        for change, before, after in zip(changes, arc, arc[1:]):
+            close("J is the integral of the work", after["J"] - before["J"], change, 1e-10,
+                  max(map(abs, changes)))
+        check("the first break of the path is on it",
+              min(abs(first_change(path) - row[factor]) for row in arc) <= 1e-10)
+    scenes.section("Arc back to rest")
+    back = solve(*BENCHMARK, NO_GLOBAL, "Load path/Arc=true", "Load path/Factors=2:-0.5:0")
+    check("where all is zero", at_rest(back["arc"][-1]) and back["arc"][-1]["factor"] == 0.)
+    check("each state is verified",
+          {row["status"] for row in back["arc"]} <= {"stable", "unstable"})
+    check("without a note", not back["notes"])
+
+
+def check_refined():
+    """One mesh for all factors, beside a uniform one that is much finer (of the least J that
+    of linear displacements is off by 7e-4)."""
+    quadratic = ["Mesh/Degree=2", "Contact law/Quadrature=gauss "]
+    for name, target, cells, most, entries in (
+            ("linear", 5e-3, "160,16", 6000, []),
+            ("quadratic", 1e-3, "80,8", 2000, [quadratic[0], quadratic[1] + "8"]),
+            ("bonds that do not heal", 1e-2, "80,8", 4000,
+             [quadratic[0], quadratic[1] + "4", "Contact law/Bond stiffness=690",
+              "Load path/Factors=0.5:0.5:2.5, 1, 0.5", "Load path/Bonds heal=false"])):
+        scenes.section("A path on a refined mesh, " + name)
+        scene = [*BENCHMARK, "Contact law/Bond stiffness=69", "Mesh/Cells=20,2",
+                 "Load path/Factors=0.5:0.5:2", NO_GLOBAL, *entries]
+        refined = solve(*scene, f"Accuracy/Target={target}")
+        uniform = solve(*scene, "Mesh/Cells=" + cells)
+        levels = refined["levels"]
+        check("no shortfall", refined["status"] == "success", refined["status"])
+        check("the estimate is below the target on the last mesh alone",
+              levels[-1]["estimated_error"] <= target < levels[-2]["estimated_error"])
+        check("all factors", len(refined["path"]) == len(uniform["path"]) > 3)
+        # The estimate is of J with the bonds as they are: that other bonds broke for good on
+        # the way is no part of it.
+        for one, other in zip(refined["path"], uniform["path"]):
+            close("J", *(row["J"] - row["dissipated_energy"] for row in (one, other)),
+                  1.25 * target)
+        check("fewer unknowns than the uniform mesh", levels[-1]["unknowns"] < most)
+
+
+def check_estimate_for_good():
+    """All bonds break, and the body is unloaded until their gaps are less than M: what is
+    left is that without bonds, and so is its estimate."""
+    for degree, rule, tolerance in ((1, "nodal", 3e-3), (2, "gauss 3", 1e-9)):
+        scenes.section(f"The estimate after unloading, degree {degree}")
+        scene = [*BENCHMARK, "Loads/Traction top=0; 0.69", NO_GLOBAL, f"Mesh/Degree={degree}",
+                 "Contact law/Bond threshold=1e-6", "Contact law/Quadrature=" + rule,
+                 "Load path/Factors=1, 1e-5"]
+
+        def estimate(*entries):
+            result = solve(*scene, *entries)
+            return result["estimated_error"] * abs(result["functional"])
+
+        none = estimate("Contact law/Law=none")
+        # Of nodes those of the clamped corners hold.
+        close("is that without bonds", estimate("Load path/Bonds heal=false"), none, tolerance)
+        check("not that with bonds", abs(estimate() / none - 1.) > 0.1)
+
+
+def check_search_beside_path():
+    """Where one step from rest leads is a state that the search knows, whatever the method
+    starts from and wherever the points of the quadrature are."""
+    scenes.section("The search beside a path from rest")
+    for cells, M in ((5, 0.0037), (6, 0.0036)):
+        plate = ["Dimension=3", "Mesh/Lengths=30, 1.1, 30", f"Mesh/Cells={cells}, 1, {cells}",
+                 "Mesh/Degree=2", "Parts/shaft=top: x < 4.5 && z < 4.5",
+                 "Material/Young modulus=70000", "Boundary conditions/Clamped boundaries=",
+                 "Boundary conditions/Symmetry boundaries=left, back",
+                 "Boundary conditions/Displacement shaft=free; 0.0095; free",
+                 "Contact law/Tangential displacement=free", "Contact law/Quadrature=gauss 2",
+                 "Contact law/Bond stiffness=5000", f"Contact law/Bond threshold={M}"]
+        found = solve(*plate)
+        path = solve(*plate, "Load path/Factors=0, 1", NO_GLOBAL)
+        check("word", found["minimum"]["state"] == "best known")
+        check("J", 0. < found["functional"] <= path["functional"] * (1. + 1e-9))
+
+
+for dim, rules in ((2, ("gauss 3", "gauss 3")), (3, ("gauss 3", "gauss 2"))):
+    check_column(dim)
+    check_column(dim, "Mesh/Degree=2", "Contact law/Quadrature=" + rules[0])
+    check_moved_columns(dim, rules[1])
+    check_without_pressure(dim)
+    check_column_arc(dim, False)
+    check_column_arc(dim, True)
+for case in ((2, "nodal", 1), (2, "gauss 2", 1), (2, "gauss 3", 2), (3, "gauss 2", 2)):
+    check_column_for_good(*case)
+check_benchmark()
+check_other_laws()
+check_arcs()
+check_refined()
+check_estimate_for_good()
+check_search_beside_path()
+scenes.end()

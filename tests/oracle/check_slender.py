@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""check_slender.py DEBOND [LENGTH...]: slender bodies, and J of the benchmark, beside the
+minimum of the same discrete problem with the same bonds in 50 digits (oracle.py). Lengths
+over height: strips of these alone, with the figures of all."""
+import itertools
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+from types import SimpleNamespace
+
+from check_shapes import Result, WrongResult
+from oracle import EXACT, Body
+from random_scenes import Field, Mesh, Scene, crossed, volume
+
+
+class Box(Mesh):
+    """Cut as the program does it."""
+
+    def __init__(self, lengths, cells):
+        self.dim, self.length, self.cells = len(cells), max(lengths), cells
+        parts = [part for low in itertools.product(*map(range, cells))
+                 for part in crossed(tuple(2 * i for i in low), tuple(2 * i + 2 for i in low))]
+        keys = sorted({key for part in parts for key in part})
+        number = {key: n for n, key in enumerate(keys)}
+        self.points = [self.point(lambda *at: tuple(
+            length * i / n for length, i, n in zip(lengths, at, cells)), key) for key in keys]
+        self.along = [key[0] for key in keys]
+        self.simplices = [[number[key] for key in part] for part in parts]
+        for part in self.simplices:
+            if volume([self.points[v] for v in part]) < 0.:
+                part[-2:] = part[:-3:-1]
+        self.sides = self.boundary(number, [(part[:k] + part[k + 1:], part[k])
+                                            for part in parts for k in range(len(part))])
+
+
+class Strip(Scene):
+    """A scene of which all is given."""
+
+    def __init__(self, lengths, cells, E, a, M, clamped, loads, law="winkler",
+                 tangential="free", nu=0.33, hypothesis="plane stress"):
+        self.mesh, self.dim = Box(lengths, cells), len(cells)
+        self.E, self.nu, self.a, self.M = E, nu, a, M
+        self.is_plane_stress = self.dim == 2 and hypothesis == "plane stress"
+        self.clamped, self.rollers, self.moved, self.loads = clamped, [], [], loads
+        self.contact, self.quadrature, self.steps = ["bottom"], "nodal", [(1., 1.)]
+        if law == "none":
+            self.steps = []
+        self.expansion = 0.
+        self.bonds = {"bottom": SimpleNamespace(
+            stiffness=Field(a), threshold=Field(M), gap=Field(0.),
+            is_tangential_fixed=tangential == "fixed")}
+        self.contact_faces = [("bottom", *face) for face in self.mesh.sides["bottom"]]
+        self.settings = {}
+        for path, value in {
+                "Dimension": self.dim, "Mesh/Lengths": ", ".join(map(repr, lengths)),
+                "Mesh/Cells": ", ".join(map(str, cells)), "Material/Young modulus": E,
+                "Material/Poisson ratio": nu, "Material/Hypothesis": hypothesis,
+                "Boundary conditions/Clamped boundaries": ", ".join(clamped),
+                "Contact law/Law": law, "Contact law/Tangential displacement": tangential,
+                "Contact law/Bond stiffness": a, "Contact law/Bond threshold": M,
+                "Output/Displacement": "true", "Output/Matrices": "true",
+                "Output/Directory": "output", **{path: "; ".join(map(str, load))
+                                                 for path, load in loads.items()}}.items():
+            self.set(path, str(value))
+
+
+def strip(aspect, cells, clamped="left", law="winkler", tangential="free", unit=1., stress=1.):
+    """Of height 1 mm, lifted off at its end, or at the top if both ends are clamped; without
+    bonds, which break at 0.01 mm, the end would be lifted by 0.04 mm."""
+    dim, q = len(cells), 8e3 / aspect**3 * stress
+    side, q = ("right", q) if clamped == "left" else ("top", 16. * q / aspect)
+    zero = [Field(0.)]
+    return Strip((aspect * unit, unit, unit)[:dim], cells, 2e5 * stress,
+                 8e5 / aspect**4 * stress / unit, 0.01 * unit, clamped.split(", "),
+                 {"Loads/Traction " + side: (zero + [Field(q)] + zero)[:dim]}, law, tangential)
+
+
+def bar(cells, lengths=(0.4, 0.04), a=69., load=0.69, **others):
+    """The benchmark under a load that is linear along the top."""
+    return Strip(lengths, cells, 69., a, 0.002, ["left", "right"], {"Loads/Traction top": [
+        Field(0.), Field(load, [-3.75 * load])]}, **others)
+
+
+def compare(debond, name, scene, *method):
+    """Returns the largest errors of J and displacement; raises what is wrong."""
+    pathlib.Path("scene.prm").touch()
+    result = subprocess.run(
+        [debond, "scene.prm"] + [f"--set={path}={value}" for path, value
+                                 in scene.settings.items()]
+        + ["--set=Solver/" + entry for entry in method],
+        capture_output=True, text=True, check=False)
+    if result.returncode != 0:
+        raise WrongResult("no success", result.stderr)
+    body = Body(scene)
+    found = Result(body, json.loads(pathlib.Path("output/summary.json").read_text()))
+    found.is_rough = False
+    found.check_forces()
+    own = body.minimise(body.branches_at(found.s))
+    J, printed = body.condensed_functional(own), EXACT(found.summary["functional"])
+    errors = (abs(printed / J - 1), abs(body.functional(found.u)[0] / J - 1),
+              max(abs(x - y) for x, y in zip(found.s, own)) / max(map(abs, own)))
+    print(f"{name}: J {errors[0]:.1e}, J of u {errors[1]:.1e}, displacement {errors[2]:.1e}",
+          flush=True)
+    if max(errors[:2]) > 1e-12 or errors[2] > 1e-9:
+        raise WrongResult("errors", errors)
+
+
+def cases(aspects):
+    """Names, scenes and methods."""
+    multigrid = ("Method=majorise minimise", "Linear solver=multigrid",
+                 "Majorise minimise/Stop tolerance=1e-12")
+    methods = {"automatic": ("Method=automatic",), "energy": ("Method=energy bundle",),
+               "multigrid": multigrid}
+    for aspect in aspects:
+        for cells, clamped, tangential, law, method in itertools.product(
+                ((100, 1), (100, 4), (20, 1, 1)), ("left", "left, right"), ("free", "fixed"),
+                ("none", "winkler"), methods):
+            yield (f"{aspect}, {cells}, {clamped}, {tangential}, {law}, {method}",
+                   strip(aspect, cells, clamped, law, tangential), *methods[method])
+    if aspects:
+        return
+    for name, scene in (
+            ("20x2", bar((20, 2))), ("40x4", bar((40, 4))),
+            ("nu = 0.4999", bar((20, 2), nu=0.4999, hypothesis="plane strain")),
+            ("slender", bar((80, 2), (0.4, 0.01))), ("very slender", bar((200, 1), (0.4, 0.002))),
+            ("load 10", bar((20, 2), load=6.9)), ("a = 690", bar((20, 2), a=690.))):
+        yield (name, scene, "Method=majorise minimise")
+    for arguments, method in (
+            ((100., (100, 1), "left", "none"), "automatic"),
+            ((1e3, (150, 1)), "automatic"),
+            ((1e3, (100, 1), "left", "winkler", "free", 1e-3, 1e6), "automatic"),
+            ((1e4, (150, 1), "left", "winkler", "fixed"), "automatic"),
+            ((1e4, (150, 1)), "energy"),
+            ((1e4, (60, 3), "left, right"), "automatic"),
+            ((1e3, (100, 2)), "multigrid"),
+            # Where linear solvers in double precision do not get through.
+            ((1e4, (100, 4), "left", "none"), "multigrid"),
+            ((1e4, (60, 4), "left", "winkler", "free", 1e-3, 1e6), "multigrid"),
+            ((1e4, (40, 1, 1)), "automatic"),
+            ((1e4, (10, 2, 2), "left", "none", "fixed"), "automatic")):
+        yield (f"{arguments}, {method}", strip(*arguments), *methods[method])
+
+
+def main(debond, *aspects):
+    failures = 0
+    for name, scene, *method in cases(list(map(float, aspects))):
+        try:
+            compare(debond, name, scene, *method)
+        except WrongResult as wrong:
+            failures += 1
+            print(f"FAILED {name}:", *wrong.args, flush=True)
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as directory:
+        program = str(pathlib.Path(sys.argv[1]).resolve())
+        os.chdir(directory)
+        sys.exit(main(program, *sys.argv[2:]))

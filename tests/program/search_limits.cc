@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A search that has no time, and search and proof of a law of another shape.
+
+#include <debond/elasticity/contact_condensation.h>
+#include <debond/input/bad_input.h>
+#include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/solve/which_minimum.h>
+
+#include <iostream>
+#include <limits>
+
+#include "../check.h"
+#include "../solved.h"
+
+using namespace Debond;
+
+namespace
+{
+  /// Search and proof refuse a law without a curvature at 0; by default there
+  /// is a note and no word.
+  void
+  test_other_law()
+  {
+    const std::vector<std::string> entries = {
+      "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)"};
+    const AdhesiveLaw law({{0., -0.1, 0.L, "sliding"}, {0., 0., 1e-4L, "off"}});
+    unsigned int      refused = 0, noted = 0;
+    for (const std::string entry :
+         {"Solver/Search=full", "Solver/Prove=true", "Solver/Search=automatic"})
+      {
+        std::vector<std::string> more = entries;
+        more.push_back(entry);
+        const Parameters   parameters = parameters_of(more);
+        const Scene<2>     scene(parameters);
+        const Condensation condensed =
+          condense_to_contact(scene.problem(), scene.adhesion());
+        Eigen::VectorXd s = Eigen::VectorXd::Zero(condensed.load().size());
+        try
+          {
+            const WhichMinimum result = find_better_minimum(
+              parameters.solver,
+              scene.problem().unknowns().contact().boundary(),
+              law,
+              scene.adhesion(),
+              condensed,
+              []() { return true; },
+              s);
+            noted += result.notes.size() == 1 &&
+                     result.kind != MinimumKind::best_known &&
+                     result.kind != MinimumKind::global;
+          }
+        catch (const BadInput &)
+          {
+            ++refused;
+          }
+      }
+    std::cout << "a law of another shape is refused: "
+              << (refused == 2 ? "yes" : "NO")
+              << ", and by default noted: " << (noted == 1 ? "yes" : "NO")
+              << '\n';
+  }
+
+
+
+  /// Without time a search says that it has ended, and claims nothing.
+  void
+  test_limit_of_time()
+  {
+    const Parameters parameters =
+      parameters_of({"Contact law/Bond stiffness=690",
+                     "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)"});
+    const Scene<2>     scene(parameters);
+    const Condensation condensed =
+      condense_to_contact(scene.problem(), scene.adhesion());
+    for (const double seconds : {0., std::numeric_limits<double>::infinity()})
+      {
+        SolverParameters solver = parameters.solver;
+        solver.search_seconds   = seconds;
+        // The intact state, which is a minimum far above the least one.
+        Eigen::VectorXd  s = Eigen::VectorXd::Zero(condensed.load().size());
+        CondensedProblem problem(condensed.schur_complement(),
+                                 condensed.load(),
+                                 scene.adhesion(),
+                                 s);
+        MajoriseMinimise(solver.majorise_minimise).minimize(problem);
+        const Eigen::VectorXd start  = s;
+        const WhichMinimum    result = find_better_minimum(
+          solver,
+          scene.problem().unknowns().contact().boundary(),
+          scene.law(),
+          scene.adhesion(),
+          condensed,
+          []() { return true; },
+          s);
+        std::cout << (seconds > 0. ? "with" : "without")
+                  << " time: " << to_string(result.kind) << ", "
+                  << result.notes.size() << " notes"
+                  << (s == start ? ", nothing lower" : "") << '\n';
+      }
+  }
+} // namespace
+
+
+
+int
+main()
+{
+  test_other_law();
+  test_limit_of_time();
+}

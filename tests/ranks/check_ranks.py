@@ -1,0 +1,234 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""check_ranks.py DEBOND PRM_DIRECTORY [RANKS...]: scenes with each feature answer the same on
+several ranks as on one: exit code, word, bond states, J to 1e-10, the error of the mesh,
+probes, reactions, notes, the displacement at each vertex in the order of one rank, and the
+cells of the body once. Without RANKS each scene is run on one of 2, 3 and 4 ranks, else on all
+that are given. Ranks end together: one message and one exit code for bad input, for
+what one rank alone cannot do and for a signal to one of them; certificates are refused."""
+import json, os, re, signal, subprocess, sys, tempfile, time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, ".."))
+import msh
+from vtu import Piece
+
+DEBOND, PRM = sys.argv[1:3]
+RANKS = [int(n) for n in sys.argv[3:]]
+ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1",
+                   OMPI_MCA_mpi_yield_when_idle="1")
+MM = ["Solver/Method=majorise minimise"]
+BAR = ["Dimension=3", "Mesh/Lengths=0.4, 0.04, 0.04", "Mesh/Cells=16, 4, 4",
+       "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345); 0"]
+TRI = ["Mesh/Source=file", "Mesh/File=tri.msh"]
+MG = MM + ["Solver/Linear solver=multigrid"]
+
+# Of each a name, a scene and what differs in it.
+SCENES = [
+    ("plane", "benchmark-40x4", MM),
+    ("proof", "benchmark-40x4", MM + ["Solver/Prove=true", "Solver/Search=full"]),
+    ("energy bundle", "benchmark-40x4", ["Solver/Method=energy bundle"]),
+    ("bar", "benchmark-40x4", MM + BAR),
+    ("turned bar by levels", "benchmark-40x4",
+     MG + BAR + ["Mesh/Cells=20, 4, 4", "Mesh/Rotation=30",
+                     "Loads/Traction top=-0.1; 0.2; 0"]),
+    ("plane by levels", "benchmark-160x16", MG + ["Mesh/Cells=120, 24"]),
+    ("triangles of a file by aggregates", "benchmark-40x4", MG + TRI),
+    ("degree 2", "benchmark-40x4",
+     MM + ["Mesh/Degree=2", "Contact law/Quadrature=gauss 4"]),
+    ("refined", "benchmark-40x4",
+     MM + ["Mesh/Cells=10, 2", "Accuracy/Maximum unknowns=2000"]),
+    ("refined, degree 2", "benchmark-40x4",
+     MM + ["Mesh/Cells=10, 2", "Mesh/Degree=2", "Contact law/Quadrature=gauss 4",
+           "Accuracy/Maximum unknowns=1500"]),
+    ("path", "load-path-690", []),
+    ("path by levels", "benchmark-40x4",
+     MG + ["Load path/Factors=0.5, 1, 0.5, 0", "Load path/Bonds heal=false"]),
+    ("proof by levels", "benchmark-40x4", MG + ["Solver/Prove=true"]),
+    ("degree 2, gap, refined by aggregates", "benchmark-40x4",
+     MG + ["Mesh/Cells=20, 4", "Mesh/Degree=2", "Contact law/Quadrature=gauss 4",
+           "Accuracy/Maximum unknowns=6000", "Contact law/Initial gap=1e-4*x"]),
+    ("ring", "cookbook/ring", []),
+    ("ring, halved, by levels", "cookbook/ring",
+     MG + ["Mesh/Refinements=2", "Solver/Search=none"]),
+    ("parts and displacements", "cookbook/double-cantilever", []),
+    ("two materials", "cookbook/bimaterial-strip", []),
+    ("held by bonds", "cookbook/tape", []),
+    ("comes off", "cookbook/tack", []),
+    ("slender", "hard/very-slender", []),
+    ("two sides", "hard/two-sides", []),
+    ("bonds by place", "hard/patches", []),
+    ("stepped", "stepped", []),
+    ("gap and probe", "benchmark-40x4",
+     MM + ["Contact law/Initial gap=1e-4*(1 + x)", "Probes/end=0.37, 0.02"]),
+    ("temperature", "benchmark-40x4",
+     MM + ["Material/Thermal expansion=1e-5", "Loads/Temperature change=100*x"]),
+]
+
+
+def launch(n, scene, settings, directory):
+    command = [DEBOND, scene, "--set", "Output/Directory=" + directory]
+    for setting in settings:
+        command += ["--set", setting]
+    if n > 1:
+        command = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(n)] + command
+    return subprocess.Popen(command, env=ENVIRONMENT, text=True, stdin=subprocess.DEVNULL,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+def run(*arguments):
+    process = launch(*arguments)
+    out, errors = process.communicate()
+    return process.returncode, out, errors
+
+
+def fail(*words):
+    print("FAILED:", *words)
+    sys.exit(1)
+
+
+def close(a, b, relative, size=0.):
+    return abs(a - b) <= max(relative * max(abs(a), abs(b)), size)
+
+
+def numbers(value):
+    if isinstance(value, dict):
+        return [x for key in sorted(value) for x in numbers(value[key])]
+    if isinstance(value, list):
+        return [x for entry in value for x in numbers(entry)]
+    return [value] if isinstance(value, (int, float)) else []
+
+
+def differences(one, several):
+    """Between two folders of results."""
+    a, b = (json.load(open(folder + "/summary.json")) for folder in (one, several))
+    for key in ("status", "minimum", "bond_states", "cells", "contact_nodes", "notes"):
+        if key == "minimum":
+            a[key], b[key] = a[key].get("state"), b[key].get("state")
+        if a[key] != b[key]:
+            yield key, a[key], b[key]
+    force = max(map(abs, numbers(a["reactions"]) + numbers(a["applied_force"])), default=0.)
+    for key, relative, size in (("functional", 1e-10, 0.), ("estimated_error", 1e-5, 0.),
+                                ("largest_von_mises", 1e-6, 0.),
+                                ("probes", 1e-6, 1e-6 * (a["largest_displacement"] or 0.)),
+                                ("reactions", 1e-6, 1e-6 * force)):
+        for x, y in zip(numbers(a.get(key)), numbers(b.get(key))):
+            if not close(x, y, relative, size):
+                yield key, x, y
+    if a["status"] != "success":
+        return
+    u, v = ([float(x) for x in open(folder + "/displacement.txt")] for folder in (one, several))
+    size = 1e-6 * max(map(abs, u))
+    if len(u) != len(v) or any(abs(x - y) > size for x, y in zip(u, v)):
+        yield "displacement.txt", max(abs(x - y) for x, y in zip(u, v)), size
+
+
+def cells(paths):
+    """Corners of the cells of several files, rounded, in some order."""
+    result = []
+    for path in paths:
+        body = Piece(path)
+        n = body.cells["offsets"][0]
+        nodes = body.cells["connectivity"]
+        result += [tuple(sorted(tuple(round(x, 7) for x in body.points[3 * i:3 * i + 3])
+                                for i in nodes[n * k:n * (k + 1)]))
+                   for k in range(body.n_cells)]
+    return sorted(result)
+
+
+def check_scenes(directory):
+    for number, (name, scene, settings) in enumerate(SCENES):
+        file = os.path.join(PRM, scene + ".prm")
+        settings = [s.replace("tri.msh", directory + "/tri.msh") for s in settings] + [
+            "Output/Displacement=true", "Output/Machine details=false"]
+        one = os.path.join(directory, "one")
+        subprocess.run(["rm", "-rf", one])
+        code, out, errors = run(1, file, settings, one)
+        if code != 0:
+            fail(name, "on one rank:", code, errors)
+        for n in RANKS or [2 + number % 3]:
+            several = os.path.join(directory, "several")
+            subprocess.run(["rm", "-rf", several])
+            code, out, errors = run(n, file, settings, several)
+            if code != 0 or errors:
+                fail(name, "on", n, "ranks:", code, errors)
+            if len(re.findall("^Result", out, re.MULTILINE)) != 1:
+                fail(name, "on", n, "ranks prints", out)
+            for difference in differences(one, several):
+                fail(name, "on", n, "ranks:", *difference)
+            if os.path.exists(several + "/body.pvtu"):
+                pieces = [f"{several}/body.rank{k}.vtu" for k in range(n)]
+                joined = open(several + "/body.pvtu").read()
+                if not all(os.path.basename(piece) in joined for piece in pieces):
+                    fail(name, "body.pvtu joins", joined)
+                if cells(pieces) != cells([one + "/body.vtu"]):
+                    fail(name, "on", n, "ranks: other cells")
+        print(name, flush=True)
+
+
+def check_start(directory):
+    """A displacement of one number of ranks is the start of another one."""
+    scene = os.path.join(PRM, "benchmark-40x4.prm")
+    folder = os.path.join(directory, "start")
+    if run(3, scene, MM + ["Output/Displacement=true"], folder)[0] != 0:
+        fail("no start")
+    code, out, errors = run(
+        2, scene, ["Solver/Euclidean bundle/Start=" + folder + "/displacement.txt"],
+        os.path.join(directory, "from"))
+    iterations = int(re.search(r"^  iterations +(\d+)", out, re.MULTILINE).group(1))
+    if code != 0 or iterations > 10:
+        fail("from a start:", code, iterations, errors)
+    print("start")
+
+
+def check_ends(directory):
+    """How ranks end together."""
+    scene = os.path.join(PRM, "benchmark-40x4.prm")
+    for settings, code, message in (
+            (["Certificate/Kind=global"], 2, "Certificate/Kind: several ranks"),
+            (["Mesh/Cells=0, 4"], 2, "Mesh/Cells"),
+            (["Loads/Traction top=0; if(x > 0.39, log(-1), 0)"], 2, "Loads/Traction top"),
+            (["Mesh/Cells=1, 1"], 2, "cells cannot be shared by"),
+            (["Boundary conditions/Clamped boundaries=left, right, bottom"], 2, "Boundary")):
+        folder = os.path.join(directory, "refused")
+        n = 5 if "shared" in message else 3
+        found, out, errors = run(n, scene, settings, folder)
+        if found != code or errors.count(message) != 1 or os.path.exists(folder):
+            fail(settings, "ends with", found, errors)
+    # A folder that the first rank cannot make.
+    blocked = os.path.join(directory, "blocked")
+    open(blocked, "w").close()
+    found, out, errors = run(2, scene, MM, os.path.join(blocked, "results"))
+    if found != 5 or errors.count("debond:") != 1:
+        fail("a folder that cannot be made ends with", found, errors)
+    # A signal to the last rank alone; before there is a result nothing is written.
+    folder = os.path.join(directory, "signalled")
+    for wait in (0.5, 5, 20):
+        process = launch(2, scene, ["Mesh/Cells=160, 16"], folder)
+        for k in range(600):
+            time.sleep(0.1)
+            ranks = subprocess.run(["pgrep", "-f", "--", "^" + re.escape(DEBOND) + " .*signalled"],
+                                   capture_output=True, text=True).stdout.split()
+            if len(ranks) == 2 and os.path.exists(folder + "/parameters.prm"):
+                break
+        time.sleep(wait)
+        os.kill(int(ranks[-1]), signal.SIGINT)
+        out, errors = process.communicate(timeout=60)
+        if process.returncode != 4:
+            fail("a signal ends with", process.returncode, errors)
+        if "before there was a result" not in errors:
+            break
+    status = json.load(open(folder + "/summary.json"))["status"]
+    if status != "interrupted":
+        fail("a signal ends with the status", status, errors)
+    if [file for file in os.listdir(folder) if file.endswith(".partial")]:
+        fail("half-written files", os.listdir(folder))
+    print("ends")
+
+
+with tempfile.TemporaryDirectory() as directory:
+    with open(directory + "/tri.msh", "w") as file:
+        file.write(msh.triangles())
+    check_ends(directory)
+    check_start(directory)
+    check_scenes(directory)

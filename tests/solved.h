@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Scenes and their solutions by the method that the program would choose.
+#ifndef debond_tests_solved_h
+#define debond_tests_solved_h
+
+#include <debond/solve/adaptive_loop.h>
+#include <debond/solve/method_choice.h>
+#include <debond/solve/scene.h>
+#include <debond/solve/solve.h>
+
+#include "parameters_of.h"
+
+inline Debond::MethodChoice
+choice_of(const Debond::Parameters &parameters)
+{
+  return Debond::choose_method(parameters, parameters.solver);
+}
+
+
+
+template <int dim>
+Debond::Scene<dim>
+scene_of(const Debond::Parameters &parameters)
+{
+  return Debond::Scene<dim>(parameters);
+}
+
+
+
+template <int dim>
+Debond::SolveSettings
+settings_of(const Debond::Parameters &parameters,
+            const Debond::Scene<dim> &scene)
+{
+  Debond::MethodChoice choice = choice_of(parameters);
+  Debond::choose_linear_solver(scene, parameters.solver, choice);
+  return {choice, parameters.solver, parameters.verification.tolerance};
+}
+
+
+
+/// From rest or from @p start.
+template <int dim>
+Debond::SolveResult
+solved(const Debond::Parameters &parameters,
+       const Debond::Scene<dim> &scene,
+       const Debond::DofVector  *start = nullptr)
+{
+  return Debond::solve(settings_of(parameters, scene).choice,
+                       parameters.solver,
+                       scene,
+                       nullptr,
+                       false,
+                       start);
+}
+
+
+
+/// A scene on the last of its meshes.
+template <int dim>
+struct Refined
+{
+  std::shared_ptr<const Debond::Scene<dim>> scene;
+  std::vector<Debond::AdaptiveLevel>        levels;
+  Debond::AdaptiveResult<dim>               result;
+};
+
+
+
+template <int dim>
+Refined<dim>
+refined(const Debond::Parameters &parameters)
+{
+  Refined<dim> refined;
+  refined.scene =
+    Debond::make_first_scene<dim>(parameters, parameters.accuracy);
+  refined.result = Debond::solve_adaptively<dim>(
+    settings_of(parameters, *refined.scene),
+    parameters.accuracy,
+    nullptr,
+    [&](const Debond::AdaptiveLevel &level) {
+      refined.levels.push_back(level);
+    },
+    refined.scene);
+  return refined;
+}
+
+#endif
