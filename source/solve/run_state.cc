@@ -10,6 +10,7 @@
 #include <boost/serialization/utility.hpp>
 #include <boost/serialization/vector.hpp>
 
+#include <algorithm>
 #include <map>
 #include <sstream>
 
@@ -115,7 +116,7 @@ namespace Debond
 
 
 
-    /// The values by the paths of their entries.
+    /// The values, without spaces, by the paths of their entries.
     std::map<std::string, std::string>
     entries_of(const std::string &scene)
     {
@@ -132,7 +133,10 @@ namespace Debond
             const std::size_t equals = line.find('=');
             std::string       name   = line.substr(4, equals - 4);
             name.erase(name.find_last_not_of(' ') + 1);
-            entries[section + name] = line.substr(equals + 1);
+            std::string value = line.substr(equals + 1);
+            value.erase(std::remove(value.begin(), value.end(), ' '),
+                        value.end());
+            entries[section + name] = value;
           }
       return entries;
     }
@@ -202,11 +206,11 @@ namespace Debond
         {
           const auto of = [&name = name](const auto &all) {
             const auto entry = all.find(name);
-            return entry == all.end() ? " nothing" : entry->second;
+            return entry == all.end() ? "nothing" : entry->second;
           };
           if (!may_differ(name) && of(before) != of(now))
             throw BadInput({file_name + " is of another scene: " + name +
-                            " was" + of(before) + " and is" + of(now) +
+                            " was " + of(before) + " and is " + of(now) +
                             "; run without --restart"});
         }
     return state;

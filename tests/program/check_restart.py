@@ -1,0 +1,142 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""check_restart.py DEBOND PRM_DIRECTORY: a run that was killed, or that is to go further, goes on
+to the results of a run in one piece, on another number of ranks too."""
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+debond, prm = (str(pathlib.Path(argument).resolve()) for argument in sys.argv[1:])
+os.chdir(tempfile.mkdtemp())
+environment = dict(os.environ, OMP_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1",
+                   OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+
+
+def command(scene, directory, settings, ranks=1):
+    start = [] if ranks == 1 else ["mpirun", "--oversubscribe", "-n", str(ranks)]
+    return [*start, debond, f"{prm}/{scene}.prm", f"--set=Output/Directory={directory}",
+            *(entry if entry.startswith("--") else "--set=" + entry for entry in settings)]
+
+
+def run(*arguments, code=0):
+    result = subprocess.run(command(*arguments), env=environment, capture_output=True, text=True,
+                            stdin=subprocess.DEVNULL, check=False)
+    if result.returncode != code:
+        sys.exit(f"{arguments}: exit code {result.returncode}\n{result.stdout}{result.stderr}")
+    return result.stdout + result.stderr
+
+
+def kill_after(line, *arguments):
+    """Without a chance to write anything more."""
+    with subprocess.Popen(command(*arguments), env=environment, stdout=subprocess.PIPE,
+                          text=True) as process:
+        for printed in process.stdout:
+            if line in printed:
+                break
+        process.kill()
+    if process.returncode != -9:
+        sys.exit(f"{arguments} ended before {line!r}")
+
+
+def rows(directory):
+    with open(f"{directory}/load_path.csv", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def summary(directory):
+    return json.loads(pathlib.Path(directory, "summary.json").read_text(encoding="utf-8"))
+
+
+def differ(first, second):
+    # Positions of fronts and energies, to the rounding of different starts.
+    try:
+        return abs(float(first) - float(second)) > 1e-9 * max(abs(float(first)), 1e-9)
+    except ValueError:
+        return first != second and not any(
+            mark in first for mark in " ;")  # fronts: places with several numbers
+
+
+def compare_paths(first, second):
+    first, second = rows(first), rows(second)
+    if len(first) != len(second):
+        sys.exit(f"{len(first)} and {len(second)} steps")
+    for one, other in zip(first, second):
+        for column, value in one.items():
+            # Residuals are rounding, and a method counts from its own start.
+            if column not in ("law_violation", "equilibrium_residual", "force_imbalance",
+                              "iterations") and differ(value, other[column]):
+                sys.exit(f"step {one['step']}: {column} {value} and {other[column]}")
+
+
+# Bonds that break for good are remembered, at nodes and between them. On the way back the broken
+# ones do not return: the energy that they have taken stays.
+factors = "Load path/Factors=0:0.05:2.5, 2.5:-0.1:0"
+for quadrature in ("nodal", "gauss 2"):
+    path = ("load-path-690", ["Load path/Bonds heal=false", factors,
+                              f"Contact law/Quadrature={quadrature}", "Output/Load path body VTU=true"])
+    run(path[0], "whole", path[1])
+    if float(rows("whole")[-1]["dissipated_energy"]) <= 0.:
+        sys.exit("nothing is broken at the end")
+    kill_after(" 2.2 ", path[0], "killed", path[1])
+    run(path[0], "killed", [*path[1], "--restart"], 3)
+    compare_paths("whole", "killed")
+    steps = pathlib.Path("killed/load_path_body.pvd").read_text(encoding="utf-8").count("<DataSet")
+    if steps != len(rows("whole")):
+        sys.exit(f"load_path_body.pvd has {steps} steps")
+# A path that is whole goes on with more factors; multigrid has its own start.
+multigrid = ["Solver/Linear solver=multigrid", "Load path/Bonds heal=false"]
+run("load-path-690", "more", [*multigrid, "Load path/Factors=0:0.05:2.5"], 2)
+run("load-path-690", "more", [*multigrid, factors, "--restart"])
+run("load-path-690", "whole", ["Load path/Bonds heal=false", factors])
+compare_paths("whole", "more")
+
+# Refined meshes: the same ones, with the same J.
+refined = ("benchmark-40x4", ["Solver/Method=automatic", "Accuracy/Target=5e-4"])
+run(refined[0], "refined", refined[1])
+kill_after(" mesh 2 ", refined[0], "killed-mesh", refined[1])
+run(refined[0], "killed-mesh", [*refined[1], "--restart"], 2)
+for key in ("J", "degrees_of_freedom", "contact_nodes"):
+    one, other = (summary(directory).get(key) for directory in ("refined", "killed-mesh"))
+    if one is None or differ(str(one), str(other)):
+        sys.exit(f"refined: {key} {one} and {other}")
+# A path on a refined mesh, stopped on the last one.
+both = ["Accuracy/Target=2e-3", "Load path/Bonds heal=false"]
+run("load-path-690", "both", [*both, "Load path/Factors=0.5:0.5:2.5, 2:-0.5:0"])
+run("load-path-690", "both-again", [*both, "Load path/Factors=0.5:0.5:2.5"])
+run("load-path-690", "both-again", [*both, "Load path/Factors=0.5:0.5:2.5, 2:-0.5:0",
+                                    "--restart"])
+compare_paths("both", "both-again")
+
+# What was interrupted is the start.
+slow = ["Solver/Euclidean bundle/Stop tolerance=1e-300"]
+with subprocess.Popen(command("benchmark-40x4", "slow", slow), env=environment,
+                      stdout=subprocess.PIPE, text=True) as process:
+    for printed in process.stdout:
+        if printed.startswith("        400 "):
+            process.terminate()
+before = summary("slow")["J"]
+run("benchmark-40x4", "slow", ["Solver/Euclidean bundle/Maximum iterations=1", *slow,
+                               "--restart"], code=3)
+if not summary("slow")["J"] <= before:
+    sys.exit(f"J rises from {before}")
+
+# What does not fit is said, and what there is stays.
+for settings, wanted in ((["Mesh/Cells=20, 2"], "Mesh/Cells was 40,4 and is 20,2"),
+                         (["Load path/Factors=1:1:3"], "step 1 was with factor 0")):
+    said = subprocess.run(command("load-path-690", "more", [*multigrid, *settings, "--restart"]),
+                          env=environment, capture_output=True, text=True, check=False)
+    if said.returncode != 2 or wanted not in said.stderr:
+        sys.exit(f"{settings}: {said.returncode} {said.stderr}")
+pathlib.Path("more/restart.state").write_bytes(
+    pathlib.Path("more/restart.state").read_bytes()[:5000])
+said = subprocess.run(command("load-path-690", "more", [*multigrid, factors, "--restart"]),
+                      env=environment, capture_output=True, text=True, check=False)
+if said.returncode != 2 or "is not the state" not in said.stderr:
+    sys.exit(f"half a file: {said.returncode} {said.stderr}")
+if "starts from the beginning" not in run("benchmark-40x4", "new",
+                                          ["Solver/Method=automatic", "--restart"]):
+    sys.exit("no word on a missing state")
