@@ -427,7 +427,7 @@ def check_search_beside_path():
         plate = ["Dimension=3", "Mesh/Lengths=30, 1.1, 30", f"Mesh/Cells={cells}, 1, {cells}",
                  "Mesh/Degree=2", "Parts/shaft=top: x < 4.5 && z < 4.5",
                  "Material/Young modulus=70000", "Boundary conditions/Clamped boundaries=",
-                 "Boundary conditions/Symmetry boundaries=left, back",
+                 "Boundary conditions/Roller boundaries=left, back",
                  "Boundary conditions/Displacement shaft=free; 0.0095; free",
                  "Contact law/Tangential displacement=free", "Contact law/Quadrature=gauss 2",
                  "Contact law/Bond stiffness=5000", f"Contact law/Bond threshold={M}"]
