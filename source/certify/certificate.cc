@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/timer.h>
-
 #include <debond/certify/certificate.h>
 #include <debond/certify/side_moments.h>
 #include <debond/contact/exact_energy.h>
@@ -8,8 +6,6 @@
 #include <debond/mesh/positive_part.h>
 #include <debond/optimization/global/convex_envelope.h>
 #include <debond/optimization/majorise/bound_qp.h>
-
-#include <Eigen/SparseCore>
 
 #include <algorithm>
 #include <cmath>
@@ -72,42 +68,6 @@ namespace Debond
               (boundary.nodes[node].normal - face.normal).norm() > 1e-8)
             throw EquilibriumError("a contact boundary with corners that are "
                                    "rounded by a mean normal is not done");
-    }
-
-
-
-    /// Means of u_nu on sides, from a mesh at least as fine.
-    Eigen::VectorXd
-    side_means(const EquilibriumProblem<2> &equilibrium,
-               const ContactBoundary<2>    &boundary,
-               const VectorView            &trace)
-    {
-      const auto     &sides = equilibrium.contact_sides();
-      Eigen::VectorXd means = Eigen::VectorXd::Zero(sides.size());
-      for (const ContactBoundary<2>::Face &face : boundary.faces)
-        {
-          double value = 0.;
-          // All functions of the basis have the same mean.
-          const unsigned int n = n_coefficients(2, boundary.degree);
-          for (unsigned int k = 0; k < n; ++k)
-            if (face.node(k) < boundary.nodes.size())
-              value += trace(face.node(k)) / n;
-          const dealii::Point<2> middle =
-            0.5 * (face.vertices[0] + face.vertices[1]);
-          for (unsigned int i = 0; i < sides.size(); ++i)
-            {
-              const dealii::Point<2> first =
-                equilibrium.vertices()[sides[i].vertices[0]];
-              const dealii::Tensor<1, 2> along =
-                equilibrium.vertices()[sides[i].vertices[1]] - first;
-              const dealii::Tensor<1, 2> here = middle - first;
-              const double part = here * along / along.norm_square();
-              if (part > 0. && part < 1. &&
-                  (here - part * along).norm() < 1e-8 * along.norm())
-                means(i) += face.measure / sides[i].measure * value;
-            }
-        }
-      return means.cwiseMin(0.);
     }
 
 
@@ -318,23 +278,6 @@ namespace Debond
 
 
 
-    /// The unknowns of a side in contact for the means of its normal
-    /// displacement with the weights dim lambda_k, lambda the barycentric
-    /// coordinates.
-    template <int dim>
-    Eigen::Matrix<double, dim, dim>
-    from_weighted_means()
-    {
-      Eigen::Matrix<double, dim, dim> result;
-      if constexpr (dim == 2)
-        result << 0.5, 0.5, -1.5, 1.5;
-      else
-        result.setIdentity();
-      return result;
-    }
-
-
-
     /// The least J with given branches.
     template <int dim>
     void
@@ -350,22 +293,13 @@ namespace Debond
       const Eigen::MatrixXd  S         = condensed->schur_complement();
       const Eigen::VectorXd &g         = condensed->load();
 
-      // Weighted means, which are <= 0 if the displacement is, as linear
-      // tractions <= 0 see it. Their work-conjugates are the tractions at the
-      // corners times a part of the side.
-      const Eigen::Matrix<double, dim, dim> own = from_weighted_means<dim>();
-      Eigen::SparseMatrix<double>           T(dim * n, dim * n);
-      T.reserve(Eigen::VectorXi::Constant(dim * n, dim));
-      for (Eigen::Index i = 0; i < n; ++i)
-        for (Eigen::Index k = 0; k < dim; ++k)
-          for (Eigen::Index l = 0; l < dim; ++l)
-            if (own(k, l) != 0.)
-              T.insert(k * n + i, l * n + i) = own(k, l);
+      // The unknowns are <= 0 if the displacement is, as linear tractions <= 0
+      // see it. Their work-conjugates are the tractions at the corners times a
+      // part of the side.
       std::vector<BranchMinimum::Piece> pieces;
-      Eigen::VectorXd                   u_nu(dim * n); ///< weighted means
-      Eigen::MatrixXd                   M = T.transpose() * (S * T);
-      const Eigen::VectorXd             f = T.transpose() * g;
-      Eigen::VectorXd                   r = f;
+      Eigen::VectorXd                   u_nu(dim * n);
+      Eigen::MatrixXd                   M = S;
+      Eigen::VectorXd                   r = g;
       for (Eigen::Index i = 0; i < n; ++i)
         {
           const Trace<dim> trace(sides[i], fields.unknowns(), displacement);
@@ -398,10 +332,10 @@ namespace Debond
         throw EquilibriumError("the tractions of the contact boundary were not "
                                "found (" +
                                to_string(minimum.status) + ")");
-      const Eigen::VectorXd x = T * minimum.x;
+      const Eigen::VectorXd &x = minimum.x;
 
       // Of the stresses that x leads to.
-      const Eigen::VectorXd moments    = T.transpose() * (S * x) - f;
+      const Eigen::VectorXd moments    = S * x - g;
       const auto            at_corners = [&](const Eigen::VectorXd &conjugates,
                                   const Eigen::Index     i) {
         std::array<double, dim> result;
@@ -411,7 +345,7 @@ namespace Debond
       };
       double largest_traction = 0.;
       for (Eigen::Index i = 0; i < n; ++i)
-        for (const Eigen::VectorXd *of : {&moments, &f})
+        for (const Eigen::VectorXd *of : {&moments, &g})
           for (const double traction : at_corners(*of, i))
             largest_traction = std::max(largest_traction, std::abs(traction));
       certificate.lower = condensed->energy_at_zero() - 0.5 * x.dot(S * x);
@@ -526,117 +460,57 @@ namespace Debond
 
 
 
+  namespace
+  {
+    /// What one's own computations may have lost at J of @p certificate.
+    double
+    own_rounding(const Certificate &certificate, const double strain_energy)
+    {
+      return certificate_rounding *
+             std::max(std::abs(certificate.upper), strain_energy);
+    }
+  } // namespace
+
+
+
   template <int dim>
   Certificate
-  Certifier<dim>::certify(const Scene<dim>               &solved,
-                          const DofVector                &u,
+  Certifier<dim>::certify(const DofVector                &u,
                           const BranchAndBoundParameters &proof,
                           const std::function<bool()>    &may_go_on,
                           const Certificate              *earlier) const
   {
-    const bool is_own = &solved == scene.get();
-    Assert(is_own || is_for_finer_meshes(), dealii::ExcInternalError());
-    dealii::Timer             timer;
-    const ElasticFields<dim> &fields = solved.problem().fields();
+    const ElasticFields<dim> &fields = scene->problem().fields();
     const DofVector           displacement =
-      solved.problem().unknowns().cartesian_displacement(u);
-    const double elastic = elastic_functional(solved, displacement);
-    Certificate  certificate;
+      scene->problem().unknowns().cartesian_displacement(u);
+    Certificate certificate;
     certificate.minimum         = minimum;
     certificate.loads_are_exact = equilibrium.loads_are_exact();
     certificate.n_unknowns      = equilibrium.n_unknowns();
     certificate.n_sides =
       static_cast<unsigned int>(equilibrium.contact_sides().size());
-    const double strain_energy = solved.problem().fields().strain_energy(u);
-    const auto   rounding      = [&]() {
-      return certificate_rounding *
-             std::max(std::abs(certificate.upper), strain_energy);
-    };
-    if (is_own)
-      try
-        {
-          bound_fixed_state(
-            equilibrium, laws, fields, displacement, certificate);
-          const double own = rounding();
-          certificate.upper += own;
-          certificate.lower -= certificate.reserve + own;
-          certificate.reserve += 2. * own;
-        }
-      catch (const std::exception &)
-        {
-          // Such as a body that only bonds hold.
-          if (trace_constants.empty())
-            throw;
-          certificate.gaps.clear();
-        }
+    try
+      {
+        bound_fixed_state(equilibrium, laws, fields, displacement, certificate);
+        const double own = own_rounding(certificate, fields.strain_energy(u));
+        certificate.upper += own;
+        certificate.lower -= certificate.reserve + own;
+        certificate.reserve += 2. * own;
+      }
+    catch (const std::exception &)
+      {
+        // Such as a body that only bonds hold.
+        if (trace_constants.empty())
+          throw;
+        certificate.gaps.clear();
+      }
     if constexpr (dim == 2)
       if (!trace_constants.empty())
-        {
-          const ContactSpace<2> &contact =
-            solved.problem().unknowns().contact();
-          certificate.upper = elastic + exact_energy(solved.adhesion(),
-                                                     contact.boundary(),
-                                                     scene->law(),
-                                                     contact.trace(u));
-          const double own  = rounding();
-          certificate.upper += own;
-          std::vector<double> side_energies(certificate.n_sides, 0.);
-          if (is_own)
-            {
-              // Shifts soften the whole element.
-              const std::vector<double> energies =
-                equilibrium.element_energies(fields, displacement);
-              for (unsigned int i = 0; i < certificate.n_sides; ++i)
-                side_energies[i] =
-                  energies[equilibrium.contact_sides()[i].element];
-            }
-          // The value that is reached: that of the better displacement.
-          if (earlier != nullptr && is_for_least(*earlier) &&
-              is_for_least(certificate))
-            certificate.upper = std::min(certificate.upper, earlier->upper);
-          const MeanProblems problems(equilibrium,
-                                      trace_constants,
-                                      laws,
-                                      side_energies);
-          GlobalBound        bound = bound_global(problems,
-                                           side_means(equilibrium,
-                                                      contact.boundary(),
-                                                      contact.trace(u)),
-                                           certificate.upper,
-                                           proof,
-                                           may_go_on);
-          certificate.lower        = bound.lower - own;
-          certificate.reserve      = bound.rounding + 2. * own;
-          certificate.proof_status = bound.status;
-          certificate.proof_nodes  = bound.nodes;
-          if (!certificate.gaps.empty())
-            for (unsigned int i = 0; i < bound.losses.size(); ++i)
-              certificate.gaps[equilibrium.contact_sides()[i]
-                                 .cell->active_cell_index()] += bound.losses[i];
-          certificate.sides = std::move(bound.sides);
-          certificate.lengths =
-            certified_lengths(certificate.sides, laws, scene->law());
-        }
+        certify_global(u, displacement, proof, may_go_on, earlier, certificate);
     if (!std::isfinite(certificate.lower))
       throw EquilibriumError("no bound was found (" +
                              to_string(certificate.proof_status) + ")");
-    // What the equilibrium does not know of the loads: as much as at u.
-    const std::vector<double> rests =
-      equilibrium.load_rests(fields, displacement);
-    for (unsigned int cell = 0; cell < rests.size(); ++cell)
-      {
-        certificate.lower -= rests[cell];
-        if (!certificate.gaps.empty())
-          certificate.gaps[cell] += rests[cell];
-      }
-    const double rest =
-      solved.problem().fields().elastic_functional(u) - elastic;
-    if (std::abs(rest) > rounding())
-      {
-        certificate.loads_are_exact = false;
-        certificate.upper += rest;
-        certificate.lower -= std::abs(rest);
-      }
+    add_load_rests(u, displacement, certificate);
     if (earlier != nullptr)
       intersect(certificate, *earlier);
     if (!(certificate.lower <= certificate.upper))
@@ -648,21 +522,90 @@ namespace Debond
              << ", so that one of them is wrong";
         throw EquilibriumError(text.str());
       }
-    certificate.seconds = timer.wall_time();
     return certificate;
   }
 
 
 
-  template <int dim>
-  double
-  Certifier<dim>::elastic_functional(const Scene<dim> &solved,
-                                     const DofVector  &displacement) const
+  template <>
+  void
+  Certifier<2>::certify_global(const DofVector                &u,
+                               const DofVector                &displacement,
+                               const BranchAndBoundParameters &proof,
+                               const std::function<bool()>    &may_go_on,
+                               const Certificate              *earlier,
+                               Certificate &certificate) const
   {
-    const ElasticFields<dim> &fields = solved.problem().fields();
-    if (&solved == scene.get())
-      return equilibrium.elastic_functional(fields, displacement);
-    return equilibrium_problem(solved).elastic_functional(fields, displacement);
+    const ElasticFields<2> &fields  = scene->problem().fields();
+    const ContactSpace<2>  &contact = scene->problem().unknowns().contact();
+    certificate.upper = equilibrium.elastic_functional(fields, displacement) +
+                        exact_energy(scene->adhesion(),
+                                     contact.boundary(),
+                                     scene->law(),
+                                     contact.trace(u));
+    const double own = own_rounding(certificate, fields.strain_energy(u));
+    certificate.upper += own;
+    // The value that is reached: that of the better displacement.
+    if (earlier != nullptr && is_for_least(*earlier) &&
+        is_for_least(certificate))
+      certificate.upper = std::min(certificate.upper, earlier->upper);
+
+    const std::vector<double> energies = strain_energies(fields, displacement);
+    std::vector<double>       side_energies;
+    Eigen::VectorXd           means(certificate.n_sides);
+    for (unsigned int i = 0; i < certificate.n_sides; ++i)
+      {
+        const SideOf<2> &side = equilibrium.contact_sides()[i];
+        side_energies.push_back(energies[side.cell->active_cell_index()]);
+        means(i) =
+          std::min(Trace<2>(side, fields.unknowns(), displacement).mean(), 0.);
+      }
+    const MeanProblems problems(equilibrium,
+                                trace_constants,
+                                laws,
+                                side_energies);
+    GlobalBound        bound =
+      bound_global(problems, means, certificate.upper, proof, may_go_on);
+    certificate.lower        = bound.lower - own;
+    certificate.reserve      = bound.rounding + 2. * own;
+    certificate.proof_status = bound.status;
+    certificate.proof_nodes  = bound.nodes;
+    if (!certificate.gaps.empty())
+      for (unsigned int i = 0; i < bound.losses.size(); ++i)
+        certificate
+          .gaps[equilibrium.contact_sides()[i].cell->active_cell_index()] +=
+          bound.losses[i];
+    certificate.sides = std::move(bound.sides);
+    certificate.lengths =
+      certified_lengths(certificate.sides, laws, scene->law());
+  }
+
+
+
+  template <int dim>
+  void
+  Certifier<dim>::add_load_rests(const DofVector &u,
+                                 const DofVector &displacement,
+                                 Certificate     &certificate) const
+  {
+    // What the equilibrium does not know of the loads: as much as at u.
+    const ElasticFields<dim> &fields = scene->problem().fields();
+    const std::vector<double> rests =
+      equilibrium.load_rests(fields, displacement);
+    for (unsigned int cell = 0; cell < rests.size(); ++cell)
+      {
+        certificate.lower -= rests[cell];
+        if (!certificate.gaps.empty())
+          certificate.gaps[cell] += rests[cell];
+      }
+    const double rest = fields.elastic_functional(u) -
+                        equilibrium.elastic_functional(fields, displacement);
+    if (std::abs(rest) > own_rounding(certificate, fields.strain_energy(u)))
+      {
+        certificate.loads_are_exact = false;
+        certificate.upper += rest;
+        certificate.lower -= std::abs(rest);
+      }
   }
 
 

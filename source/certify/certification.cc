@@ -239,8 +239,7 @@ namespace Debond
     const InterruptGuard guard;
     const auto           certify = [&](const CertificateKind kind_of_this) {
       certificate = Certifier<dim>(kind_of_this, scene)
-                      .certify(*scene,
-                               result.u,
+                      .certify(result.u,
                                proof,
                                may_go_on,
                                latest_global ? &*latest_global : nullptr);
@@ -308,17 +307,14 @@ namespace Debond
         dealii::Timer        timer;
         const InterruptGuard guard;
         const auto           certify = [&](const Certifier<dim> &certifier) {
-          certificate =
-            certifier.certify(*scene, result.solve.u, proof, may_go_on);
+          certificate = certifier.certify(result.solve.u, proof, may_go_on);
           certificate->include(result.solve.functional);
           if (!may_go_on())
             result.solve.minimum.interrupted = true;
         };
         try
           {
-            const bool is_refined = !result.levels.empty();
-            if (first == nullptr ||
-                (is_refined && !first->is_for_finer_meshes()))
+            if (first == nullptr || !result.levels.empty())
               certify(Certifier<dim>(kind, scene));
             else
               certify(*first);

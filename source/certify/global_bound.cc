@@ -54,40 +54,21 @@ namespace Debond
 
 
 
-    /// Nothing if the element is none.
-    std::optional<RectangleAboveSide>
-    rectangle(const ContactSide &side, const EquilibriumElement<2> &element)
-    {
-      const dealii::Tensor<1, 2> a = element.corners[1] - element.corners[0];
-      const dealii::Tensor<1, 2> b = element.corners[2] - element.corners[1];
-      if (element.corners.size() != 4 ||
-          std::abs(a * b) > 1e-10 * a.norm() * b.norm())
-        return {};
-      return RectangleAboveSide{side.measure, element.measure / side.measure};
-    }
-
-
-
-    /// Between the side and the opposite corner of its cell.
+    /// The cell above a side, scaled.
     TriangleAboveSide
-    triangle(const ContactSide &side, const EquilibriumElement<2> &element)
+    triangle(const ContactSide &side)
     {
-      dealii::Point<2> apex = element.centre;
-      if (element.corners.size() == 3)
-        for (unsigned int i = 0; i < 3; ++i)
-          if (element.corners[i].distance(side.corners[0]) >
-                1e-8 * side.measure &&
-              element.corners[i].distance(side.corners[1]) >
-                1e-8 * side.measure)
-            apex = element.corners[i];
+      dealii::Tensor<1, 2> to_apex;
+      for (const unsigned int v : side.cell->vertex_indices())
+        if (side.cell->vertex_index(v) != side.vertices[0] &&
+            side.cell->vertex_index(v) != side.vertices[1])
+          to_apex = side.cell->vertex(v) - side.corners[0];
       const dealii::Tensor<1, 2> along =
         (side.corners[1] - side.corners[0]) / side.measure;
-      const dealii::Tensor<1, 2> to_apex = apex - side.corners[0];
-      const double               place   = to_apex * along;
+      const double place = to_apex * along;
       // Mirrored triangles have the same constant.
-      return {side.measure,
-              (to_apex - place * along).norm(),
-              std::min(place, side.measure - place)};
+      return {(to_apex - place * along).norm() / side.measure,
+              std::min(place / side.measure, 1. - place / side.measure)};
     }
 
 
@@ -186,8 +167,7 @@ namespace Debond
       begin(Known &known);
 
       /// Makes the ranges narrower by the latest problem. If nothing was known
-      /// it has all means: then quickly and without trials of single sides, as
-      /// the next one has fewer.
+      /// it has all means: then quickly, as the next one has fewer.
       void
       look(const bool is_quick, Known &known) const;
     };
@@ -250,11 +230,7 @@ namespace Debond
     void
     StagedBounds::look(const bool is_quick, Known &known) const
     {
-      if (shrink_ranges(
-            *known.problem, upper, is_quick, may_go_on, known.ranges) &&
-          !is_quick)
-        exclude_pieces(
-          *known.problem, upper, known.means(), may_go_on, known.ranges);
+      shrink_ranges(*known.problem, upper, is_quick, may_go_on, known.ranges);
     }
 
 
@@ -316,56 +292,34 @@ namespace Debond
                  const ByRegion<Material>    &materials,
                  const bool                   tangential_fixed)
   {
-    // Of shapes with a side of length 1.
     struct Known
     {
-      double                height;
-      std::optional<double> apex;
-      Material              material;
-      double                constant;
+      TriangleAboveSide shape;
+      Material          material;
+      double            constant;
     };
+    // Shapes count as the same if they are to less than this.
+    constexpr double    rounding = 1e-9;
     std::vector<Known>  known;
     std::vector<double> constants;
     for (const ContactSide &side : equilibrium.contact_sides())
       {
-        const EquilibriumElement<2> &element =
-          equilibrium.elements()[side.element];
-        Known own = {0., {}, materials(side.material), 0.};
-        if (const auto Q = rectangle(side, element))
-          own.height = Q->height / Q->width;
-        else
-          {
-            const TriangleAboveSide triangle_above = triangle(side, element);
-            own.height = triangle_above.height / triangle_above.width;
-            own.apex   = triangle_above.apex / triangle_above.width;
-          }
-        const auto is_same = [](const double one, const double other) {
-          return std::abs(one - other) <= 1e-9;
-        };
-        auto same =
+        const TriangleAboveSide own      = triangle(side);
+        const Material         &material = materials(side.cell->material_id());
+        auto                    same =
           std::find_if(known.begin(), known.end(), [&](const Known &other) {
-            return is_same(other.height / own.height, 1.) &&
-                   other.apex.has_value() == own.apex.has_value() &&
-                   (!own.apex ||
-                    is_same((*other.apex - *own.apex) / own.height, 0.)) &&
-                   other.material.young_modulus == own.material.young_modulus &&
-                   other.material.poisson_ratio == own.material.poisson_ratio;
+            return std::abs(other.shape.height - own.height) +
+                       std::abs(other.shape.apex - own.apex) <=
+                     rounding * own.height &&
+                   other.material.young_modulus == material.young_modulus &&
+                   other.material.poisson_ratio == material.poisson_ratio;
           });
         if (same == known.end())
-          {
-            own.constant =
-              own.apex ?
-                trace_constant(TriangleAboveSide{1., own.height, *own.apex},
-                               own.material,
-                               tangential_fixed) :
-                trace_constant(RectangleAboveSide{1., own.height},
-                               own.material,
-                               tangential_fixed);
-            same = known.insert(known.end(), own);
-          }
-        // Shapes count as the same if they are to less than this.
-        constexpr double rounding = 1e-7;
-        constants.push_back((1. - rounding) * same->constant / side.measure);
+          same = known.insert(
+            known.end(),
+            {own, material, trace_constant(own, material, tangential_fixed)});
+        constants.push_back((1. - 100. * rounding) * same->constant /
+                            side.measure);
       }
     return constants;
   }

@@ -119,10 +119,10 @@ namespace Debond
     , laws(laws)
     , sides(equilibrium.contact_sides())
     , n(static_cast<unsigned int>(sides.size()))
-    , sharers(equilibrium.elements().size(), 0)
+    , sharers(equilibrium.n_cells(), 0)
   {
     for (const EquilibriumProblem<2>::ContactSide &side : sides)
-      ++sharers[side.element];
+      ++sharers[side.cell->active_cell_index()];
   }
 
 
@@ -218,9 +218,9 @@ namespace Debond
                                  const Eigen::VectorXd            &means,
                                  const std::vector<double>        &D) const
   {
-    std::vector<double> weights(equilibrium.elements().size(), 1.);
+    std::vector<double> weights(equilibrium.n_cells(), 1.);
     for (unsigned int i = 0; i < n; ++i)
-      weights[sides[i].element] -= D[i] / trace_constants[i];
+      weights[sides[i].cell->active_cell_index()] -= D[i] / trace_constants[i];
     std::unique_ptr<const Condensation> condensed;
     try
       {
@@ -230,8 +230,7 @@ namespace Debond
       {
         return {};
       }
-    Eigen::MatrixXd A = condensed->schur_complement();
-    Eigen::VectorXd b = condensed->load();
+    auto [A, b] = MeansAndSlopes(*condensed);
 
     MeanProblem result;
     result.shifts   = D;
@@ -311,7 +310,9 @@ namespace Debond
     result.phi = std::make_unique<SeparableBranches>(kept_laws);
 
     const Eigen::VectorXd at = result.all(result.kept_of(means));
-    result.rounding          = equilibrium.rounding_of(*condensed, at, weights);
+    result.rounding          = equilibrium.rounding_of(*condensed,
+                                              MeansAndSlopes::unknowns(at),
+                                              weights);
     return result;
   }
 

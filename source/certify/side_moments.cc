@@ -15,25 +15,6 @@ namespace Debond
     /// How far a traction may be from a linear one, relative to it.
     constexpr double linear_rounding = 1e-10;
 
-
-
-    /// The work-conjugates of a side's unknowns, relative to its length or
-    /// area, of a linear traction with these values at the corners: vector by
-    /// vector, see EquilibriumElement.
-    std::array<dealii::Tensor<1, 2>, 2>
-    conjugates(const std::array<dealii::Tensor<1, 2>, 2> &at_corners)
-    {
-      return {{0.5 * (at_corners[0] + at_corners[1]),
-               (at_corners[1] - at_corners[0]) / 6.}};
-    }
-
-
-
-    std::array<dealii::Tensor<1, 3>, 3>
-    conjugates(const std::array<dealii::Tensor<1, 3>, 3> &at_corners)
-    {
-      return {{at_corners[0] / 3., at_corners[1] / 3., at_corners[2] / 3.}};
-    }
   } // namespace
 
 
@@ -80,7 +61,7 @@ namespace Debond
       }
     if (std::sqrt(square) <= linear_rounding * largest)
       square = 0.;
-    return {conjugates(linear), square};
+    return {linear, square};
   }
 
 
@@ -156,15 +137,8 @@ namespace Debond
     for (const auto &[barycentric, weight] : side_rule<dim>())
       {
         const dealii::Tensor<1, dim> here = weight * u(barycentric);
-        if constexpr (dim == 2)
-          {
-            // The linear function of xi from -1 to 1 with the same moments.
-            result[0] += here;
-            result[1] += 3. * (barycentric[1] - barycentric[0]) * here;
-          }
-        else
-          for (unsigned int k = 0; k < dim; ++k)
-            result[k] += 3. * barycentric[k] * here;
+        for (unsigned int k = 0; k < dim; ++k)
+          result[k] += dim * barycentric[k] * here;
       }
     return result;
   }

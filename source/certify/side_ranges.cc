@@ -15,11 +15,6 @@ namespace Debond
     constexpr unsigned int n_nodes_of_ranges       = 32;
     constexpr unsigned int n_quick_nodes_of_ranges = 4;
 
-    /// Nodes to exclude one piece of the law on one side, and how often in a
-    /// row they may be too few before no more are tried.
-    constexpr unsigned int n_nodes_of_trial = 7;
-    constexpr unsigned int n_failed_trials  = 6;
-
 
 
     /// Where displacements of a node can be if the functional of the means is
@@ -128,95 +123,11 @@ namespace Debond
       return parts;
     }
 
-
-
-    /// Whether a few nodes prove that no point of the node is below @p best.
-    bool
-    is_excluded(const NodeBound         &bound,
-                const SeparableBranches &phi,
-                const double             best,
-                ProofNode                node)
-    {
-      std::vector<ProofNode> open = {std::move(node)};
-      for (unsigned int nodes = 0; nodes < n_nodes_of_trial; ++nodes)
-        {
-          ProofNode own = std::move(open.back());
-          open.pop_back();
-          const NodeResult result = bound.bound(own, best, 0.);
-          if (result.unknown)
-            for (ProofNode &half : halves(own, result, phi))
-              open.push_back(std::move(half));
-          else if (result.least < best)
-            return false;
-          if (open.empty())
-            return true;
-        }
-      return false;
-    }
   } // namespace
 
 
 
   void
-  exclude_pieces(const MeanProblem           &problem,
-                 const double                 upper,
-                 const Eigen::VectorXd       &means,
-                 const std::function<bool()> &may_go_on,
-                 std::vector<CertifiedSide>  &ranges)
-  {
-    struct Trial
-    {
-      unsigned int i;
-      bool         is_above; ///< the kink
-      double       kink, distance;
-    };
-    const double       best = upper - problem.constant + problem.rounding;
-    const NodeBound    bound(problem.S, problem.g, *problem.phi);
-    std::vector<Trial> trials;
-    for (unsigned int i = 0; i < problem.kept.size(); ++i)
-      {
-        const BranchMinimum &f     = problem.phi->f[i];
-        const Interval      &range = ranges[problem.kept[i]].mean;
-        const double         s     = means(problem.kept[i]);
-        const auto          &piece = f[f.index(s)];
-        for (const bool is_above : {false, true})
-          {
-            const double kink = is_above ? piece.upper : piece.lower;
-            if (kink < range.upper && kink > range.lower)
-              trials.push_back({i, is_above, kink, std::abs(s / kink - 1.)});
-          }
-      }
-    std::sort(trials.begin(), trials.end(), [](const Trial &a, const Trial &b) {
-      return a.distance != b.distance ? a.distance > b.distance : a.i < b.i;
-    });
-    auto root = bound.root(best);
-    if (!root)
-      return;
-    // With as few relaxations as later nodes.
-    root->number            = 1;
-    unsigned int n_failures = 0;
-    for (const Trial &trial : trials)
-      {
-        if (!may_go_on() || n_failures == n_failed_trials)
-          return;
-        ProofNode node = *root;
-        cut(node, problem, ranges);
-        (trial.is_above ? node.lower : node.upper)(trial.i) = trial.kink;
-        Interval &range = ranges[problem.kept[trial.i]].mean;
-        if (node.lower(trial.i) <= node.upper(trial.i) &&
-            !is_excluded(bound, *problem.phi, best, std::move(node)))
-          {
-            ++n_failures;
-            continue;
-          }
-        n_failures                                   = 0;
-        (trial.is_above ? range.upper : range.lower) = trial.kink;
-      }
-  }
-
-
-
-  bool
   shrink_ranges(const MeanProblem           &problem,
                 const double                 upper,
                 const bool                   is_quick,
@@ -229,14 +140,14 @@ namespace Debond
     if (auto root = bound.root(best))
       {
         if (!cut(*root, problem, ranges))
-          return false;
+          return;
         // With as few relaxations as later nodes.
         if (is_quick)
           root->number = 1;
         open.push_back(std::move(*root));
       }
     else
-      return true;
+      return;
     const Interval empty    = {1., -1.};
     CertifiedSide  no_range = {};
     no_range.mean           = empty;
@@ -247,7 +158,7 @@ namespace Debond
     for (unsigned int nodes = 0; !open.empty(); ++nodes)
       {
         if (!may_go_on())
-          return true;
+          return;
         ProofNode node = std::move(open.back());
         open.pop_back();
         NodeResult result;
@@ -281,6 +192,5 @@ namespace Debond
             ranges[i].at_ends[k] =
               intersection(ranges[i].at_ends[k], hulls[i].at_ends[k]);
         }
-    return !ranges.empty() && !hulls[0].mean.is_empty();
   }
 } // namespace Debond

@@ -1,95 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/numbers.h>
-
-#include <debond/certify/equilibrium_problem.h>
+#include <debond/certify/mean_problem.h>
 #include <debond/certify/trace_constant.h>
-#include <debond/mesh/box.h>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace Debond
 {
   namespace
   {
-    /// The parts of the stiffness that are tried: theta n has to be more than
-    /// 1.
-    std::array<double, 4>
-    parts_of_stiffness(const unsigned int n)
-    {
-      std::array<double, 4> theta = {{1.1, 1.5, 2.5, 5.}};
-      for (double &part : theta)
-        part = std::min(part / n, 0.9);
-      return theta;
-    }
-
-
-
-    /// The least value of S relative to the mass matrix of the traces that are
-    /// linear on each of n sides, without those that are linear on all of them;
-    /// S comes from a part 1 - theta of the stiffness at the sides, for each of
-    /// parts_of_stiffness().
-    std::array<double, 4>
-    least_eigenvalues(const dealii::Triangulation<2>             &mesh,
-                      const std::set<dealii::types::boundary_id> &I,
-                      const double                                width,
-                      const Material                             &material,
-                      const bool         tangential_fixed,
-                      const unsigned int n)
-    {
-      BoundaryConditions conditions;
-      conditions.contact                       = I;
-      conditions.tangential_displacement_fixed = tangential_fixed;
-      EquilibriumProblem<2> problem(mesh, conditions, {}, material, Loads<2>());
-      // A motion along I does not change the energy.
-      if (!tangential_fixed)
-        problem.fix(problem.contact_sides()[0].unknowns[0] + 1);
-
-      const auto     &sides = problem.contact_sides();
-      const double    h     = width / n;
-      Eigen::VectorXd mass(2 * n);
-      Eigen::MatrixXd linear = Eigen::MatrixXd::Zero(2 * n, 2);
-      for (unsigned int i = 0; i < n; ++i)
-        {
-          mass(i)      = h;
-          mass(n + i)  = h / 3.;
-          linear(i, 0) = 1.;
-          linear(i, 1) =
-            0.5 * (sides[i].corners[0][0] + sides[i].corners[1][0]);
-          linear(n + i, 1) =
-            0.5 * (sides[i].corners[1][0] - sides[i].corners[0][0]);
-        }
-      const Eigen::VectorXd                       root = mass.cwiseSqrt();
-      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(root.asDiagonal() *
-                                                     linear);
-      const Eigen::MatrixXd                       complement =
-        Eigen::MatrixXd(qr.householderQ()).rightCols(2 * n - 2);
-      const Eigen::MatrixXd scaled =
-        root.cwiseInverse().asDiagonal() * complement;
-
-      const std::array<double, 4> theta = parts_of_stiffness(n);
-      std::array<double, 4>       least;
-      for (unsigned int k = 0; k < theta.size(); ++k)
-        {
-          std::vector<double> weights(problem.elements().size(), 1.);
-          for (const EquilibriumProblem<2>::ContactSide &side : sides)
-            weights[side.element] = 1. - theta[k];
-          const auto            condensed = problem.condense(weights);
-          const Eigen::MatrixXd S =
-            scaled.transpose() * condensed->schur_complement() * scaled;
-          least[k] = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
-                       S, Eigen::EigenvaluesOnly)
-                       .eigenvalues()(0);
-        }
-      return least;
-    }
-
-
-
     constexpr double constant_rounding = 1e-9;
 
 
@@ -97,7 +19,7 @@ namespace Debond
     /// A triangle with its side I from 0 to (1, 0), divided into n x n; I is
     /// the boundary 1.
     void
-    make_divided_triangle(const dealii::Point<2>   &apex,
+    make_divided_triangle(const TriangleAboveSide  &Q,
                           const unsigned int        n,
                           dealii::Triangulation<2> &mesh)
     {
@@ -108,7 +30,7 @@ namespace Debond
         {
           first.push_back(static_cast<unsigned int>(points.size()));
           for (unsigned int i = 0; i <= n - j; ++i)
-            points.emplace_back((i + apex[0] * j) / n, apex[1] * j / n);
+            points.emplace_back((i + Q.apex * j) / n, Q.height * j / n);
         }
       const auto add = [&cells](const std::vector<unsigned int> &vertices) {
         cells.emplace_back(3);
@@ -127,65 +49,36 @@ namespace Debond
         for (const unsigned int face : cell->face_indices())
           if (cell->face(face)->at_boundary())
             cell->face(face)->set_boundary_id(
-              cell->face(face)->center()[1] < 0.25 * apex[1] / n ? 1 : 0);
+              cell->face(face)->center()[1] < 0.25 * Q.height / n ? 1 : 0);
+    }
+
+
+
+    /// The traces that are linear on each of n sides of the length 1/n of a
+    /// side from 0 to 1, by means and slopes, without those that are linear on
+    /// all of it: an orthonormal basis in L2 in columns.
+    Eigen::MatrixXd
+    not_linear_traces(const std::vector<EquilibriumProblem<2>::ContactSide> &I)
+    {
+      const Eigen::Index n = static_cast<Eigen::Index>(I.size());
+      Eigen::VectorXd    mass =
+        Eigen::VectorXd::Constant(2 * n, 1. / static_cast<double>(n));
+      mass.tail(n) /= 3.;
+      Eigen::MatrixXd linear = Eigen::MatrixXd::Zero(2 * n, 2);
+      for (Eigen::Index i = 0; i < n; ++i)
+        {
+          const double a = I[i].corners[0][0], b = I[i].corners[1][0];
+          linear(i, 0)     = 1.;
+          linear(i, 1)     = 0.5 * (a + b);
+          linear(n + i, 1) = 0.5 * (b - a);
+        }
+      const Eigen::VectorXd                       root = mass.cwiseSqrt();
+      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(root.asDiagonal() *
+                                                     linear);
+      const Eigen::MatrixXd                       Q = qr.householderQ();
+      return root.cwiseInverse().asDiagonal() * Q.rightCols(2 * n - 2);
     }
   } // namespace
-
-
-
-  double
-  elementary_trace_constant(const RectangleAboveSide &Q,
-                            const Material           &material,
-                            const bool                tangential_fixed)
-  {
-    const double w = Q.width / dealii::numbers::PI, h = Q.height;
-    const double bound =
-      tangential_fixed ?
-        4. / std::pow(h, 4) *
-          (2. / 3. * w * w * std::pow(h, 3) + std::pow(w, 4) * h +
-           std::pow(h, 5) / 20.) :
-        64. / std::pow(h, 6) *
-          (w * w * std::pow(h, 5) / 24. + std::pow(w, 4) * std::pow(h, 3) / 4. +
-           std::pow(h, 7) / 64.);
-    // The least of 2 mu |epsilon|^2 + lambda (tr epsilon)^2.
-    const double stiffness =
-      2. * (material.shear_modulus() + std::min(0., material.lame_lambda<2>()));
-    return stiffness / bound;
-  }
-
-
-
-  double
-  trace_constant(const RectangleAboveSide &Q,
-                 const Material           &material,
-                 const bool                tangential_fixed,
-                 const unsigned int        n)
-  {
-    // Scaled, so that systems of units do not matter.
-    Material unit                  = material;
-    unit.young_modulus             = 1.;
-    const RectangleAboveSide shape = {1., Q.height / Q.width};
-
-    dealii::Triangulation<2> mesh;
-    const BoundaryNames      names =
-      Box<2>({{{shape.width, shape.height, 0.}}, {{n, n, 1}}})
-        .make_mesh(mesh)
-        .boundaries;
-    const std::array<double, 4> theta = parts_of_stiffness(n);
-    const std::array<double, 4> least = least_eigenvalues(
-      mesh, names.at("bottom"), 1., unit, tangential_fixed, n);
-
-    double constant = elementary_trace_constant(shape, unit, tangential_fixed);
-    for (double previous = 0.; constant > (1. + 1e-6) * previous;)
-      {
-        previous = constant;
-        for (unsigned int k = 0; k < theta.size(); ++k)
-          constant =
-            std::max(constant, std::min(least[k], theta[k] * n * previous));
-      }
-    return (1. - constant_rounding) * constant * material.young_modulus /
-           Q.width;
-  }
 
 
 
@@ -195,15 +88,36 @@ namespace Debond
                  const bool               tangential_fixed,
                  const unsigned int       n)
   {
+    // Scaled, so that systems of units do not matter.
     Material unit      = material;
     unit.young_modulus = 1.;
     dealii::Triangulation<2> mesh;
-    make_divided_triangle({Q.apex / Q.width, Q.height / Q.width}, n, mesh);
+    make_divided_triangle(Q, n, mesh);
+    BoundaryConditions conditions;
+    conditions.contact                       = {1};
+    conditions.tangential_displacement_fixed = tangential_fixed;
+    EquilibriumProblem<2> problem(mesh, conditions, {}, unit, Loads<2>());
+    const auto           &sides = problem.contact_sides();
+    // A motion along I does not change the energy.
+    if (!tangential_fixed)
+      problem.fix(sides[0].unknowns[0] + 1);
+    const Eigen::MatrixXd basis = not_linear_traces(sides);
 
-    const std::array<double, 4> least =
-      least_eigenvalues(mesh, {1}, 1., unit, tangential_fixed, n);
-    return (1. - constant_rounding) *
-           *std::max_element(least.begin(), least.end()) *
-           material.young_modulus / Q.width;
+    // The parts of the stiffness that are tried: theta n has to be more than 1.
+    double best = 0.;
+    for (const double theta_n : {1.1, 1.5, 2.5, 5.})
+      {
+        std::vector<double> weights(problem.n_cells(), 1.);
+        for (const auto &side : sides)
+          weights[side.cell->active_cell_index()] =
+            1. - std::min(theta_n / n, 0.9);
+        const MeansAndSlopes  condensed(*problem.condense(weights));
+        const Eigen::MatrixXd S = basis.transpose() * condensed.A * basis;
+        best                    = std::max(best,
+                        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
+                          S, Eigen::EigenvaluesOnly)
+                          .eigenvalues()(0));
+      }
+    return (1. - constant_rounding) * best * material.young_modulus;
   }
 } // namespace Debond

@@ -210,7 +210,7 @@ namespace Debond
       void
       search_coarse_nodes()
       {
-        if (separable && is_certified())
+        if (separable && is_proved_at_start())
           return;
         BranchSearchParameters starts;
         starts.maximum_shift = 0;
@@ -223,7 +223,7 @@ namespace Debond
         edges.maximum_shift          = 1;
         search_nodes(edges);
         if (separable)
-          is_certified();
+          is_proved_at_start();
       }
 
       /// With the given moves. Returns whether it found something.
@@ -248,16 +248,16 @@ namespace Debond
       }
 
       bool
-      is_certified()
+      is_proved_at_start()
       {
         BranchAndBoundParameters no_nodes;
         no_nodes.maximum_nodes = 0;
         no_nodes.tolerance     = parameters.proof.tolerance * energy;
-        const BranchAndBoundResult certificate =
+        const BranchAndBoundResult proof =
           branch_and_bound(no_nodes, S, g, lumped, s);
-        if (certificate.status != ProofStatus::proved)
+        if (proof.status != ProofStatus::proved)
           return false;
-        add_proof(certificate, lumped, condensed, result);
+        add_proof(proof, lumped, condensed, result);
         return true;
       }
 

@@ -355,11 +355,7 @@ namespace
           if (!can_be_verified(result.status))
             throw Unsolved();
           return Certifier<dim>(kind, of).certify(
-            *of,
-            result.u,
-            parameters.solver.proof,
-            []() { return true; },
-            earlier);
+            result.u, parameters.solver.proof, []() { return true; }, earlier);
         };
         certificates.push_back(certify(random.kind, scene, nullptr));
         upper = certificates[0].upper;
@@ -412,9 +408,7 @@ namespace
     const auto       scene      = std::make_shared<const Scene<3>>(parameters);
     const SolveResult result    = solved(parameters, *scene);
     return Certifier<3>(CertificateKind::fixed_state, scene)
-      .certify(*scene, result.u, parameters.solver.proof, []() {
-        return true;
-      });
+      .certify(result.u, parameters.solver.proof, []() { return true; });
   }
 
 

@@ -78,13 +78,13 @@ namespace
     softened(const MeanProblem &problem) const
     {
       const auto         &sides = stresses.contact_sides();
-      std::vector<double> weights(stresses.elements().size(), 1.);
+      std::vector<double> weights(stresses.n_cells(), 1.);
       for (unsigned int i = 0; i < n; ++i)
-        weights[sides[i].element] -= problem.shifts[i] / trace_constants[i];
-      const auto condensed = stresses.condense(weights);
-      return {condensed->energy_at_zero(),
-              condensed->schur_complement(),
-              condensed->load()};
+        weights[sides[i].cell->active_cell_index()] -=
+          problem.shifts[i] / trace_constants[i];
+      const auto           condensed = stresses.condense(weights);
+      const MeansAndSlopes x(*condensed);
+      return {condensed->energy_at_zero(), x.A, x.b};
     }
 
     const Parameters                 parameters;

@@ -381,7 +381,7 @@ namespace
                                      s_min(i) > node.upper(i) + 1e-9);
         above += node.bound > minimum + rounding;
         const Eigen::VectorXd at_minimum  = s_min.cast<double>();
-        const double          certificate = node_bound.certificate(at_minimum);
+        const double          certificate = node_bound.bound_at(at_minimum);
         above += certificate > minimum + rounding;
         certified += certificate > minimum - tolerance;
 

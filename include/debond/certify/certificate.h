@@ -60,10 +60,10 @@ namespace Debond
     /// What upper - lower has as a reserve for rounding.
     double reserve = 0.;
 
-    /// Of each active cell with the contact sides below it, in their order,
-    /// unless the stresses are of another mesh: the parts of upper - lower -
-    /// reserve of the bonds' branches as they are, none of them below zero;
-    /// if branches may change, with what the bound for that loses at the sides.
+    /// Of each active cell with the contact sides below it: the parts of upper
+    /// - lower - reserve of the bonds' branches as they are, none of them below
+    /// zero; if branches may change, with what the bound for that loses at the
+    /// sides.
     std::vector<double> gaps;
 
     /// Where there are gaps: the means of the equilibrated stress of the bonds'
@@ -75,8 +75,6 @@ namespace Debond
     /// empty unless the bound is for bonds that may break anywhere.
     std::vector<CertifiedSide>   sides;
     std::vector<CertifiedLength> lengths;
-
-    double seconds = 0.;
 
     /// (upper - lower) / |upper|
     double
@@ -116,29 +114,30 @@ namespace Debond
     Certifier(const CertificateKind                    kind,
               const std::shared_ptr<const Scene<dim>> &scene);
 
-    /// Whether certify() takes displacements of finer meshes as well.
-    bool
-    is_for_finer_meshes() const
-    {
-      return !trace_constants.empty() && equilibrium.loads_are_exact();
-    }
-
-    /// Of the displacement @p u of @p solved, which is the scene, or the same
-    /// on a finer mesh. @p proof: limits of branch and bound. @p earlier: of
-    /// the same scene on another mesh, whose bounds are used if they are of the
-    /// least J and of the loads as they are. Throws EquilibriumError if no
-    /// bound was found.
+    /// Of the displacement @p u. @p proof: limits of branch and bound.
+    /// @p earlier: of the same scene on another mesh, whose bounds are used if
+    /// they are of the least J and of the loads as they are. Throws
+    /// EquilibriumError if no bound was found.
     Certificate
-    certify(const Scene<dim>               &solved,
-            const DofVector                &u,
+    certify(const DofVector                &u,
             const BranchAndBoundParameters &proof,
             const std::function<bool()>    &may_go_on,
             const Certificate              *earlier = nullptr) const;
 
   private:
-    double
-    elastic_functional(const Scene<dim> &solved,
-                       const DofVector  &displacement) const;
+    /// For bonds that break.
+    void
+    certify_global(const DofVector                &u,
+                   const DofVector                &displacement,
+                   const BranchAndBoundParameters &proof,
+                   const std::function<bool()>    &may_go_on,
+                   const Certificate              *earlier,
+                   Certificate                    &certificate) const;
+
+    void
+    add_load_rests(const DofVector &u,
+                   const DofVector &displacement,
+                   Certificate     &certificate) const;
 
     const std::shared_ptr<const Scene<dim>> scene;
     const CertifiedMinimum                  minimum;

@@ -11,31 +11,48 @@
 #include <Eigen/Core>
 
 #include <array>
-#include <memory>
-#include <vector>
 
 namespace Debond
 {
+  template <int dim>
+  using SimplexCorners = std::array<dealii::Point<dim>, dim + 1>;
+
+  /// The area or volume of a simplex, and the outward normal of the side
+  /// opposite to each corner, as long as that side or its area.
+  template <int dim>
+  struct SimplexGeometry
+  {
+    explicit SimplexGeometry(const SimplexCorners<dim> &corners);
+
+    double                                      measure;
+    std::array<dealii::Tensor<1, dim>, dim + 1> normals;
+  };
+
+
+
+  template <int dim>
+  constexpr int n_stress_components =
+    dealii::SymmetricTensor<2, dim>::n_independent_components;
+
   /// Linear stresses on a simplex: for each corner the components xx, yy, xy,
   /// in 3D xx, yy, zz, xy, xz, yz.
   template <int dim>
   using LinearStress =
-    Eigen::Matrix<double,
-                  (dim + 1) *
-                    dealii::SymmetricTensor<2, dim>::n_independent_components,
-                  1>;
+    Eigen::Matrix<double, (dim + 1) * n_stress_components<dim>, 1>;
+
+  template <int dim>
+  constexpr int n_of_part = LinearStress<dim>::RowsAtCompileTime;
 
 
 
   /**
    * The composite equilibrium element of Fraeijs de Veubeke and of Johnson and
    * Mercier (Numer. Math. 30, 1978), in 3D that of Krizek (Numer. Math. 40,
-   * 1982): symmetric stresses that are linear on the simplices between the
-   * sides of a cell and its centre, with tractions that are continuous inside.
-   * The cell is a triangle or a tetrahedron cut at its centroid, or a
-   * parallelogram cut along its diagonals. With the divergence prescribed, 9,
-   * 30 or 13 stresses are left, as many as there are linear tractions on the
-   * sides in equilibrium.
+   * 1982): symmetric stresses that are linear on the dim + 1 simplices between
+   * the sides of a triangle or a tetrahedron and its centroid, with tractions
+   * that are continuous inside. With the divergence prescribed, 9 or 30
+   * stresses are left, as many as there are linear tractions on the sides in
+   * equilibrium.
    *
    * The tractions of all stresses sigma with div sigma + f = 0 are reached by
    * the displacements l of the sides: with the strain that sigma and the
@@ -44,81 +61,61 @@ namespace Debond
    *     max_sigma -1/2 int (sigma + p 1) : C^{-1} (sigma + p 1) + l't(sigma)
    *         = 1/2 l'K l - F'l + constant.
    *
-   * Each side has dim^2 numbers in l, component by component of dim vectors. In
-   * 2D these are the mean of the displacement and its slope, the coefficient of
-   * xi in [-1, 1] from the first to the second end; t are the work-conjugate
-   * moments of the traction with 1 and xi. In 3D they are the means of the
-   * displacement with the weights 3 lambda_k, lambda the barycentric
-   * coordinates of the side; t are a third of its area times the tractions at
-   * its corners.
+   * Side i is opposite to corner i and has the others in their order. It has
+   * dim^2 numbers in l, component by component of dim vectors: the means of the
+   * displacement with the weights dim lambda_k, lambda the barycentric
+   * coordinates of the side. Their work-conjugates t are the tractions at its
+   * corners times measure / dim.
+   *
+   * One object serves all simplices of a material that are the same at
+   * different places.
    */
   template <int dim>
   struct EquilibriumElement
   {
-    static constexpr int unknowns_of_a_side = dim * dim;
+    static constexpr unsigned int unknowns_of_a_side = dim * dim;
+    static constexpr unsigned int n_unknowns = (dim + 1) * unknowns_of_a_side;
 
-    /// What does not depend on the loads: the same for all cells of a material
-    /// that are the same polygon or tetrahedron at different places.
-    class Shape;
+    EquilibriumElement(const SimplexCorners<dim> &corners,
+                       const Material            &material);
 
-    /// Of the cell with @p corners, those of a triangle or a parallelogram
-    /// counterclockwise, those of a tetrahedron such that its volume is not
-    /// negative.
-    static std::shared_ptr<const Shape>
-    make_shape(const std::vector<dealii::Point<dim>> &corners,
-               const Material                        &material);
-
-    /// @p shape: of a cell with @p corners but for a motion without rotation.
-    /// @p body_force: constant, force per volume (per area of the plane in 2D).
-    /// @p thermal_stress: p, see Material::thermal_stress().
-    EquilibriumElement(const std::vector<dealii::Point<dim>> &corners,
-                       const std::shared_ptr<const Shape>    &shape,
-                       const dealii::Tensor<1, dim>          &body_force,
-                       const double                           thermal_stress);
+    /// The body force, constant, per volume (per area of the plane in 2D), and
+    /// p, see Material::thermal_stress().
+    using Load = Eigen::Matrix<double, dim + 1, 1>;
 
     /// With C made c times as stiff these are c K, F and constant / c.
-    const Eigen::MatrixXd &
-    K() const;
+    Eigen::MatrixXd K;
 
     Eigen::VectorXd
-    F() const;
+    F(const Load &load) const
+    {
+      return F_of_load * load;
+    }
 
     double
-    constant() const;
+    constant(const Load &load) const
+    {
+      return load.dot(constant_of_load * load);
+    }
 
-    /// The stress that is reached for @p displacements l, with C made @p weight
-    /// times as stiff: a LinearStress for each side, of the simplex above it
-    /// with the corners of the side and the centre.
+    /// The stress that is reached for l, with C made @p weight times as stiff:
+    /// a LinearStress of each part, between side i and the centroid, with the
+    /// corners of the side and the centroid.
     Eigen::VectorXd
-    stress(const Eigen::VectorXd &displacements,
-           const double           weight = 1.) const;
-
-    std::vector<dealii::Point<dim>> corners;
-    dealii::Point<dim>              centre;
-    double                          measure; ///< area or volume
+    stress(const Eigen::VectorXd &l,
+           const Load            &load,
+           const double           weight = 1.) const
+    {
+      return weight * (stress_of_l * l) + stress_of_load * load;
+    }
 
   private:
-    /// The body force, and p.
-    using LoadValues = Eigen::Matrix<double, dim + 1, 1>;
-
-    std::shared_ptr<const Shape> shape;
-    LoadValues                   load;
+    Eigen::MatrixXd                                stress_of_l;
+    Eigen::Matrix<double, Eigen::Dynamic, dim + 1> F_of_load, stress_of_load;
+    Eigen::Matrix<double, dim + 1, dim + 1>        constant_of_load;
   };
 
 
-
-  /// The corners of a side of a cell with @p n_corners: of a polygon the side
-  /// from a corner to the next one, of a tetrahedron the face opposite to a
-  /// corner, counterclockwise seen from outside.
-  template <int dim>
-  std::array<unsigned int, dim>
-  corners_of_side(const unsigned int n_corners, const unsigned int side);
-
-  /// The outward normal of a side with these corners in the order of
-  /// corners_of_side(), as long as its length or area.
-  template <int dim>
-  dealii::Tensor<1, dim>
-  scaled_normal(const std::array<dealii::Point<dim>, dim> &side);
 
   /// int sigma : C^{-1} sigma over a simplex of the given area or volume, C
   /// that of the material.

@@ -26,16 +26,15 @@ namespace Debond
 
 
   /**
-   * What EquilibriumProblem is of a body: where its elements are, the sides
-   * between them with their unknowns, which of these are fixed, and the loads
-   * as linear stresses see them.
+   * What EquilibriumProblem is of a body: its active cells, which are the
+   * elements, the sides between them with their unknowns, which of these are
+   * fixed, and the loads as linear stresses see them.
    *
-   * Where the four triangles at a vertex are a parallelogram of one material
-   * they are one element, all other cells are elements of their own. A side
-   * has dim^2 unknowns, see EquilibriumElement, normal and tangential ones on
-   * the contact boundary and on rollers. Loads are represented by the linear
+   * A side has dim^2 unknowns, see EquilibriumElement, vector by vector in the
+   * order of the numbers of its vertices, normal and tangential ones on the
+   * contact boundary and on rollers. Loads are represented by the linear
    * tractions with the same moments on each side and by the mean body force of
-   * each element.
+   * each cell.
    */
   template <int dim>
   class EquilibriumMesh
@@ -45,69 +44,20 @@ namespace Debond
       EquilibriumElement<dim>::unknowns_of_a_side;
 
     using Cell = typename dealii::Triangulation<dim>::cell_iterator;
-
-    struct Side
-    {
-      std::array<unsigned int, dim> vertices; ///< sorted
-
-      /// Unit directions of its unknowns in the rows: the coordinates', or
-      /// normal and tangential.
-      dealii::Tensor<2, dim> directions;
-    };
-
-
-
-    /// An element in the mesh: its corners in their order, the active cell
-    /// above each of its sides (always the same one but in parallelograms), its
-    /// sides, and where in their vertices the corners of each are, see
-    /// corners_of_side().
-    struct Place
-    {
-      std::vector<unsigned int>                  vertices;
-      std::vector<Cell>                          cells;
-      std::vector<unsigned int>                  sides;
-      std::vector<std::array<unsigned int, dim>> positions;
-      dealii::Tensor<1, dim>                     body_force;
-
-      /// In how many parts its sides and its centre divide a cell.
-      double
-      parts_of_a_cell() const
-      {
-        return vertices.size() == dim + 1 ? dim + 1. : 1.;
-      }
-
-      /// Of a side, in the order of corners_of_side().
-      std::array<unsigned int, dim>
-      side(const unsigned int number) const
-      {
-        std::array<unsigned int, dim> result =
-          corners_of_side<dim>(static_cast<unsigned int>(vertices.size()),
-                               number);
-        for (unsigned int &corner : result)
-          corner = vertices[corner];
-        return result;
-      }
-    };
-
-
+    using Load = typename EquilibriumElement<dim>::Load;
 
     /// A side on the contact boundary.
     struct ContactSide
     {
       std::array<dealii::Point<dim>, dim> corners;
-      std::array<unsigned int, dim>       vertices; ///< in this order
+      std::array<unsigned int, dim>       vertices; ///< in this order, rising
       dealii::Tensor<1, dim>              normal;   ///< outward unit normal
       double                              measure;  ///< length or area
-      unsigned int                        element;  ///< above it
       Cell                                cell;     ///< above it, active
-      dealii::types::material_id          material;
       dealii::types::boundary_id          id;
       std::array<double, dim>             gap; ///< initial one, at the corners
 
-      /// The unknowns of the normal displacement. In 2D its mean and its slope,
-      /// the coefficient of xi from -1 at the first to 1 at the second end; in
-      /// 3D its means with the weights 3 lambda_k, lambda_k being 1 at the k-th
-      /// corner.
+      /// Of the normal displacement: its means with the weights dim lambda_k.
       std::array<unsigned int, dim> unknowns;
     };
 
@@ -135,16 +85,11 @@ namespace Debond
       return mesh;
     }
 
-    const std::vector<Place> &
-    places() const
+    /// Of an active cell, as of all others.
+    const Load &
+    load(const unsigned int cell) const
     {
-      return all_places;
-    }
-
-    const std::vector<Side> &
-    sides() const
-    {
-      return all_sides;
+      return loads_of_cells[cell];
     }
 
     const std::vector<ContactSide> &
@@ -153,17 +98,30 @@ namespace Debond
       return sides_in_contact;
     }
 
-    double
-    thermal_stress(const Cell &cell) const
-    {
-      return thermal_stresses.empty() ?
-               0. :
-               thermal_stresses[cell->active_cell_index()];
-    }
+    /// Those of a cell but one, in its order.
+    static std::array<unsigned int, dim>
+    vertices_of_side(const Cell &cell, const unsigned int corner);
+
+    /// The first unknown of the side of a cell that is opposite to a corner.
+    static unsigned int
+    first_unknown(const Cell &cell, const unsigned int corner);
 
     /// Of its sides, one after the other.
-    std::vector<unsigned int>
-    unknowns_of(const Place &place) const;
+    static std::vector<unsigned int>
+    unknowns_of(const Cell &cell);
+
+    /// R with l = R x for x these unknowns and l of EquilibriumElement;
+    /// orthogonal.
+    Eigen::MatrixXd
+    rotation(const Cell &cell) const;
+
+    /// Unit directions of the unknowns of a side in the rows: the coordinates',
+    /// or normal and tangential.
+    const dealii::Tensor<2, dim> &
+    directions(const unsigned int first_unknown) const
+    {
+      return all_directions[first_unknown / unknowns_of_a_side];
+    }
 
     /// Fixes an unknown.
     void
@@ -181,8 +139,7 @@ namespace Debond
     unsigned int
     n_free_unknowns() const;
 
-    /// The work-conjugates of all unknowns, those of a side after those of the
-    /// one before.
+    /// The work-conjugates of all unknowns.
     const Eigen::VectorXd &
     loads_on_sides() const
     {
@@ -198,7 +155,7 @@ namespace Debond
     }
 
     /// Whether tractions, gaps and prescribed displacements are linear on each
-    /// side, and body forces and temperatures constant on each element, to
+    /// side, and body forces and temperatures constant on each cell, to
     /// rounding.
     bool
     loads_are_exact() const
@@ -213,43 +170,60 @@ namespace Debond
     }
 
   private:
-    void
-    find_elements();
+    /// A side at the boundary.
+    struct BoundarySide
+    {
+      Cell                                cell;
+      unsigned int                        first_unknown;
+      std::array<unsigned int, dim>       vertices; ///< rising
+      std::array<dealii::Point<dim>, dim> corners;
+      dealii::types::boundary_id          id;
+      dealii::Tensor<1, dim>              normal;
+      double                              measure;
+      double                              diameter;
+    };
 
-    /// Parallelograms of four triangles.
     void
-    find_parallelograms(std::vector<char> &is_taken);
-
-    void
-    find_body_forces(const Loads<dim> &given);
+    find_loads_of_cells(const Loads<dim>          &given,
+                        const std::vector<double> &thermal_stresses);
 
     /// Whether the change of temperature is the same everywhere on each cell.
     bool
     is_temperature_exact(const Loads<dim> &given) const;
 
     void
-    make_sides();
+    set_supports(const BoundarySide       &side,
+                 const BoundaryConditions &conditions,
+                 const Supports<dim>      &supports);
 
     void
-    fix_sides(const BoundaryConditions &conditions,
-              const Supports<dim>      &supports,
-              const Loads<dim>         &given);
+    set_contact(const BoundarySide       &side,
+                const BoundaryConditions &conditions,
+                const Supports<dim>      &supports);
 
-    /// The values of a function at the corners of a side.
+    void
+    set_traction(const BoundarySide &side, const Loads<dim> &given);
+
+    /// The normal comes first.
+    void
+    use_normal(const BoundarySide &side);
+
+    void
+    fix(const BoundarySide &side, const unsigned int direction);
+
+    /// The values of a function at the corners of a side become the
+    /// displacement in a direction, and are returned.
     std::array<double, dim>
-    linear_values(const dealii::Function<dim>         &function,
-                  const unsigned int                   component,
-                  const std::array<unsigned int, dim> &side_vertices);
-
-    std::array<dealii::Point<dim>, dim>
-    corners(const std::array<unsigned int, dim> &side_vertices) const;
+    prescribe(const BoundarySide          &side,
+              const unsigned int           direction,
+              const dealii::Function<dim> &function,
+              const unsigned int           component);
 
     const dealii::Triangulation<dim> &mesh;
-    const std::vector<double>         thermal_stresses;
+    std::vector<Load>                 loads_of_cells;
 
-    std::vector<Place>       all_places;
-    std::vector<Side>        all_sides;
-    std::vector<ContactSide> sides_in_contact;
+    std::vector<dealii::Tensor<2, dim>> all_directions; ///< of sides
+    std::vector<ContactSide>            sides_in_contact;
 
     // By unknown.
     std::vector<char> fixed;
@@ -259,6 +233,19 @@ namespace Debond
     bool                  exact_loads = true;
     std::vector<LoadRest> all_rests;
   };
+
+
+
+  /// The corners of a cell.
+  template <int dim>
+  SimplexCorners<dim>
+  corners_of(const typename dealii::Triangulation<dim>::cell_iterator &cell)
+  {
+    SimplexCorners<dim> corners;
+    for (unsigned int v = 0; v <= dim; ++v)
+      corners[v] = cell->vertex(v);
+    return corners;
+  }
 } // namespace Debond
 
 #endif

@@ -15,10 +15,10 @@ namespace Debond
 {
   /**
    * The best equilibrated stress of a body for given normal displacements of
-   * its contact boundary, by EquilibriumElement on the elements of an
-   * EquilibriumMesh. The tractions between elements are made continuous by the
-   * displacements of the sides (hybridisation), which are the unknowns. The
-   * matrix is symmetric and positive definite.
+   * its contact boundary, by an EquilibriumElement for each active cell. The
+   * tractions between cells are made continuous by the displacements of the
+   * sides (hybridisation), which are the unknowns. The matrix is symmetric and
+   * positive definite.
    */
   template <int dim>
   class EquilibriumProblem
@@ -34,23 +34,16 @@ namespace Debond
                        const Loads<dim>                 &loads,
                        const std::vector<double>        &thermal_stresses = {});
 
-    const std::vector<EquilibriumElement<dim>> &
-    elements() const
+    unsigned int
+    n_cells() const
     {
-      return all_elements;
+      return static_cast<unsigned int>(elements.size());
     }
 
     const std::vector<ContactSide> &
     contact_sides() const
     {
       return mesh.contact_sides();
-    }
-
-    /// Of the mesh.
-    const std::vector<dealii::Point<dim>> &
-    vertices() const
-    {
-      return mesh.triangulation().get_vertices();
     }
 
     /// Fixes an unknown, before anything is condensed.
@@ -75,24 +68,23 @@ namespace Debond
     }
 
     /// The problem condensed onto the first unknowns of the contact sides in
-    /// their order, the means in 2D, then the second ones (and the third ones):
+    /// their order, then the second ones (and the third ones):
     ///     max_sigma -1/2 int (sigma + p 1) : C^{-1} (sigma + p 1)
     ///               + int_{Gamma_C} sigma_nu (p + gap)
     ///               + the work of sigma along prescribed displacements
     ///         = c_0 + 1/2 s'S s - g's,
-    /// p + gap the linear normal displacement, s the unknowns of p. Each
-    /// element is @p weights times as stiff (all as they are if empty).
+    /// p + gap the linear normal displacement, s the unknowns of p. Each cell
+    /// is @p weights times as stiff (all as they are if empty).
     ///
     /// Throws std::runtime_error if the matrix of the other unknowns is not
     /// positive definite.
     std::unique_ptr<Condensation>
     condense(const std::vector<double> &weights = {}) const;
 
-    /// The stress of each element, see EquilibriumElement::stress(), for all
-    /// unknowns, those of a condensation with these @p weights.
+    /// The stress of each cell, see EquilibriumElement::stress(), for all
+    /// unknowns, those of a condensation without weights.
     std::vector<Eigen::VectorXd>
-    stresses(const DofVector           &unknowns,
-             const std::vector<double> &weights = {}) const;
+    stresses(const DofVector &unknowns) const;
 
     /// 1/2 a(u,u) - L(u) of the displacement @p u, the Cartesian values at the
     /// nodes of @p fields on this mesh, for the loads as represented here.
@@ -100,21 +92,16 @@ namespace Debond
     elastic_functional(const ElasticFields<dim> &fields,
                        const DofVector          &u) const;
 
-    /// Of each element int epsilon(u) : C epsilon(u).
-    std::vector<double>
-    element_energies(const ElasticFields<dim> &fields,
-                     const DofVector          &u) const;
-
     /// Of each active cell how much work tractions on its sides may do that is
     /// not in the loads here, nothing if all are linear: by Cauchy's inequality
-    /// for the strain energy of u and elementary_trace_constant(), which is of
-    /// rectangles, so that it is an estimate.
+    /// for the strain energy of u and the trace constant of a rectangle above
+    /// the side, so that it is an estimate.
     std::vector<double>
     load_rests(const ElasticFields<dim> &fields, const DofVector &u) const;
 
     /// Of each active cell
     ///     1/2 int |C^{1/2} epsilon(u) - C^{-1/2} (sigma + p 1)|^2
-    /// of u as above and of @p stresses without weights.
+    /// of u as above and of @p stresses.
     std::vector<double>
     constitutive_gaps(const ElasticFields<dim>           &fields,
                       const DofVector                    &u,
@@ -135,33 +122,42 @@ namespace Debond
     mean_stresses(const std::vector<Eigen::VectorXd> &stresses) const;
 
   private:
-    using Cell  = typename EquilibriumMesh<dim>::Cell;
-    using Side  = typename EquilibriumMesh<dim>::Side;
-    using Place = typename EquilibriumMesh<dim>::Place;
+    using Element = EquilibriumElement<dim>;
 
     void
     make_elements();
 
-    /// l of EquilibriumElement as linear functions of the unknowns of the
-    /// element's sides: calls @p add(row, column, coefficient).
-    template <typename Add>
-    void
-    for_each_coefficient(const Place &place, const Add &add) const;
+    EquilibriumMesh<dim>     mesh;
+    const ByRegion<Material> materials;
 
-    /// Of the forces that belong to the unknowns along EquilibriumMesh's
-    /// lifting.
-    double
-    work_of_lifting(const DofVector           &unknowns,
-                    const std::vector<double> &weights) const;
-
-    /// Of the unknowns of the element's sides.
-    Eigen::MatrixXd
-    matrix_of(const unsigned int element) const;
-
-    EquilibriumMesh<dim>                 mesh;
-    const ByRegion<Material>             materials;
-    std::vector<EquilibriumElement<dim>> all_elements;
+    /// Of the active cells; those that are the same share one.
+    std::vector<std::shared_ptr<const Element>> elements;
   };
+
+
+
+  /// The condensed problem of a plane body in the means m and the slopes k of
+  /// the displacements m + k xi of its contact sides, xi from -1 at the first
+  /// to 1 at the second corner: c_0 + 1/2 x'A x - b'x, x = (m, k).
+  struct MeansAndSlopes
+  {
+    explicit MeansAndSlopes(const Condensation &condensed);
+
+    Eigen::MatrixXd A;
+    Eigen::VectorXd b;
+
+    /// The kept unknowns of the condensation.
+    static Eigen::VectorXd
+    unknowns(const Eigen::VectorXd &x);
+  };
+
+
+
+  /// Of each active cell int epsilon(u) : C epsilon(u), u the Cartesian values
+  /// at the nodes.
+  template <int dim>
+  std::vector<double>
+  strain_energies(const ElasticFields<dim> &fields, const DofVector &u);
 } // namespace Debond
 
 #endif

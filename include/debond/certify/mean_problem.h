@@ -143,7 +143,8 @@ namespace Debond
     double
     available(const unsigned int i) const
     {
-      return 0.9 * trace_constants[i] / sharers[sides[i].element];
+      return 0.9 * trace_constants[i] /
+             sharers[sides[i].cell->active_cell_index()];
     }
 
     const EquilibriumProblem<2>                           &equilibrium;
@@ -152,7 +153,7 @@ namespace Debond
     const std::vector<BranchMinimum>                      &laws;
     const std::vector<EquilibriumProblem<2>::ContactSide> &sides;
     const unsigned int                                     n;
-    std::vector<unsigned int> sharers; ///< of elements
+    std::vector<unsigned int> sharers; ///< contact sides of each cell
   };
 } // namespace Debond
 

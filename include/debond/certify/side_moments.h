@@ -19,17 +19,15 @@ namespace Debond
   template <int dim>
   struct SideTraction
   {
-    /// The work-conjugates of the side's unknowns relative to its length or
-    /// area, vector by vector, see EquilibriumElement.
-    std::array<dealii::Tensor<1, dim>, dim> conjugates;
+    /// Of the linear one with the same moments, in the order of the corners.
+    std::array<dealii::Tensor<1, dim>, dim> at_corners;
 
     /// The mean square of what is not linear, 0 if that is rounding.
     double rest;
   };
 
   /// @p traction: force per area (per length in 2D) at a point, integrated as
-  /// load_vector() does it; @p corners: of the side, in the order of its
-  /// unknowns.
+  /// load_vector() does it; @p corners: of the side.
   template <int dim>
   SideTraction<dim>
   side_traction(
@@ -67,8 +65,8 @@ namespace Debond
   const std::vector<std::pair<std::array<double, dim>, double>> &
   side_rule();
 
-  /// The unknowns of a side of a displacement, vector by vector, see
-  /// EquilibriumElement.
+  /// The means of a displacement with the weights dim lambda_k, lambda the
+  /// barycentric coordinates of the side.
   template <int dim>
   std::array<dealii::Tensor<1, dim>, dim>
   side_unknowns(const SideDisplacement<dim> &u);

@@ -75,11 +75,11 @@ namespace Debond
       BranchAndBoundResult
       run(const std::function<bool(const ProofProgress &)> &monitor)
       {
-        const double certified = node_bound.certificate(result.s);
-        if (certified >= result.upper - parameters.tolerance)
+        const double at_start = node_bound.bound_at(result.s);
+        if (at_start >= result.upper - parameters.tolerance)
           {
             result.status  = ProofStatus::proved;
-            least_left_out = certified;
+            least_left_out = at_start;
             result.nodes   = 1;
           }
         else if (parameters.maximum_nodes > 0)
@@ -87,14 +87,14 @@ namespace Debond
             auto root = node_bound.root(result.upper);
             if (!root)
               return result;
-            root->bound = std::max(root->bound, certified);
+            root->bound = std::max(root->bound, at_start);
             open.insert(*root);
             result.status = ProofStatus::proved;
           }
         else
           {
             result.status  = ProofStatus::node_limit;
-            least_left_out = certified;
+            least_left_out = at_start;
           }
         unsigned int next_record = 1;
         while (!open.empty() && result.status == ProofStatus::proved)

@@ -30,10 +30,11 @@ namespace Debond
     /// beside the bound of the lower one of its halves.
     constexpr double envelope_weight = 0.3;
 
-    /// What a certificate takes more than it needs, relative to that and to the
-    /// curvature of branch or body: a residual d of s then costs d^2 / (2 D).
-    constexpr double certificate_excess = 1e-2;
-    constexpr double certificate_floor  = 1e-8;
+    /// What a bound at a point takes more than it needs, relative to that and
+    /// to the curvature of branch or body: a residual d of s then costs d^2 /
+    /// (2 D).
+    constexpr double excess_at_point = 1e-2;
+    constexpr double floor_at_point  = 1e-8;
 
 
 
@@ -364,7 +365,7 @@ namespace Debond
 
 
   double
-  NodeBound::certificate(const Eigen::VectorXd &s) const
+  NodeBound::bound_at(const Eigen::VectorXd &s) const
   {
     constexpr double nothing = -std::numeric_limits<double>::infinity();
     // With this convexity r_i s_i + f_i(s_i) is least where it is stationary.
@@ -383,8 +384,8 @@ namespace Debond
               convexity =
                 std::max(convexity, needed_convexity(f_i[own], f_i[k], s(i)));
           }
-        A(i, i) -= (1. + certificate_excess) * convexity +
-                   certificate_floor * std::min(largest, S(i, i));
+        A(i, i) -= (1. + excess_at_point) * convexity +
+                   floor_at_point * std::min(largest, S(i, i));
         // What was taken, without the rounding of the difference.
         f[i].convexity = S(i, i) - A(i, i);
         if (!(A(i, i) > 0.))

@@ -18,7 +18,7 @@ namespace Debond
     /// this below the best known one, an energy.
     double tolerance = 0.;
 
-    /// With 0 there is only the certificate of the start.
+    /// With 0 there is only the bound at the start, NodeBound::bound_at().
     unsigned int maximum_nodes = 1000000;
 
     /// Whether a node is left once a relaxation decides less than half of the

@@ -119,8 +119,8 @@ namespace Debond
 
     unsigned int n_threads = 1;
 
-    /// Not only the certificate but the first node of branch and bound is
-    /// tried before the search, whether Phi is separable or not.
+    /// Not only the bound at the minimum but the first node of branch and bound
+    /// is tried before the search, whether Phi is separable or not.
     bool proof_first = false;
   };
 
@@ -142,12 +142,12 @@ namespace Debond
 
   /**
    * Improves a minimum with as much effort as it takes to prove it, up to a
-   * limit: nothing if its certificate does
-   * (NodeBound::certificate) or, with proof_first, the first node of branch
+   * limit: nothing if the bound at it does
+   * (NodeBound::bound_at) or, with proof_first, the first node of branch
    * and bound, or up to 100 unknowns a few relaxations of that node
    * (BranchAndBoundParameters::only_while_halving), else a search that starts
    * from rest and from all bonds broken and moves edges by one node; if the
-   * certificate of what that finds is not enough, the first node of branch and
+   * bound at what that finds is not enough, the first node of branch and
    * bound; then the full search, and branch and bound with a number of nodes
    * that depends on n only, 500 up to n = 92 and as n^-3 from there on; both
    * again, at most thrice, if that finds something. @p may_end is asked after

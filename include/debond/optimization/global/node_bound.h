@@ -94,7 +94,7 @@ namespace Debond
     /// at s_i, leaves S positive definite; minus infinity if it does not. Takes
     /// one factorisation.
     double
-    certificate(const Eigen::VectorXd &s) const;
+    bound_at(const Eigen::VectorXd &s) const;
 
     /// Raises the node's bound and shrinks its box; with @p only_while_halving
     /// as long as each relaxation decides half of what is undecided.
