@@ -313,8 +313,10 @@ namespace Debond
               loads.segment<unknowns_of_a_side<dim>>(first);
             if (own.isZero(0.))
               continue;
-            const auto l = side_unknowns(SideDisplacement<dim>(
-              fields.unknowns(), u, cell, mesh.vertices_of_side(cell, corner)));
+            auto vertices = mesh.vertices_of_side(cell, corner);
+            std::sort(vertices.begin(), vertices.end());
+            const auto l = side_unknowns(
+              SideDisplacement<dim>(fields.unknowns(), u, cell, vertices));
             for (unsigned int k = 0; k < dim; ++k)
               for (unsigned int d = 0; d < dim; ++d)
                 sum -= own(dim * k + d) * (l[k] * mesh.directions(first)[d]);
