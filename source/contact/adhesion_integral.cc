@@ -76,6 +76,9 @@ namespace Debond
           add(at(face, boundary.held_vertices[face.held_at(k)].position),
               face.measure,
               held[face.held_at(k)]);
+        else if (k < dim)
+          // What is said of a face asks for the bonds of all its vertices.
+          at(face, face.vertices[k]);
 
     const auto mean = [](const Sum &sum) -> BondScale {
       if (!sum.is_mixed)
