@@ -76,12 +76,13 @@ namespace Debond
 
 
 
+    /// From @p s, which becomes the result; where it is empty, from rest or
+    /// from coarser contact boundaries.
     template <int dim>
     void
     solve_by_majorise_minimise(const MajoriseMinimise &method,
                                const Scene<dim>       &scene,
                                const Condensation     &condensed,
-                               const bool              has_start,
                                Watch                  &watch,
                                Eigen::VectorXd        &s,
                                SolveResult            &result)
@@ -95,6 +96,7 @@ namespace Debond
       const Eigen::MatrixXd free_motions = free_motions_of_contact(unknowns);
       const Eigen::VectorXd g =
         load_at_contact(scene.problem(), condensed, 1., free_motions);
+      const bool has_start = s.size() > 0;
       if (!has_start && is_loose)
         s = unknowns.contact().at_rest();
       else if (!has_start)
@@ -274,13 +276,15 @@ namespace Debond
       }
     watch.add_energy(condensed.energy_at_zero());
     timer.restart();
-    Eigen::VectorXd s =
-      Eigen::VectorXd::Zero(problem.unknowns().contact().size());
+    const Eigen::Index n_nodes = problem.unknowns().contact().size();
+    Eigen::VectorXd    s;
     if (start != nullptr)
       s = problem.unknowns().contact().trace(*start).cwiseMin(0.);
     // If no contact node is free, there is no metric either.
-    if (choice.method == SolverMethod::energy_bundle && s.size() > 0)
+    if (choice.method == SolverMethod::energy_bundle && n_nodes > 0)
       {
+        if (start == nullptr)
+          s = Eigen::VectorXd::Zero(n_nodes);
         add_bundle_result(
           minimise_by_energy_bundle<dim>(parameters.energy_bundle,
                                          problem.unknowns().contact(),
@@ -297,7 +301,6 @@ namespace Debond
       solve_by_majorise_minimise(MajoriseMinimise(parameters.majorise_minimise),
                                  scene,
                                  condensed,
-                                 start != nullptr,
                                  watch,
                                  s,
                                  result);
