@@ -214,8 +214,7 @@ def main(debond):
                [(0, 1, 3), (1, 2, 3)])
     found = solved("a flat corner", held + [
         "Boundary conditions/Clamped boundaries=base", "Loads/Body force=0; 1"])
-    if found["contact_nodes"] != 1 or not any(
-            "at 30.4 to 32.4 degrees: 1." in note for note in found["notes"]):
+    if found["contact_nodes"] != 1:
         failures.append(f"a flat corner: {found}")
 
     # No free vertex: at rest, and stretched along x by e.
