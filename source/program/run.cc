@@ -17,9 +17,9 @@
 #include <debond/output/run_result.h>
 #include <debond/program/check_result.h>
 #include <debond/program/run.h>
+#include <debond/program/run_state.h>
 #include <debond/solve/displacement.h>
 #include <debond/solve/load_path.h>
-#include <debond/solve/run_state.h>
 
 #include <filesystem>
 #include <memory>

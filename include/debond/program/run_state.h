@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_solve_run_state_h
-#define debond_solve_run_state_h
+#ifndef debond_program_run_state_h
+#define debond_program_run_state_h
 
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/solve/adaptive_loop.h>
