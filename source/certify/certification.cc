@@ -116,6 +116,9 @@ namespace Debond
           }
       return {field};
     }
+
+
+
     void
     write_certified_sides(const Certificate &certificate,
                           const AdhesiveLaw &law,

@@ -235,19 +235,6 @@ namespace Debond
 
 
   template <int dim>
-  dealii::Tensor<1, dim>
-  ElasticFields<dim>::total_load(const LoadFactors factors) const
-  {
-    const DofVector        applied_forces = applied_nodal_forces(factors);
-    dealii::Tensor<1, dim> result;
-    for (unsigned int i = 0; i < applied_forces.size(); ++i)
-      result[i % dim] += applied_forces(i);
-    return result;
-  }
-
-
-
-  template <int dim>
   CellStresses<dim>::CellStresses(const ElasticFields<dim> &fields,
                                   const DofVector  &cartesian_displacement,
                                   const LoadFactors factors,

@@ -93,8 +93,9 @@ namespace Debond
             remove_files(files, parameters.output.directory);
             if (begun_path.steps.empty())
               path_output->remove_steps();
-            if (!options.restart && is_first_rank())
-              std::filesystem::remove(state_file());
+            if (!options.restart)
+              remove_files({{"restart.state", {}, {}}},
+                           parameters.output.directory);
             written.push_back(
               output_path(parameters.output.directory, "parameters.prm"));
             write_atomically(written.back(), [&](std::ostream &file) {
@@ -364,6 +365,7 @@ namespace Debond
               {
                 for (const std::string &file : written)
                   std::filesystem::remove(file);
+                std::filesystem::remove(state_file());
                 lock->withdraw();
               }
             throw;

@@ -46,6 +46,20 @@ field(const typename Field<dim>::Expression &expression,
 
 
 
+/// The resultant of all loads.
+template <int dim>
+dealii::Tensor<1, dim>
+total_load(const Debond::ElasticProblem<dim> &problem)
+{
+  const Debond::DofVector forces = problem.fields().applied_nodal_forces();
+  dealii::Tensor<1, dim>  result;
+  for (unsigned int i = 0; i < forces.size(); ++i)
+    result[i % dim] += forces(i);
+  return result;
+}
+
+
+
 /// Without prescribed displacements.
 template <int dim>
 dealii::Vector<double>

@@ -62,7 +62,7 @@ struct Bar
       return t;
     })}};
     problem->assemble(Material(), loads);
-    return problem->fields().total_load()[1];
+    return total_load(*problem)[1];
   }
 
   double
@@ -75,7 +75,7 @@ struct Bar
       return f;
     });
     problem->assemble(Material(), loads);
-    return problem->fields().total_load()[0];
+    return total_load(*problem)[0];
   }
 
   /// Whether there is one note with all these words.
@@ -228,7 +228,7 @@ error_of_ring(const unsigned int refinements)
   problem.assemble(material, loads);
   // Whatever the polygon, the pressure's force is that on its projection.
   check("force of the pressure",
-        (problem.fields().total_load() - Tensor<1, 2>({p, p})).norm() / p,
+        (total_load(problem) - Tensor<1, 2>({p, p})).norm() / p,
         1e-12);
   return displacement_error(problem,
                             solve(problem),

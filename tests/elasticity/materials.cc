@@ -190,7 +190,7 @@ test_temperature(const Material &material, const double alpha)
   check("the force of the left side",
         std::abs(force / (2. * pressure) - 1.),
         1e-12);
-  check("no resultant", held.fields().total_load().norm() / pressure, 1e-13);
+  check("no resultant", total_load(held).norm() / pressure, 1e-13);
 }
 
 

@@ -42,19 +42,6 @@ namespace Debond
 
 
 
-  /// The number of the edge between two vertices.
-  constexpr unsigned int
-  edge_between(const unsigned int a, const unsigned int b)
-  {
-    unsigned int e = 0;
-    while (!((simplex_edges[e][0] == a && simplex_edges[e][1] == b) ||
-             (simplex_edges[e][0] == b && simplex_edges[e][1] == a)))
-      ++e;
-    return e;
-  }
-
-
-
   /// The values of the basis; of degree 1 those of edges are zero.
   template <std::size_t n>
   std::array<double, n_coefficients(n, 2)>

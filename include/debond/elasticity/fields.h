@@ -49,10 +49,6 @@ namespace Debond
     DofVector
     applied_nodal_forces(const LoadFactors factors = 1.) const;
 
-    /// The resultant of all applied loads, in Cartesian components.
-    dealii::Tensor<1, dim>
-    total_load(const LoadFactors factors = 1.) const;
-
     /**
      * A u - f with @p factors times the load and prescribed displacements, at
      * every degree of freedom, the constrained ones included: internal forces,
