@@ -26,8 +26,8 @@ namespace Debond
       std::vector<double>                 measures;
       std::vector<double>                 gaps;
 
-      /// On one of its faces.
-      bool is_tangential_fixed = false;
+      /// Of its faces that hold tangential displacements.
+      std::vector<dealii::Tensor<1, dim>> fixed_normals;
 
       /// Of its faces, and for each group the node or the held vertex.
       std::vector<unsigned int> groups;
@@ -160,6 +160,9 @@ namespace Debond
       {
         boundary.degree = degree;
         find_vertices(conditions);
+        if (!supports.gaps.empty())
+          for (const SupportedDof &supported : node_supports.supported())
+            clamps.emplace(supported.dof, supported.support);
         for (auto &[index, vertex] : vertices)
           make_nodes(index, vertex);
       }
@@ -192,20 +195,46 @@ namespace Debond
       {
         for (unsigned int f = 0; f < faces.size(); ++f)
           for (unsigned int v = 0; v < faces[f].n_nodes; ++v)
-            if (!node_supports.constraints().is_constrained(
-                  faces[f].dofs[v][0]))
-              {
-                ContactVertex<dim> &vertex = vertices[faces[f].indices[v]];
-                vertex.dofs                = faces[f].dofs[v];
-                vertex.position            = faces[f].positions[v];
-                places[f][v] = static_cast<unsigned int>(vertex.normals.size());
-                vertex.normals.push_back(faces[f].normal);
-                vertex.measures.push_back(faces[f].measure);
-                vertex.gaps.push_back(gap_at(supports, faces[f], v));
-                vertex.is_tangential_fixed =
-                  vertex.is_tangential_fixed ||
-                  conditions.fixes_tangential(faces[f].id);
-              }
+            {
+              ContactVertex<dim> &vertex = vertices[faces[f].indices[v]];
+              vertex.dofs                = faces[f].dofs[v];
+              vertex.position            = faces[f].positions[v];
+              places[f][v] = static_cast<unsigned int>(vertex.normals.size());
+              vertex.normals.push_back(faces[f].normal);
+              vertex.measures.push_back(faces[f].measure);
+              vertex.gaps.push_back(gap_at(supports, faces[f], v));
+              if (conditions.fixes_tangential(faces[f].id))
+                vertex.fixed_normals.push_back(faces[f].normal);
+            }
+      }
+
+      /// Throws unless a multiple of @p normal is a displacement that supports
+      /// allow: where u_tau = 0 meets another value, the displacement jumps,
+      /// which no displacement of finite energy does.
+      void
+      check_prescribed(const PrescribedNode<dim>    &prescribed,
+                       const dealii::Tensor<1, dim> &normal) const
+      {
+        double product = 0., square = 0., largest = 0.;
+        for (const auto &row : prescribed.rows)
+          {
+            const double part = row.direction * normal;
+            product += part * row.value;
+            square += part * part;
+            largest = std::max(largest, std::abs(row.value));
+          }
+        constexpr double rounding = 1e-8;
+        const double     multiple =
+          square > rounding * rounding ? product / square : 0.;
+        for (const auto &row : prescribed.rows)
+          if (std::abs(row.value - multiple * (row.direction * normal)) >
+              rounding * largest)
+            throw SupportError(SupportError::Subject::displacement,
+                               node_supports.names()[row.support],
+                               "the displacement at " +
+                                 point_text(prescribed.position) +
+                                 " is prescribed otherwise by Tangential "
+                                 "displacement = fixed");
       }
 
       /// A node for each group of normals along which the displacement is
@@ -224,6 +253,17 @@ namespace Debond
         PrescribedNode<dim> prescribed =
           node_supports.prescribed_at(index, vertex.dofs, vertex.position);
         const auto &rows = prescribed.rows;
+        for (const dealii::Tensor<1, dim> &normal : vertex.fixed_normals)
+          check_prescribed(prescribed, normal);
+        // As far from the foundation as at rest.
+        const bool is_clamped =
+          node_supports.constraints().is_constrained(vertex.dofs[0]);
+        const auto   clamp   = clamps.find(vertex.dofs[0]);
+        unsigned int support = no_node;
+        if (is_clamped && clamp != clamps.end())
+          support = clamp->second;
+        else if (!rows.empty())
+          support = rows[0].support;
 
         // A normal displacement is unknown unless supports prescribe it.
         std::vector<unsigned int> unknown;
@@ -232,10 +272,10 @@ namespace Debond
             dealii::Tensor<1, dim> rest = normals[k];
             for (const auto &row : rows)
               rest -= (normals[k] * row.direction) * row.direction;
-            if (rest.norm() > 1e-6)
+            if (rest.norm() > 1e-6 && !is_clamped)
               unknown.push_back(k);
           }
-        if (vertex.is_tangential_fixed &&
+        if (!is_clamped && !vertex.fixed_normals.empty() &&
             (normals.size() > 1 || unknown.empty()))
           {
             // Where normals differ, all displacements are tangential to one,
@@ -282,7 +322,7 @@ namespace Debond
           if (vertex.nodes[k] == no_node)
             vertex.held[k] = hold({prescribed.displacement() * normals[k],
                                    gaps[k],
-                                   rows.empty() ? no_node : rows[0].support,
+                                   support,
                                    normals[k],
                                    vertex.position});
         if (unknown.empty())
@@ -291,7 +331,7 @@ namespace Debond
         node_supports.add_frame(index,
                                 prescribed,
                                 directions,
-                                vertex.is_tangential_fixed);
+                                !vertex.fixed_normals.empty());
       }
 
       /// Returns the number of the vertex among those that are held.
@@ -306,15 +346,6 @@ namespace Debond
       void
       add_faces(const std::vector<unsigned int> &place)
       {
-        std::map<dealii::types::global_dof_index, unsigned int>
-          supports_of_dofs;
-        if (!supports.gaps.empty())
-          for (const SupportedDof &supported : node_supports.supported())
-            supports_of_dofs.emplace(supported.dof, supported.support);
-        const auto support_of = [&](const dealii::types::global_dof_index dof) {
-          const auto entry = supports_of_dofs.find(dof);
-          return entry == supports_of_dofs.end() ? no_node : entry->second;
-        };
         for (unsigned int f = 0; f < faces.size(); ++f)
           {
             typename ContactBoundary<dim>::Face face;
@@ -329,21 +360,10 @@ namespace Debond
                   v < dim ? face.nodes[v] : face.edge_nodes[v - dim];
                 unsigned int &face_held =
                   v < dim ? face.held[v] : face.edge_held[v - dim];
-                const auto entry = vertices.find(faces[f].indices[v]);
-                if (entry == vertices.end())
-                  {
-                    // Clamped, as far from the foundation as at rest.
-                    face_node = no_node;
-                    face_held = hold({0.,
-                                      gap_at(supports, faces[f], v),
-                                      support_of(faces[f].dofs[v][0]),
-                                      faces[f].normal,
-                                      faces[f].positions[v]});
-                    continue;
-                  }
-                const ContactVertex<dim> &vertex = entry->second;
-                const unsigned int        group  = vertex.groups[places[f][v]];
-                const unsigned int        node   = vertex.nodes[group];
+                const ContactVertex<dim> &vertex =
+                  vertices.at(faces[f].indices[v]);
+                const unsigned int group = vertex.groups[places[f][v]];
+                const unsigned int node  = vertex.nodes[group];
                 face_node = node == no_node ? no_node : place[node];
                 face_held = vertex.held[group];
               }
@@ -356,8 +376,11 @@ namespace Debond
       NodeSupports<dim>                    &node_supports;
       DofVector                            &gap;
 
-      /// By node index; clamped vertices are left out.
+      /// By node index.
       std::map<unsigned int, ContactVertex<dim>> vertices;
+
+      /// Of clamped unknowns, if there are gaps.
+      std::map<dealii::types::global_dof_index, unsigned int> clamps;
 
       /// Of each face among those of each of its vertices.
       std::vector<std::array<unsigned int, BoundaryFace<dim>::maximum>> places;

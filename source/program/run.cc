@@ -52,9 +52,11 @@ namespace Debond
         , choice(choose_method(parameters, parameters.solver))
         , record(parameters.output.machine_details)
       {
+        const std::string described =
+          with_mesh_checksum(parameters.effective_scene);
         if (options.restart)
-          read_state_before();
-        state.scene  = parameters.effective_scene;
+          read_state_before(described);
+        state.scene  = described;
         scene        = make_first_scene<dim>(parameters,
                                       parameters.accuracy,
                                       parameters.solver.start,
@@ -236,7 +238,7 @@ namespace Debond
       }
 
       void
-      read_state_before()
+      read_state_before(const std::string &described)
       {
         if (!std::filesystem::exists(state_file()))
           {
@@ -244,7 +246,7 @@ namespace Debond
                 << ": the run starts from the beginning.\n\n";
             return;
           }
-        state = read_state<dim>(state_file(), parameters.effective_scene);
+        state = read_state<dim>(state_file(), described);
         const LoadPathParameters &load_path = parameters.load_path;
         for (unsigned int k = 0; k < state.path.steps.size(); ++k)
           {

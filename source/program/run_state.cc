@@ -6,11 +6,14 @@
 #include <boost/archive/archive_exception.hpp>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
+#include <boost/crc.hpp>
 #include <boost/serialization/string.hpp>
 #include <boost/serialization/utility.hpp>
 #include <boost/serialization/vector.hpp>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <sstream>
 
@@ -116,7 +119,7 @@ namespace Debond
 
 
 
-    /// The values, without spaces, by the paths of their entries.
+    /// The values by the paths of their entries.
     std::map<std::string, std::string>
     entries_of(const std::string &scene)
     {
@@ -133,10 +136,7 @@ namespace Debond
             const std::size_t equals = line.find('=');
             std::string       name   = line.substr(4, equals - 4);
             name.erase(name.find_last_not_of(' ') + 1);
-            std::string value = line.substr(equals + 1);
-            value.erase(std::remove(value.begin(), value.end(), ' '),
-                        value.end());
-            entries[section + name] = value;
+            entries[section + name] = line.substr(equals + 1);
           }
       return entries;
     }
@@ -161,6 +161,25 @@ namespace Debond
       return false;
     }
   } // namespace
+
+
+
+  std::string
+  with_mesh_checksum(const std::string &scene)
+  {
+    const auto entries = entries_of(scene);
+    const auto name    = entries.find("Mesh/File");
+    if (name == entries.end())
+      return scene;
+    std::string file_name = name->second;
+    file_name.erase(0, file_name.find_first_not_of(' '));
+    std::ifstream      file(file_name, std::ios::binary);
+    boost::crc_32_type checksum;
+    for (std::istreambuf_iterator<char> c(file), end; c != end; ++c)
+      checksum.process_byte(static_cast<unsigned char>(*c));
+    return scene + "set Checksum of Mesh/File = " +
+           std::to_string(checksum.checksum()) + '\n';
+  }
 
 
 
@@ -205,8 +224,10 @@ namespace Debond
       for (const auto &[name, value] : *entries)
         {
           const auto of = [&name = name](const auto &all) {
-            const auto entry = all.find(name);
-            return entry == all.end() ? "nothing" : entry->second;
+            const auto  entry = all.find(name);
+            std::string text  = entry == all.end() ? "nothing" : entry->second;
+            text.erase(std::remove(text.begin(), text.end(), ' '), text.end());
+            return text;
           };
           if (!may_differ(name) && of(before) != of(now))
             throw BadInput({file_name + " is of another scene: " + name +

@@ -251,9 +251,12 @@ namespace
     // What is prescribed is linear, too, and leads away from the foundation.
     Generator  prescribed(number + 2000000);
     const auto small = [&]() { return prescribed.magnitude(-5., -3.); };
-    if (clamps.size() > 1 && prescribed.uniform(0., 1.) < 0.5)
+    const bool is_clamped =
+      clamps.size() > 1 && prescribed.uniform(0., 1.) < 0.5;
+    const bool is_moved = clamps.size() > 1 && !is_clamped;
+    if (is_clamped)
       clamped += ", " + sides[clamps[1]];
-    else if (clamps.size() > 1)
+    if (is_moved)
       scene.values.push_back("Boundary conditions/Displacement " +
                              sides[clamps[1]] + '=' + text(small() * unit) +
                              '-' + text(small()) + "*y; " +
@@ -274,25 +277,24 @@ namespace
                                          "*x";
     scene.values =
       scene.values +
-      Values{"Dimension=" + std::to_string(dim),
-             "Boundary conditions/Clamped boundaries=" + clamped,
-             "Boundary conditions/Contact boundary=" + sides[2],
-             "Material/Young modulus=" + text(69. * stress),
-             "Material/Poisson ratio=" + text(random.uniform(0., 0.49)),
-             "Material/Hypothesis=" +
-               random.choice<std::string>({"plane stress", "plane strain"}),
-             "Contact law/Tangential displacement=" +
-               random.choice<std::string>({"fixed", "free"}),
-             std::string("Contact law/Quadrature=gauss ") +
-               (is_solid ? "5" : "8"),
-             "Loads/Traction top=",
-             "Loads/Traction " + sides[from_top ? 1 : 3] + '=' + text(load()) +
-               "; " + text(load()) + '+' + text(load() / unit) + along,
-             "Loads/Body force=0; " +
-               text(random.uniform(-1., 1.) * stress / unit) +
-               (is_solid ? "; 0" : ""),
-             "Solver/Method=automatic",
-             "Solver/Proof/Maximum nodes=200"};
+      Values{
+        "Dimension=" + std::to_string(dim),
+        "Boundary conditions/Clamped boundaries=" + clamped,
+        "Boundary conditions/Contact boundary=" + sides[2],
+        "Material/Young modulus=" + text(69. * stress),
+        "Material/Poisson ratio=" + text(random.uniform(0., 0.49)),
+        "Material/Hypothesis=" +
+          random.choice<std::string>({"plane stress", "plane strain"}),
+        "Contact law/Tangential displacement=" +
+          random.choice<std::string>({is_moved ? "free" : "fixed", "free"}),
+        std::string("Contact law/Quadrature=gauss ") + (is_solid ? "5" : "8"),
+        "Loads/Traction top=",
+        "Loads/Traction " + sides[from_top ? 1 : 3] + '=' + text(load()) +
+          "; " + text(load()) + '+' + text(load() / unit) + along,
+        "Loads/Body force=0; " + text(random.uniform(-1., 1.) * stress / unit) +
+          (is_solid ? "; 0" : ""),
+        "Solver/Method=automatic",
+        "Solver/Proof/Maximum nodes=200"};
     using Names           = std::vector<std::string>;
     const std::string law = random.choice(
       is_solid ?

@@ -516,8 +516,9 @@ class Scene:
                     .times(by) for _ in range(n)]
 
         self.loads = {"Boundary conditions/Displacement " + side: [
-            None if draw.chance(0.3) else Field(draw.uniform(-1., 1.))
-            for _ in range(self.dim)] for side in self.moved}
+            None if draw.chance(0.3) else
+            Field(draw.uniform(-1., 1.) * self.may_move(side, axis))
+            for axis in range(self.dim)] for side in self.moved}
         loaded = [side for side in sorted(self.mesh.sides)
                   if side not in self.clamped + self.moved]
         for side in draw.shuffled(loaded)[:draw.between(1, 2)]:
@@ -532,6 +533,17 @@ class Scene:
             self.set("Material/Thermal expansion", self.expansion)
             self.loads["Loads/Temperature change"] = density(
                 1, 1. / (self.expansion * self.E))
+
+    def may_move(self, side, axis):
+        """Whether the faces that hold u_tau at the edges of a side are across the axis,
+        so that its displacement along that contradicts nothing."""
+        corners, points = self.mesh.vertices([side]), self.mesh.points
+        for name, face, _ in self.contact_faces:
+            if self.bonds[name].is_tangential_fixed and corners & set(face):
+                along = [points[v][axis] for v in face]
+                if max(along) - min(along) > 1e-12 * self.mesh.length:
+                    return False
+        return True
 
     def scale_loads(self, factor, movement):
         """Multiplies loads and prescribed displacements."""

@@ -138,6 +138,16 @@ for settings, wanted in ((["Mesh/Cells=20, 2"], "Mesh/Cells was 40,4 and is 20,2
                           env=environment, capture_output=True, text=True, check=False)
     if said.returncode != 2 or wanted not in said.stderr:
         sys.exit(f"{settings}: {said.returncode} {said.stderr}")
+# A mesh file with as many vertices elsewhere is another one.
+body = [f"Mesh/File={os.getcwd()}/ring.msh", "Load path/Factors=0.5, 1"]
+ring = pathlib.Path(prm, "cookbook/ring.msh").read_text(encoding="utf-8")
+pathlib.Path("ring.msh").write_text(ring, encoding="utf-8")
+run("cookbook/ring", "ring", body)
+pathlib.Path("ring.msh").write_text(ring.replace("13.125 0 0", "13.135 0 0"), encoding="utf-8")
+said = subprocess.run(command("cookbook/ring", "ring", [*body, "--restart"]), env=environment,
+                      capture_output=True, text=True, check=False)
+if said.returncode != 2 or "Checksum of Mesh/File was" not in said.stderr:
+    sys.exit(f"another mesh: {said.returncode} {said.stderr}")
 pathlib.Path("more/restart.state").write_bytes(
     pathlib.Path("more/restart.state").read_bytes()[:5000])
 said = subprocess.run(command("load-path-690", "more", [*multigrid, factors, "--restart"]),

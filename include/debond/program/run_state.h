@@ -15,7 +15,8 @@ namespace Debond
   template <int dim>
   struct RunState
   {
-    /// Its scene with all entries, as Parameters::effective_scene.
+    /// Its scene with all entries, as Parameters::effective_scene,
+    /// with_mesh_checksum().
     std::string scene;
 
     /// The mesh, those before it and where to start on it.
@@ -29,6 +30,11 @@ namespace Debond
     /// The steps of the load path on that mesh.
     PathProgress<dim> path;
   };
+
+  /// @p scene with one more entry if it names a mesh file, by which that is
+  /// known again.
+  std::string
+  with_mesh_checksum(const std::string &scene);
 
   /// Displacements in the state, and in the file, are in_serial_order(). To be
   /// called by all ranks. Throws std::runtime_error if the file cannot be
