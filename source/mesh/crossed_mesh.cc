@@ -140,7 +140,6 @@ namespace Debond
           [&](const std::array<unsigned int, dim + 1> &corners) {
             cells.push_back(simplex<dim>(corners, vertices));
             cells.back().material_id = cell->material_id();
-            cells.back().manifold_id = cell->manifold_id();
           };
 
         for (const unsigned int f : cell->face_indices())
@@ -159,14 +158,12 @@ namespace Debond
             const auto add_face =
               [&](auto &faces, const std::vector<unsigned int> &corners) {
                 // Triangulation gives all other faces these ids by itself.
-                if (!face->at_boundary() && !is_cut &&
-                    face->manifold_id() == dealii::numbers::flat_manifold_id)
+                if (!face->at_boundary() && !is_cut)
                   return;
                 faces.emplace_back(dim);
                 faces.back().vertices = corners;
                 faces.back().boundary_id =
                   is_cut ? id_of_cuts : face->boundary_id();
-                faces.back().manifold_id = face->manifold_id();
               };
 
             if constexpr (dim == 2)

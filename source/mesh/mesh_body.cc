@@ -132,7 +132,7 @@ namespace Debond
       {
         mesh.copy_triangulation(source->mesh);
         // Sides are flat between the vertices, wherever they came from.
-        mesh.reset_all_manifolds();
+        mesh.set_all_manifold_ids(dealii::numbers::flat_manifold_id);
       }
     else if (n_refinements == 0)
       crossed_subdivision(source->mesh, mesh);

@@ -14,9 +14,9 @@ namespace Debond
    * 3D each hexahedron into 24 tetrahedra spanned by its centre, the centre of
    * a face and an edge of that face. Centres are means of the corners.
    *
-   * The material and manifold ids of cells and the boundary and manifold ids
-   * of faces are kept; manifold objects are not, so that a curved boundary is
-   * sampled at the vertices only. Inside of a coarse cell faces are flat.
+   * The material ids of cells and the boundary ids of faces are kept, manifolds
+   * are not: a curved boundary is sampled at the vertices, and all faces are
+   * flat.
    *
    * @p coarse must be a mesh of quadrilaterals (hexahedra) without hanging
    * nodes, all active cells on one level, and each cell's centre must see all
