@@ -26,8 +26,11 @@ namespace Debond
       std::vector<double>                 measures;
       std::vector<double>                 gaps;
 
-      /// Of its faces that hold tangential displacements.
-      std::vector<dealii::Tensor<1, dim>> fixed_normals;
+      /// On one of its faces.
+      bool is_tangential_fixed = false;
+
+      /// Of the faces where it is zero, not what supports prescribe on them.
+      std::vector<dealii::Tensor<1, dim>> normals_without_slip;
 
       /// Of its faces, and for each group the node or the held vertex.
       std::vector<unsigned int> groups;
@@ -203,8 +206,16 @@ namespace Debond
               vertex.normals.push_back(faces[f].normal);
               vertex.measures.push_back(faces[f].measure);
               vertex.gaps.push_back(gap_at(supports, faces[f], v));
-              if (conditions.fixes_tangential(faces[f].id))
-                vertex.fixed_normals.push_back(faces[f].normal);
+              if (!conditions.fixes_tangential(faces[f].id))
+                continue;
+              vertex.is_tangential_fixed = true;
+              if (std::none_of(supports.displacements.begin(),
+                               supports.displacements.end(),
+                               [&](const auto &condition) {
+                                 return condition.boundaries.count(
+                                          faces[f].id) > 0;
+                               }))
+                vertex.normals_without_slip.push_back(faces[f].normal);
             }
       }
 
@@ -253,7 +264,7 @@ namespace Debond
         PrescribedNode<dim> prescribed =
           node_supports.prescribed_at(index, vertex.dofs, vertex.position);
         const auto &rows = prescribed.rows;
-        for (const dealii::Tensor<1, dim> &normal : vertex.fixed_normals)
+        for (const dealii::Tensor<1, dim> &normal : vertex.normals_without_slip)
           check_prescribed(prescribed, normal);
         // As far from the foundation as at rest.
         const bool is_clamped =
@@ -275,7 +286,7 @@ namespace Debond
             if (rest.norm() > 1e-6 && !is_clamped)
               unknown.push_back(k);
           }
-        if (!is_clamped && !vertex.fixed_normals.empty() &&
+        if (!is_clamped && vertex.is_tangential_fixed &&
             (normals.size() > 1 || unknown.empty()))
           {
             // Where normals differ, all displacements are tangential to one,
@@ -331,7 +342,7 @@ namespace Debond
         node_supports.add_frame(index,
                                 prescribed,
                                 directions,
-                                !vertex.fixed_normals.empty());
+                                vertex.is_tangential_fixed);
       }
 
       /// Returns the number of the vertex among those that are held.
