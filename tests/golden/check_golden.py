@@ -10,19 +10,9 @@ import concurrent.futures, json, os, re, shutil, subprocess, sys, tempfile
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, ".."))
 import msh
+from run_scenes import scene_text
 
 WORDS = ["", "stationary", "local minimum", "best known", "global"]
-
-
-def scene_text(base, settings):
-    """A scene that includes another and changes entries."""
-    lines = ["include " + base]
-    for setting in settings:
-        path, value = setting.split("=", 1)
-        *sections, entry = path.split("/")
-        lines += ["subsection " + section for section in sections]
-        lines += ["set %s = %s" % (entry, value)] + ["end"] * len(sections)
-    return "\n".join(lines) + "\n"
 
 
 def write_scenes(rows, prm, directory):

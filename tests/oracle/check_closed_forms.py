@@ -556,19 +556,13 @@ def check_far_foundation():
         check("path to rest", path["status"] == "success" and len(path["path"]) == 5)
 
 
-for dim, name, length, modulus in SYSTEMS:
-    for test in (check_stretched, check_column_on_bonds, check_pad, check_coming_off):
-        scenes.section(f"{test.__name__}, {dim}D, {name}")
-        test(dim, length, modulus)
-    if dim == 2:
-        scenes.section("pads in " + name)
-        check_plane_pads(length, modulus)
-scenes.section("special scenes")
-check_half_of_symmetric_body()
-check_bonds()
-check_hard_laws()
-check_corner(2)
-check_corner(3)
-check_resultants()
-check_far_foundation()
+scenes.together(
+    *((f"{test.__name__}, {dim}D, {name}", test, dim, length, modulus)
+      for dim, name, length, modulus in SYSTEMS
+      for test in (check_stretched, check_column_on_bonds, check_pad, check_coming_off)),
+    *(("pads in " + name, check_plane_pads, length, modulus)
+      for dim, name, length, modulus in SYSTEMS if dim == 2),
+    *((test.__name__, test, *arguments) for test, *arguments in (
+        [check_half_of_symmetric_body], [check_bonds], [check_hard_laws], [check_corner, 2],
+        [check_corner, 3], [check_resultants], [check_far_foundation])))
 scenes.end()
