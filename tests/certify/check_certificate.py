@@ -113,6 +113,7 @@ def check_jump():
                        *([f"Certificate/Target={target}", "Accuracy/Maximum unknowns=9000"]
                          if target else []))
         found = result["certificate"]
+        check("loads are not exact", not found["loads_are_exact"] or target)
         check("interval", found["lower"] <= result["functional"] <= found["upper"]
               and found["lower"] <= fine["upper"] and fine["lower"] <= found["upper"], found)
 
