@@ -59,26 +59,28 @@ def check_word(name, result, least):
 
 
 def check_pad():
-    """Pulled off in five waves: bonds hold all of it, or let some go."""
-    pad = ["Mesh/Lengths=1.7, 0.11", "Mesh/Cells=60, 1", "Material/Young modulus=1",
-           "Material/Poisson ratio=0.1", "Boundary conditions/Clamped boundaries=top",
-           "Loads/Traction bottom=0; 0.95*sin(16.8*x + 5.65) + 0.35",
-           "Contact law/Bond stiffness=1400", "Contact law/Bond threshold=0.007",
-           "Solver/Method=majorise minimise"]
-    proved, plain, *others = scenes.solve_all([pad + ["Solver/" + s for s in added] for added in (
-        ["Prove=true"], ["Search=none"], ["Search=automatic"], ["Search=full"],
-        *([f"Search={search}", "Prove=true", f"Proof/Maximum nodes={nodes}"]
-          for search in ("none", "automatic") for nodes in (1, 10, 100)))])
+    """Pulled off in five waves: bonds hold all of it, or let some go. Bonds at Gauss points have
+    no proof."""
+    pad = ["Mesh/Lengths=1.7, 0.11", "Material/Young modulus=1", "Material/Poisson ratio=0.1",
+           "Boundary conditions/Clamped boundaries=top", "Solver/Method=automatic",
+           "Loads/Traction bottom=0; 0.95*sin(16.8*x + 5.65) + 0.35", "Mesh/Cells=60, 1",
+           "Contact law/Bond stiffness=1400", "Contact law/Bond threshold=0.007"]
+    few = [["Solver/Method=majorise minimise", "Solver/Prove=true",
+            f"Solver/Proof/Maximum nodes={nodes}"] for nodes in (1, 10, 100)]
+    gauss = [["Contact law/Quadrature=gauss 2", "Mesh/Cells=" + cells, "Solver/Search=" + search]
+             for cells in ("60, 1", "124, 1") for search in ("automatic", "full")]
+    proved, plain, *results = scenes.solve_all([pad + added for added in (
+        ["Solver/Prove=true"], ["Solver/Search=none"], [], ["Solver/Search=full"], *few, *gauss)])
     least = proved["functional"]
     scenes.check("proved", proved["minimum"]["state"] == "global"
                  and abs(proved["proof"]["lower_bound"] - least) <= 1e-8 * abs(least))
     scenes.check("a plain minimum far above the least", plain["functional"] > 0.5 * least)
-    words = set()
-    for result in (plain, *others):
+    for result in (plain, *results[:-len(gauss)]):
         check_word("pad", result, least)
         scenes.check("no J is below a bound", result["functional"] >= least - 1e-9 * abs(least))
-        words.add(result["minimum"]["state"])
-    scenes.check("with and without a proof", "global" in words and len(words) > 1, words)
+    for result in results[-len(gauss):]:
+        scenes.check("global without a proof", result["minimum"]["search_trials"] > 0
+                     and result["minimum"]["state"] != "global", result["minimum"])
 
 
 def main(count=5, first=0):
