@@ -74,7 +74,8 @@ def launch(n, scenes, settings, directory, working_directory=None):
     if n > 1:
         command = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(n)] + command
     return subprocess.Popen(command, env=ENVIRONMENT, cwd=working_directory, text=True,
-                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE)
 
 
 def run(*arguments):
