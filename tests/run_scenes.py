@@ -3,9 +3,15 @@
 import csv
 import json
 import pathlib
+import re
+import shutil
 import subprocess
 import sys
 import tempfile
+import threading
+
+
+NO_PICTURES = ["Output/Body VTU=false", "Output/Contact VTU=false"]
 
 
 def number(value):
@@ -25,6 +31,50 @@ def read_table(file):
                 for row in csv.DictReader(lines)]
 
 
+def scene_text(base, settings):
+    """A scene that includes another and changes entries, given as PATH=VALUE."""
+    lines = ["include " + base]
+    for path, value in dict(setting.split("=", 1) for setting in settings).items():
+        *sections, entry = path.split("/")
+        lines += ["subsection " + section for section in sections]
+        lines += [f"set {entry} = {value}"] + ["end"] * len(sections)
+    return "\n".join(lines) + "\n"
+
+
+class Strand(threading.Thread):
+    """Goes through a check, and waits wherever the check needs a scene solved."""
+
+    def __init__(self, check):
+        self.title, function, *arguments = check
+        super().__init__(target=function, args=arguments, daemon=True)
+        self.scene = self.result = self.error = None
+        self.may_go_on, self.has_stopped = threading.Semaphore(0), threading.Semaphore(0)
+        self.start()
+
+    def run(self):
+        self.may_go_on.acquire()
+        try:
+            super().run()
+        except Exception as error:
+            self.error = error
+        self.scene = None
+        self.has_stopped.release()
+
+    def solved(self, *scene):
+        """Called by the check."""
+        self.scene = scene
+        self.has_stopped.release()
+        self.may_go_on.acquire()
+        return self.result
+
+    def go_on(self):
+        """Up to the next scene."""
+        self.may_go_on.release()
+        self.has_stopped.acquire()
+        if self.error:
+            raise self.error
+
+
 class Scenes:
     """Of a program; all files go with this object."""
 
@@ -35,36 +85,72 @@ class Scenes:
         (self.directory / "scene.prm").touch()
         self.n_checks, self.failures, self.title = 0, 0, ""
 
-    def solve(self, *settings, scene="scene.prm"):
-        """The summary of a run with its exit code, what it prints to stderr, and the rows
-        of its tables. What is no scene has no status."""
-        output = self.directory / "output"
-        for file in output.glob("*.*") if output.exists() else ():
-            file.unlink()
-        result = subprocess.run(
-            [self.debond, scene, "--set=Output/Body VTU=false",
-             "--set=Output/Contact VTU=false", "--set=Output/Directory=output",
-             *("--set=" + entry for entry in settings)],
-            cwd=self.directory, capture_output=True, text=True, check=False)
-        summary = {"status": None}
+    def run(self, *arguments):
+        return subprocess.run([self.debond, *arguments], cwd=self.directory,
+                              capture_output=True, text=True, check=False)
+
+    def summary(self, output):
+        """With the rows of its tables. What is no scene has no status."""
+        output, summary = self.directory / output, {"status": None}
         if (output / "summary.json").exists():
             summary = json.loads((output / "summary.json").read_text())
-        summary.update(exit_code=result.returncode, errors=result.stderr, log=result.stdout)
+        summary.update(exit_code=0, errors="", log="", vtu=b"".join(
+            file.read_bytes() for file in output.glob("*.vtu")))
         for name, file in (("path", "load_path"), ("arc", "load_path_arc"),
-                           ("profile", "contact_profile"), ("history", "history")):
+                           ("profile", "contact_profile"), ("history", "history"),
+                           ("sides", "certified_sides")):
             summary[name] = read_table(output / (file + ".csv"))
+        shutil.rmtree(output, ignore_errors=True)
         return summary
+
+    def solve(self, *settings, scene="scene.prm"):
+        """The summary of a run with its exit code, what it prints to stderr, and the rows
+        of its tables; of its VTU files, if they are asked for, what they have."""
+        strand = threading.current_thread()
+        if isinstance(strand, Strand) and scene == "scene.prm":
+            return strand.solved(*settings)
+        result = self.run(scene, *("--set=" + entry for entry in (
+            *NO_PICTURES, *settings, "Output/Directory=output")))
+        summary = self.summary("output")
+        summary.update(exit_code=result.returncode, errors=result.stderr, log=result.stdout)
+        return summary
+
+    def solve_all(self, scenes):
+        """Of lists of entries, in one run of the program, whose start takes longer than most
+        scenes. What is no success is run once more for what it prints."""
+        names = [f"scene-{k}.prm" for k in range(len(scenes))]
+        for name, settings in zip(names, scenes):
+            (self.directory / name).write_text(scene_text(
+                "scene.prm", [*NO_PICTURES, *settings, "Output/Directory=output-" + name]))
+        log = self.run(*names).stdout if len(names) > 1 else ""
+        return [self.summary("output-" + name)
+                if re.search(f"^ +0  {name}$", log, re.MULTILINE)
+                else self.solve(*settings) for name, settings in zip(names, scenes)]
+
+    def together(self, *checks):
+        """Titles, functions that check, and their arguments: what all of them need next is
+        solved in one run."""
+        strands = [Strand(check) for check in checks]
+        while strands:
+            for strand in strands:
+                strand.go_on()
+            strands = [strand for strand in strands if strand.scene is not None]
+            for strand, result in zip(strands, self.solve_all(
+                    [strand.scene for strand in strands])):
+                strand.result = result
 
     def section(self, title):
         """Of the checks that follow."""
-        self.title = title
+        strand = threading.current_thread()
+        (strand if isinstance(strand, Strand) else self).title = title
 
     def check(self, name, holds, detail=""):
         """Prints what does not hold."""
         self.n_checks += 1
         if not holds:
             self.failures += 1
-            print(f"{self.title}: {name} {detail}", flush=True)
+            title = getattr(threading.current_thread(), "title", self.title)
+            print(f"{title}: {name} {detail}", flush=True)
 
     def close(self, name, value, expected, tolerance, scale=None):
         """Relative to what is expected, or to a scale."""

@@ -35,53 +35,6 @@ namespace
 
 
 
-  void
-  test_winkler(const double a, const double M)
-  {
-    const AdhesiveLaw law(winkler_law(a, M).branches);
-
-    const double energy   = a * M * M / 2.;
-    const double strength = a * M;
-    check("j_1 as in eq. (10)",
-          std::abs(law.value(-M / 2.) / energy - 0.25) < 1e-14 &&
-            std::abs(law.value(-M) / energy - 1.) < 1e-14 &&
-            std::abs(law.value(-3. * M) / energy - 1.) < 1e-14 &&
-            law.value(0.) == 0. && law.value(M) == 0.);
-
-    check("kinks at -M and 0", law.kinks() == std::vector<double>({-M, 0.}));
-    check("Clarke interval at -M is [-aM, 0]",
-          equal(law.clarke_interval(-M), -strength, 0., strength));
-    check("Clarke interval at 0 is [0, 0]",
-          equal(law.clarke_interval(0.), 0., 0., strength));
-    check("curvature at the kinks is that of the bonds",
-          law.curvature(-M) == a && law.curvature(0.) == a);
-    check("threshold and strength are M and aM",
-          law.bond_threshold() == M &&
-            std::abs(law.bond_strength() / strength - 1.) < 1e-14);
-
-    const auto goldstein = [&](const double s,
-                               const double delta,
-                               const double lower,
-                               const double upper) {
-      return equal(law.goldstein_interval(s * M, delta * M),
-                   lower * strength,
-                   upper * strength,
-                   strength);
-    };
-    check("Goldstein interval inside the bonded branch",
-          goldstein(-0.5, 0.25, -0.75, -0.25));
-    check("Goldstein interval across the break from either side",
-          goldstein(-1.1, 0.2, -1., 0.) && goldstein(-0.9, 0.2, -1., 0.));
-    check("Goldstein interval that just misses the break",
-          goldstein(-1.1, 0.05, 0., 0.));
-    check("Goldstein interval across contact", goldstein(-0.1, 0.3, -0.4, 0.));
-    check("Goldstein interval across all branches", goldstein(0., 2., -1., 0.));
-    check("Goldstein interval with radius 0 is Clarke's",
-          goldstein(-1., 0., -1., 0.) && goldstein(-0.5, 0., -0.5, -0.5));
-  }
-
-
-
   /// The law of that name with the default values of its parameters, its
   /// energies in a unit that is smaller by a factor.
   AdhesiveLaw
@@ -275,13 +228,6 @@ namespace
       same &= one.value(-5e-5 * i) == winkler.value(-5e-5 * i);
     check("one step is Winkler's law", same);
 
-    print_error([] { stepped_law({}, {}); });
-    print_error([] { stepped_law({69., 23.}, {0.002}); });
-    print_error([] { stepped_law({69., 69.}, {0.001, 0.002}); });
-    print_error([] { stepped_law({69., 23.}, {0.002, 0.002}); });
-    print_error([] { stepped_law({69., 0.}, {0.001, 0.002}); });
-    print_error([] { stepped_law({69., 23.}, {0.001, INFINITY}); });
-
     LawSection     section;
     ParameterTable table;
     section.bind(table);
@@ -299,11 +245,6 @@ namespace
   void
   test_laws()
   {
-    section("Winkler's law, GPa and m");
-    test_winkler(69., 0.002);
-    section("Winkler's law, Pa and m");
-    test_winkler(6.9e10, 0.002);
-
     for (const std::string &name : law_names())
       for (const double factor : {1., 1e9})
         test_conformance(name, factor);

@@ -2,7 +2,7 @@
 //
 // Random refinements by bisection: no hanging nodes, names where they belong,
 // the body's measure, shapes that do not degenerate, cells divided into their
-// parts. A run has some hundred of them, "bisection.release 10000" so many.
+// parts. A run has some hundred of them, "bisection 10000" so many.
 
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>

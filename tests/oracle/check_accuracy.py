@@ -228,8 +228,7 @@ def check_refinement():
                 "unknowns", "functional", "estimated_error")])
 
 
-for test in (check_constant_strain, check_closed_forms, check_benchmark,
-             check_quadratic_bodies, check_refinement):
-    scenes.section(test.__name__)
-    test()
+scenes.together(*((test.__name__, test) for test in (
+    check_constant_strain, check_closed_forms, check_benchmark, check_quadratic_bodies,
+    check_refinement)))
 scenes.end()

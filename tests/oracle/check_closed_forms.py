@@ -113,6 +113,10 @@ def check_column_on_bonds(dim, L, unit):
     # Where both states are minima the search knows which one is lower.
     torn = solve(*scene(1.1 * M), *with_gap, *proved)
     close("J of broken bonds", torn["functional"], broken, 1e-11)
+    plain = solve(*scene(1.1 * M), *with_gap, "Solver/Search=none")
+    close("J of a minimum above it", plain["functional"], bonded(1.1 * M)[0], 1e-11)
+    check("which is not called global", plain["minimum"]["state"] == "local minimum"
+          and plain["functional"] > 1.1 * broken)
     for one in (result, torn):
         check("the minimum is proved", one["minimum"]["state"] == "global")
     # Bonds break when they are stretched by M, and all at once.
@@ -296,6 +300,66 @@ def check_resultants():
                        *("Loads/" + load for load in loads))
         for value, component in zip(result["applied_force"], expected):
             close(", ".join(loads), value, component, 1e-14, 1.)
+
+
+def check_loads():
+    """Loads that are no polynomials, and what is said of those that jump inside of a face; the
+    bar without contact, by an independent code."""
+    bar = ["Mesh/Cells=40, 4", "Boundary conditions/Clamped boundaries=left"]
+    solid = ["Dimension=3", "Mesh/Lengths=0.4, 0.04, 0.04", "Mesh/Cells=7, 1, 3",
+             "Boundary conditions/Clamped boundaries=left"]
+    # A jump misses an eighth of a face times what one of four points may miss.
+    for name, k, expected, tolerance, words, *scene in (
+            ("a wave", 1, (1. - math.cos(12.)) / 30., 1e-12, (), *bar,
+             "Loads/Traction top=0; sin(30*x)"),
+            ("a jump at the side's own y", 1, 0.8, 1e-12, (), *bar,
+             "Loads/Traction top=0; if(y < 0.04, 1, 2)"),
+            ("a jump inside of a face", 1, 6.9e8 * 0.12345, 0.005 / 8. / 0.12345,
+             ("(0.125, 0.04)",), *bar, "Loads/Traction top=0; if(x < 0.12345, 6.9e8, 0)"),
+            ("a pole", 1, None, 0., ("(0.205, 0.04)",), *bar,
+             "Loads/Traction top=0; 0.001/(x - 0.2033)^2"),
+            ("a body force that jumps", 0, (1e6 + 1.) * 0.2 * 0.04, 1e-12, (), *bar,
+             "Loads/Body force=if(x < 0.2, 1e6, 1); 0"),
+            ("a polynomial in 3D", 1, (0.4 * 0.04)**3 / 9., 1e-12, (), *solid,
+             "Loads/Traction top=0; x^2*z^2; 0"),
+            ("a jump across faces", 1, 0.04 * (0.2 - 0.7 * 0.02), 0.01, ("not smooth",), *solid,
+             "Loads/Traction top=0; if(x + 0.7*z < 0.2, 1, 0); 0")):
+        result = solve(*scene, "Contact law/Law=none", "Contact law/Initial gap=1e12",
+                       "Verification/Tolerance=1e300")
+        notes = [note for note in result["notes"] if "not smooth" in note]
+        check(name + ", notes", len(notes) == bool(words)
+              and all(word in note for note in notes for word in words), result["notes"])
+        if expected:
+            close(name, result["applied_force"][k], expected, tolerance)
+    for cells, work in (("40, 4", 2. * 6.2397134244e-04), ("80, 8", 0.001267525943)):
+        close("J without contact", solve(*BENCHMARK, "Mesh/Cells=" + cells,
+                                         "Contact law/Law=none", "Contact law/Initial gap=1")[
+            "functional"], -0.5 * work, 1e-9)
+
+
+def check_heated(dim, hypothesis):
+    """A body that expands freely, and one between rollers, which cannot."""
+    E, nu, alpha, change, volume = 70., 0.3, 1e-3, 4., 2.
+    stress, is_plane_stress = E * alpha * change, dim == 2 and hypothesis == "plane stress"
+    body = [f"Dimension={dim}", "Mesh/Lengths=1, 2" + ", 1" * (dim == 3),
+            "Mesh/Cells=2, 3" + ", 2" * (dim == 3), f"Material/Young modulus={E}",
+            f"Material/Poisson ratio={nu}", f"Material/Thermal expansion={alpha}",
+            "Material/Hypothesis=" + hypothesis, f"Loads/Temperature change={change}",
+            "Boundary conditions/Clamped boundaries=", "Contact law/Law=none",
+            "Boundary conditions/Contact boundary="]
+    back = ", back" * (dim == 3)
+    free = solve(*body, "Boundary conditions/Roller boundaries=left, bottom" + back)
+    pressure = stress / (1. - nu if is_plane_stress else 1. - 2. * nu)
+    # In plane strain the body cannot expand out of the plane.
+    strains = 3. if dim == 3 else 2. if is_plane_stress else 2. * (1. + nu)
+    close("J", free["functional"], -0.5 * pressure * strains * alpha * change * volume, 1e-12)
+    close("its stress", free["largest_von_mises"],
+          stress * (dim == 2 and not is_plane_stress), 1e-11, stress)
+    held = solve(*body, "Boundary conditions/Roller boundaries=left, right, bottom, top" + back
+                 + ", front" * (dim == 3))
+    check("a body that cannot expand does not move", held["largest_displacement"] <= 1e-15)
+    for side, force in (("left", 2. * pressure), ("right", -2. * pressure)):
+        close(f"force of {side}", held["reactions"][side][0], force, 1e-12)
 
 
 # Bodies that nothing clamps.
@@ -556,19 +620,15 @@ def check_far_foundation():
         check("path to rest", path["status"] == "success" and len(path["path"]) == 5)
 
 
-for dim, name, length, modulus in SYSTEMS:
-    for test in (check_stretched, check_column_on_bonds, check_pad, check_coming_off):
-        scenes.section(f"{test.__name__}, {dim}D, {name}")
-        test(dim, length, modulus)
-    if dim == 2:
-        scenes.section("pads in " + name)
-        check_plane_pads(length, modulus)
-scenes.section("special scenes")
-check_half_of_symmetric_body()
-check_bonds()
-check_hard_laws()
-check_corner(2)
-check_corner(3)
-check_resultants()
-check_far_foundation()
+scenes.together(
+    *((f"{test.__name__}, {dim}D, {name}", test, dim, length, modulus)
+      for dim, name, length, modulus in SYSTEMS
+      for test in (check_stretched, check_column_on_bonds, check_pad, check_coming_off)),
+    *(("pads in " + name, check_plane_pads, length, modulus)
+      for dim, name, length, modulus in SYSTEMS if dim == 2),
+    *((test.__name__, test, *arguments) for test, *arguments in (
+        [check_half_of_symmetric_body], [check_bonds], [check_hard_laws], [check_corner, 2],
+        [check_corner, 3], [check_resultants], [check_far_foundation], [check_loads],
+        [check_heated, 2, "plane stress"], [check_heated, 2, "plane strain"],
+        [check_heated, 3, "plane stress"])))
 scenes.end()

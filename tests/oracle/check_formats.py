@@ -6,13 +6,15 @@ makes them of random sizes at the corners, in many formats: J is the same to
 the sides by their places.
 """
 
-import json
-import os
 import pathlib
 import random
 import subprocess
 import sys
-import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from run_scenes import Scenes
+
+scenes = Scenes(sys.argv[1])
 
 # Extension, options of Gmsh, whether there are names.
 FORMATS = {"1": ("msh", "-format msh1", False),
@@ -54,49 +56,27 @@ def geometry(dim, rng):
     return "\n".join(text) + "\n"
 
 
-def functional(debond, dim, file, named):
-    settings = [f"Dimension={dim}", "Mesh/Source=file", f"Mesh/File={file}",
-                "Loads/Traction right=0.001; -0.001" + "; 0" * (dim - 2),
-                "Output/Directory=output", "Output/Body VTU=false",
-                "Output/Contact VTU=false",
-                "Boundary conditions/Clamped boundaries=left",
-                "Boundary conditions/Contact boundary=bottom"]
-    if not named:
-        settings += [f"Parts/{name}=boundary: {place}"
-                     for name, place in PLACES.items()]
-    result = subprocess.run([debond, "scene.prm"] +
-                            [f"--set={entry}" for entry in settings],
-                            capture_output=True, text=True, check=False)
-    if result.returncode != 0:
-        return result.stderr
-    return json.loads(pathlib.Path("output/summary.json").read_text())[
-        "functional"]
+def check_body(dim):
+    """In all formats."""
+    geo = scenes.directory / f"body-{dim}.geo"
+    geo.write_text(geometry(dim, random.Random(dim)))
+    load = ["Loads/Traction right=0.001; -0.001" + "; 0" * (dim - 2), f"Dimension={dim}",
+            "Mesh/Source=file", "Boundary conditions/Clamped boundaries=left",
+            "Boundary conditions/Contact boundary=bottom"]
+    places = [f"Parts/{name}=boundary: {place}" for name, place in PLACES.items()]
+    files = []
+    for name, (extension, options, named) in FORMATS.items():
+        file = geo.with_name(f"body-{dim}-{name}.{extension}")
+        subprocess.run(["gmsh", f"-{dim}", geo, "-o", file] + options.split(), check=True,
+                       stdout=subprocess.DEVNULL)
+        files.append(load + [f"Mesh/File={file.name}"] + places * (not named))
+    own, *found = scenes.solve_all([load + ["Mesh/File=" + geo.name]] + files)
+    for name, result in zip(FORMATS, found, strict=True):
+        # Nastran's files have few digits.
+        scenes.close(f"{dim}D, {name}", result.get("functional"), own["functional"],
+                     1e-5 if name == "Nastran" else 1e-12)
 
 
-def main(debond):
-    failures = 0
-    rng = random.Random(1)
-    pathlib.Path("scene.prm").write_text("")
-    for dim, _ in (2, 1), (2, 2), (3, 1):
-        pathlib.Path("body.geo").write_text(geometry(dim, rng))
-        J = functional(debond, dim, "body.geo", True)
-        print(f"{dim}D: J = {J!r}")
-        for name, (extension, options, named) in FORMATS.items():
-            file = "body-file." + extension
-            subprocess.run(["gmsh", f"-{dim}", "body.geo", "-o", file] +
-                           options.split(), check=True,
-                           stdout=subprocess.DEVNULL)
-            found = functional(debond, dim, file, named)
-            # Nastran's files have few digits.
-            tolerance = 1e-5 if name == "Nastran" else 1e-12
-            if not isinstance(found, float) or abs(found / J - 1.) > tolerance:
-                failures += 1
-                print(f"  {name}: {found!r}")
-    return 1 if failures else 0
-
-
-if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv[1])
-    with tempfile.TemporaryDirectory() as FOLDER:
-        os.chdir(FOLDER)
-        sys.exit(main(PROGRAM))
+check_body(2)
+check_body(3)
+scenes.end()

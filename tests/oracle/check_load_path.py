@@ -437,19 +437,13 @@ def check_search_beside_path():
         check("J", 0. < found["functional"] <= path["functional"] * (1. + 1e-9))
 
 
-for dim, rules in ((2, ("gauss 3", "gauss 3")), (3, ("gauss 3", "gauss 2"))):
-    check_column(dim)
-    check_column(dim, "Mesh/Degree=2", "Contact law/Quadrature=" + rules[0])
-    check_moved_columns(dim, rules[1])
-    check_without_pressure(dim)
-    check_column_arc(dim, False)
-    check_column_arc(dim, True)
-for case in ((2, "nodal", 1), (2, "gauss 2", 1), (2, "gauss 3", 2), (3, "gauss 2", 2)):
-    check_column_for_good(*case)
-check_benchmark()
-check_other_laws()
-check_arcs()
-check_refined()
-check_estimate_for_good()
-check_search_beside_path()
+scenes.together(*(("", *check) for check in (
+    *((test, dim, *others) for dim in (2, 3) for test, *others in (
+        [check_column], [check_column, "Mesh/Degree=2", "Contact law/Quadrature=gauss 3"],
+        [check_moved_columns, f"gauss {5 - dim}"], [check_without_pressure],
+        [check_column_arc, False], [check_column_arc, True])),
+    *((check_column_for_good, *case) for case in (
+        (2, "nodal", 1), (2, "gauss 2", 1), (2, "gauss 3", 2), (3, "gauss 2", 2))),
+    [check_benchmark], [check_other_laws], [check_arcs], [check_refined],
+    [check_estimate_for_good], [check_search_beside_path])))
 scenes.end()

@@ -16,65 +16,67 @@ METHOD = ["Loads/Traction top=0; if(x < 0.2, 0.69, -0.345)", "Solver/Search=none
 SOLID = ["Dimension=3", "Mesh/Lengths=0.4, 0.04, 0.04",
          "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345); 0"]
 MULTIGRID = "Solver/Linear solver=multigrid"
-SLIDE = "Contact law/Tangential displacement=free"
 
 
-def linear_cycles(*settings):
-    """For A u = f: with the foundation out of reach."""
-    return solve(*METHOD, *settings, MULTIGRID, "Contact law/Law=none",
-                 "Contact law/Initial gap=1e3", "Contact law/Quadrature=nodal",
-                 "Verification/Tolerance=1")["linear_iterations"]
-
-
-def check_scene(name, linear, contact, cells, *settings):
-    scenes.section(f"{name}, {cells}")
+def check_scene(linear, contact, cells, *settings):
+    """Cycles for A u = f, for which the foundation is out of reach, if a number is given."""
     scene = [*METHOD, *settings, "Mesh/Cells=" + cells]
     result, direct = solve(*scene, MULTIGRID), solve(*scene, "Solver/Linear solver=direct")
     check("success", result["status"] == direct["status"] == "success")
     check("cycles for contact", result["linear_iterations"] <= contact,
           result["linear_iterations"])
     if linear:
-        cycles = linear_cycles(*settings, "Mesh/Cells=" + cells)
+        cycles = solve(*scene, MULTIGRID, "Contact law/Law=none", "Contact law/Initial gap=1e3",
+                       "Contact law/Quadrature=nodal", "Verification/Tolerance=1")[
+                           "linear_iterations"]
         check("cycles for A u = f", cycles <= linear, cycles)
     check("law", result["law_violation"] <= 1e-6, result["law_violation"])
     close("J of the direct path", result["functional"], direct["functional"], 1e-11)
     check("its contact and bonds", result["bond_states"] == direct["bond_states"])
 
 
-check_scene("2D", 16, 18, "80, 8")
-check_scene("2D", 0, 18, "320, 32")
-check_scene("3D", 16, 18, "40, 4, 4", *SOLID)
-for a, M in (("6.9", "0.002"), ("690", "0.002"), ("6900", "0.002"), ("1e5", "2e-4")):
-    bonds = ["Contact law/Bond stiffness=" + a, "Contact law/Bond threshold=" + M]
-    check_scene("2D, a = " + a, 0, 18, "80, 8", *bonds)
-    check_scene("3D, a = " + a, 0, 18, "20, 2, 2", *SOLID, *bonds)
-check_scene("2D, odd", 17, 19, "75, 7")
-check_scene("3D, odd", 19, 21, "37, 5, 3", *SOLID)
-check_scene("2D, cells 4:1", 17, 19, "40, 16")
-check_scene("2D, cells 10:1", 17, 19, "40, 40")
-check_scene("3D, cells 4:1", 17, 19, "20, 8, 8", *SOLID)
-check_scene("pad clamped on top", 16, 18, "80, 8", "Loads/Traction top=0; 0",
-            "Boundary conditions/Clamped boundaries=top",
-            "Loads/Body force=0; if(x < 0.2, 30, -15)")
-check_scene("clamped left, tangentially free", 20, 24, "80, 8", SLIDE,
-            "Boundary conditions/Clamped boundaries=left")
-check_scene("turned, bottom and top in contact", 16, 18, "80, 8", "Mesh/Rotation=30",
-            "Boundary conditions/Contact boundary=bottom, top", "Loads/Traction top=0; 0",
-            "Loads/Body force=3; 10")
-check_scene("plate clamped at two sides", 18, 20, "24, 3, 24", *SOLID,
-            "Loads/Traction top=0; if(x < 0.2, 0.1, -0.05); 0", "Mesh/Lengths=0.4, 0.04, 0.4", "Boundary conditions/Clamped boundaries=left, back")
-check_scene("gauss 2", 0, 18, "80, 8", "Contact law/Quadrature=gauss 2")
-check_scene("off the foundation, pressed", 0, 22, "80, 8", "Contact law/Initial gap=0.001")
-for nu, linear, contact in (("0.45", 40, 50), ("0.49", 90, 110)):
-    check_scene("plane strain, nu = " + nu, linear, contact, "80, 8",
-                "Material/Hypothesis=plane strain", "Material/Poisson ratio=" + nu)
+def check_units():
+    cycles = [solve(*METHOD, MULTIGRID, "Mesh/Cells=80, 8", *units)["linear_iterations"]
+              for units in (
+                  [], ["Material/Young modulus=69e9", "Contact law/Bond stiffness=69e9",
+                       "Loads/Traction top=0; if(x < 0.2, 0.69e9, -0.345e9)"],
+                  ["Mesh/Lengths=400, 40", "Material/Young modulus=69e3",
+                   "Loads/Traction top=0; if(x < 200, 690, -345)",
+                   "Contact law/Bond stiffness=69", "Contact law/Bond threshold=2"])]
+    check("as many cycles", len(set(cycles)) == 1, cycles)
 
-scenes.section("Units")
-cycles = [solve(*METHOD, MULTIGRID, "Mesh/Cells=80, 8", *units)["linear_iterations"]
-          for units in ([], ["Material/Young modulus=69e9", "Contact law/Bond stiffness=69e9",
-                             "Loads/Traction top=0; if(x < 0.2, 0.69e9, -0.345e9)"],
-                        ["Mesh/Lengths=400, 40", "Material/Young modulus=69e3",
-                         "Loads/Traction top=0; if(x < 200, 690, -345)",
-                         "Contact law/Bond stiffness=69", "Contact law/Bond threshold=2"])]
-check("as many cycles", len(set(cycles)) == 1, cycles)
+
+def bonds(a, M):
+    return [f"Contact law/Bond stiffness={a}", f"Contact law/Bond threshold={M}"]
+
+
+scenes.together(("units", check_units), *((name, check_scene, *case) for name, *case in (
+    ("2D", 16, 18, "80, 8"),
+    ("2D, fine", 0, 18, "320, 32"),
+    ("3D", 16, 18, "40, 4, 4", *SOLID),
+    ("2D, a = 6.9", 0, 18, "80, 8", *bonds(6.9, 0.002)),
+    ("2D, a = 6900", 0, 18, "80, 8", *bonds(6900, 0.002)),
+    ("2D, a = 1e5", 0, 18, "80, 8", *bonds(1e5, 2e-4)),
+    ("3D, a = 690", 0, 18, "20, 2, 2", *SOLID, *bonds(690, 0.002)),
+    ("3D, a = 1e5", 0, 18, "20, 2, 2", *SOLID, *bonds(1e5, 2e-4)),
+    ("2D, odd", 17, 19, "75, 7"),
+    ("3D, odd", 19, 21, "37, 5, 3", *SOLID),
+    ("2D, cells 4:1", 17, 19, "40, 16"),
+    ("2D, cells 10:1", 17, 19, "40, 40"),
+    ("3D, cells 4:1", 17, 19, "20, 8, 8", *SOLID),
+    ("pad clamped on top", 16, 18, "80, 8", "Loads/Traction top=0; 0",
+     "Boundary conditions/Clamped boundaries=top", "Loads/Body force=0; if(x < 0.2, 30, -15)"),
+    ("clamped left, tangentially free", 20, 24, "80, 8",
+     "Contact law/Tangential displacement=free", "Boundary conditions/Clamped boundaries=left"),
+    ("turned, bottom and top in contact", 16, 18, "80, 8", "Mesh/Rotation=30",
+     "Boundary conditions/Contact boundary=bottom, top", "Loads/Traction top=0; 0",
+     "Loads/Body force=3; 10"),
+    ("plate clamped at two sides", 18, 20, "24, 3, 24", *SOLID,
+     "Loads/Traction top=0; if(x < 0.2, 0.1, -0.05); 0", "Mesh/Lengths=0.4, 0.04, 0.4",
+     "Boundary conditions/Clamped boundaries=left, back"),
+    ("gauss 2", 0, 18, "80, 8", "Contact law/Quadrature=gauss 2"),
+    ("off the foundation, pressed", 0, 22, "80, 8", "Contact law/Initial gap=0.001"),
+    *((f"plane strain, nu = {nu}", linear, contact, "80, 8", "Material/Hypothesis=plane strain",
+       f"Material/Poisson ratio={nu}") for nu, linear, contact in (
+        (0.45, 40, 50), (0.49, 90, 110))))))
 scenes.end()

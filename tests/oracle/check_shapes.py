@@ -339,7 +339,7 @@ def try_scene(debond, scene, body, draw):
         return wrong.args
 
 
-def main(debond, count=50, first=0, listed=None):
+def main(debond, count=30, first=0, listed=None):
     """Tries the scenes and prints what became of them."""
     kinds, missed, failures = collections.Counter(), 0, []
     for number in range(first, first + count):

@@ -120,3 +120,8 @@ mkdir -p closed/parameters.prm
 expect_code 5 "$debond" bar.prm --set "Output/Directory=closed"
 grep -q "closed/parameters.prm" errors || fail "not named: $(cat errors)"
 [ ! -s log ] || fail "The scene was solved: $(cat log)"
+
+# Names that are no UTF-8 do not spoil the summary.
+echo "include bar.prm" >$'odd"\xff.prm'
+"$debond" $'odd"\xff.prm' --set "Output/Directory=odd" >/dev/null
+python3 -c 'import json; json.load(open("odd/summary.json"))' || fail "summary.json"

@@ -101,8 +101,8 @@ near(summary["tangential_reaction"][1], 0., 0.01)
 SCRIPT
 python3 check.py output/bar 80 10 "$tests"
 # Fields of more than one block.
-"$debond" bar.prm --set "Mesh/Cells=640, 64" --set Output/Directory=fine >/dev/null
-python3 check.py fine 163840 640 "$tests"
+"$debond" bar.prm --set "Mesh/Cells=320, 32" --set Output/Directory=fine >/dev/null
+python3 check.py fine 40960 320 "$tests"
 python3 check.py output/solid 384 64 "$tests"
 
 # A body that may slide has no such forces.

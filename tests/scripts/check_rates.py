@@ -6,7 +6,7 @@ from common import SOURCE, near, study, table
 
 D = 0.01  # of the scenes
 SQUARES = "Sweep {}/Values=8, 8 | 16, 16 | 32, 32"
-BARS = "Sweep {}/Values=20, 2 | 40, 4 | 80, 8 | 160, 16"
+BARS = "Sweep {}/Values=40, 4 | 80, 8 | 160, 16"
 RATES = {"L2": 2, "H1": 1, "energy norm": 1}
 
 

@@ -1,31 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-
-// What a run writes, and the verification of a solution against cases in
-// which the distance to the contact law is known in closed form.
+// The verification of a solution against cases in which the distance to the
+// contact law is known in closed form.
 
 #include <deal.II/lac/full_matrix.h>
 
-#include <debond/base/atomic_file.h>
-#include <debond/base/directory_lock.h>
-#include <debond/check/plausibility.h>
+#include <debond/check/verification.h>
 #include <debond/contact/laws/none.h>
 #include <debond/contact/laws/winkler.h>
 #include <debond/mesh/box.h>
-#include <debond/output/record.h>
-#include <debond/output/tables.h>
-#include <debond/solve/progress.h>
-
-#include <nlohmann/json.hpp>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
-#include <filesystem>
-#include <fstream>
-#include <iostream>
 #include <limits>
-#include <sstream>
 
 #include "../check.h"
 
@@ -35,219 +21,6 @@ using namespace Debond;
 
 namespace
 {
-  std::string
-  contents(const std::string &file_name)
-  {
-    std::ifstream      in(file_name);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-  }
-
-
-
-  /// The fields of a CSV file by row, the titles as row 0.
-  std::vector<std::vector<std::string>>
-  read_csv(const std::string &file_name)
-  {
-    std::vector<std::vector<std::string>> rows;
-    std::istringstream                    lines(contents(file_name));
-    for (std::string line; std::getline(lines, line);)
-      {
-        rows.emplace_back();
-        std::istringstream fields(line);
-        for (std::string field; std::getline(fields, field, ',');)
-          rows.back().push_back(field);
-      }
-    return rows;
-  }
-
-
-
-  void
-  test_atomic_file()
-  {
-    section("Files in one piece");
-    const auto write_text = [](const std::string &text) {
-      return [text](std::ostream &out) { out << text; };
-    };
-
-    write_atomically("atomic.txt", write_text("one"));
-    check("a file is written", contents("atomic.txt") == "one");
-    write_atomically("atomic.txt", write_text("two"));
-    check("a file is replaced", contents("atomic.txt") == "two");
-
-    print_error([] {
-      write_atomically("atomic.txt", [](std::ostream &out) {
-        out << "thr";
-        throw std::runtime_error("the writer's own error");
-      });
-    });
-    check("an error while writing keeps the old file",
-          contents("atomic.txt") == "two");
-
-    print_error(
-      [&] { write_atomically("no-such-directory/x.txt", write_text("x")); });
-    std::filesystem::create_directory("directory");
-    print_error([&] { write_atomically("directory", write_text("x")); });
-
-    // No space, by a limit of the process.
-    rlimit limit;
-    getrlimit(RLIMIT_FSIZE, &limit);
-    const rlimit few = {2, limit.rlim_max};
-    const auto   old = std::signal(SIGXFSZ, SIG_IGN);
-    std::string  said;
-    setrlimit(RLIMIT_FSIZE, &few);
-    try
-      {
-        write_atomically("full.txt", write_text("three"));
-      }
-    catch (const std::runtime_error &error)
-      {
-        said = error.what();
-      }
-    setrlimit(RLIMIT_FSIZE, &limit);
-    std::signal(SIGXFSZ, old);
-    // Only now, as the log is a file as well.
-    std::cout << said << std::endl;
-
-    // A link in the place of the file in the making, and one of the file.
-    write_atomically("victim.txt", write_text("kept"));
-    std::filesystem::create_symlink("victim.txt", "link.txt");
-    std::filesystem::create_symlink("victim.txt", "link.txt.partial");
-    write_atomically("link.txt", write_text("new"));
-    check("links are replaced, not followed",
-          contents("victim.txt") == "kept" && contents("link.txt") == "new" &&
-            !std::filesystem::is_symlink("link.txt"));
-    std::filesystem::remove("link.txt");
-
-    bool partial_files = std::filesystem::exists("full.txt");
-    for (const auto &entry : std::filesystem::directory_iterator("."))
-      partial_files |= entry.path().extension() == ".partial";
-    check("nothing half-written stays", !partial_files);
-  }
-
-
-
-  void
-  test_history()
-  {
-    section("Iteration history");
-    const std::vector<BundleIteration> history = {
-      {1, -1. / 3e4, -0.1, 1., 1., 1, 4, StepKind::long_step},
-      {2, -5.7774619650983e-4, -1e-300, 0., 0.25, 2, 0, StepKind::null_step}};
-    write_history(history, {}, "history.csv");
-
-    const auto rows = read_csv("history.csv");
-    for (const std::string &title : rows.at(0))
-      std::cout << title << ' ';
-    std::cout << std::endl;
-
-    bool same = rows.size() == 3;
-    for (unsigned int i = 0; i < history.size(); ++i)
-      {
-        const auto &row = rows.at(i + 1);
-        same &= row.size() == 8 && std::stoul(row[0]) == history[i].iteration &&
-                std::stod(row[1]) == history[i].functional &&
-                std::stod(row[2]) == history[i].v &&
-                std::stod(row[3]) == history[i].t_L &&
-                std::stod(row[4]) == history[i].t_R &&
-                std::stoul(row[5]) == history[i].bundle_size &&
-                std::stoul(row[6]) == history[i].qp_steps &&
-                row[7] == to_string(history[i].kind);
-      }
-    check("every number is read back to the last bit", same);
-    print_error([&] { write_history(history, {}, "no-such-directory/h.csv"); });
-
-    write_history(history, -1e-3, "history.csv");
-    const auto found = read_csv("history.csv").back();
-    check("a found state has the last row",
-          found.size() == 8 && found[0] == "3" &&
-            std::stod(found[1]) == -1e-3 && found[7] == "search");
-    write_history(
-      std::vector<MajoriseMinimiseIteration>{{1, -1e-4, 1e-12, 3, 0, 5}},
-      -1e-3,
-      "history.csv");
-    check("also after majorise-minimise",
-          contents("history.csv").find("\n2,-0.001,,,,\n") !=
-            std::string::npos);
-  }
-
-
-
-  void
-  test_summary()
-  {
-    section("Summary");
-    Record record(true);
-    record.add("/scene", "prm/\"odd\"\xff.prm");
-    record.add("/functional", -5.7774619650983e-4);
-    record.heading("Result");
-    record.add("/iterations/total", 7);
-    record.line("iterations", "7");
-    record.add("/law_violation", std::numeric_limits<double>::infinity());
-    record.add("/iterations/long", 4);
-    record.add("/bond_states",
-               std::map<std::string, unsigned int>{{"partly broken (1)", 30},
-                                                   {"bonded", 9}});
-    record.print(std::cout);
-    record.line("contact nodes", "39");
-    record.print(std::cout);
-    record.write("summary.json");
-
-    const auto json = nlohmann::ordered_json::parse(contents("summary.json"));
-    for (const auto &item : json.items())
-      std::cout << item.key() << ' ';
-    std::cout << std::endl;
-    std::cout << "iterations: " << json["iterations"].dump() << std::endl
-              << "bond_states: " << json["bond_states"].dump() << std::endl;
-    check("numbers are JSON numbers, read back to the last bit",
-          json["functional"].is_number() &&
-            json["functional"] == -5.7774619650983e-4);
-    check("an infinite number is null", json["law_violation"].is_null());
-  }
-
-
-
-  void
-  test_progress()
-  {
-    std::cout << "== Progress in a log" << std::endl;
-    BundleIteration iteration = {
-      0, -5.7774619650983e-4, -1.25e-8, 1., 1., 0, 0, StepKind::short_step};
-    Progress log(std::cout, false);
-    for (unsigned int k = 1; k <= 23; ++k)
-      {
-        iteration.iteration   = k;
-        iteration.bundle_size = k;
-        log.report(iteration);
-      }
-    log.finish();
-    log.finish();
-
-    section("Progress on a terminal");
-    std::ostringstream screen;
-    Progress           terminal(screen, true);
-    for (unsigned int k = 1; k <= 1000; ++k)
-      {
-        iteration.iteration = k;
-        terminal.report(iteration);
-      }
-    terminal.finish();
-    const std::string text     = screen.str();
-    const auto        rewrites = std::count(text.begin(), text.end(), '\r');
-    check("it is rewritten a few times only", rewrites >= 2 && rewrites <= 10);
-    check("the line is ended once, with the last iteration",
-          std::count(text.begin(), text.end(), '\n') == 2 &&
-            text.back() == '\n' && text.rfind("1000 ") > text.rfind('\r'));
-
-    std::ostringstream silent;
-    Progress(silent, true).finish();
-    check("nothing is printed without an iteration", silent.str().empty());
-  }
-
-
-
   /**
    * A body clamped at both ends with one contact node (four in 3D), whose
    * normal displacements can be prescribed.
@@ -547,54 +320,6 @@ namespace
 
 
 
-  /// Of a displacement (e x, g x), with the stress of plane strain by hand.
-  void
-  test_largest_values()
-  {
-    section("Largest values");
-    dealii::Triangulation<2> mesh;
-    make_box<2>({{{2., 1., 1.}}, {{2, 1, 1}}, 0.}, mesh);
-    ElasticProblem<2> problem(
-      mesh, BoundaryConditions{{box_sides<2>().at("left")}, {}, true});
-    const Material material = {69., 0.3, Material::Hypothesis::plane_strain};
-    problem.assemble(material, {});
-
-    const double e = 1e-2, g = -3e-2;
-    DofVector    u(problem.unknowns().n_dofs());
-    for (const auto &cell :
-         problem.unknowns().dof_handler().active_cell_iterators())
-      for (const unsigned int v : cell->vertex_indices())
-        {
-          u(cell->vertex_dof_index(v, 0)) = e * cell->vertex(v)[0];
-          u(cell->vertex_dof_index(v, 1)) = g * cell->vertex(v)[0];
-        }
-    const LargestValues largest = largest_values(problem, u);
-    const double        mu      = 69. / (2. * 1.3);
-    check("displacement, gradient and von Mises stress",
-          near(largest.displacement, 2. * std::hypot(e, g)) &&
-            near(largest.gradient, std::hypot(e, g)) &&
-            near(largest.von_mises, mu * std::sqrt(4. * e * e + 3. * g * g)));
-  }
-
-
-
-  void
-  test_directory_lock()
-  {
-    section("Lock of a directory");
-    {
-      const DirectoryLock lock("locked/inside");
-      check("it says who holds it",
-            contents("locked/inside/.lock").find("process ") == 0);
-    }
-    check("it is removed", !std::filesystem::exists("locked/inside/.lock"));
-    std::ofstream("locked/inside/.lock") << "process 1 on elsewhere\n";
-    const DirectoryLock lock("locked/inside");
-    check("what a killed process left is taken over",
-          contents("locked/inside/.lock").find("elsewhere") ==
-            std::string::npos);
-    print_error([] { const DirectoryLock blocked("history.csv/x"); });
-  }
 } // namespace
 
 
@@ -602,16 +327,6 @@ namespace
 int
 main()
 {
-  for (const auto &entry : std::filesystem::directory_iterator("."))
-    if (entry.path().extension() == ".partial")
-      std::filesystem::remove(entry.path());
-
-  test_atomic_file();
-  test_history();
-  test_summary();
-  test_progress();
-  test_largest_values();
-  test_directory_lock();
   for (const double young_modulus : {69., 6.9e10})
     {
       test_law_violation(young_modulus);
