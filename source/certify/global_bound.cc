@@ -192,11 +192,8 @@ namespace Debond
         problems.mean_problem(known.ranges, given_means, D));
       const BranchAndBoundResult bound =
         branch_and_bound(parameters,
-                         problem->S,
-                         problem->g,
-                         *problem->phi,
-                         problem->kept_of(given_means),
-                         [&](const ProofProgress &) { return may_go_on(); });
+                         {problem->S, problem->g, *problem->phi, may_go_on},
+                         problem->kept_of(given_means));
       nodes += bound.nodes;
       const double lower =
         bound.status == ProofStatus::no_bound ?

@@ -78,14 +78,12 @@ namespace Debond
       NodeResult
       run(const double       best_value,
           const double       tolerance,
-          const unsigned int maximum_rounds,
-          const bool         only_while_halving)
+          const unsigned int maximum_rounds)
       {
         NodeResult result;
         for (unsigned int round = 0;; ++round)
           {
-            const std::size_t n_undecided = undecided().size();
-            const bool        all_decided = n_undecided == 0;
+            const bool all_decided = undecided().empty();
             if (InterruptGuard::noticed() || !set_up(round == 0))
               break;
             minimise_relaxation(problem, envelopes, node.x);
@@ -107,10 +105,7 @@ namespace Debond
                 if (round > 0)
                   raise(best_value - lower_bound.value);
               }
-            // The second relaxation is the first with shifts that raise it.
-            const bool is_slow = only_while_halving && round > 0 &&
-                                 2 * undecided().size() > n_undecided;
-            if (round + 1 >= maximum_rounds || is_slow)
+            if (round + 1 >= maximum_rounds)
               choose(lower_bound, result);
             if (result.unknown)
               return result;
@@ -393,28 +388,13 @@ namespace Debond
       }
     if (!is_safely_positive_definite(A))
       return nothing;
-
-    constexpr double      infinity = std::numeric_limits<double>::infinity();
-    constexpr long double epsilon = std::numeric_limits<long double>::epsilon();
-    long double           sum = 0., size = 0.;
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        long double product = 0., terms = std::abs(g(i));
-        for (unsigned int j = 0; j < n; ++j)
-          {
-            const long double term = static_cast<long double>(A(j, i)) * s(j);
-            product += term;
-            terms += std::abs(term);
-          }
-        // Of all that r can be the largest gives the least value, as s_i <= 0.
-        const long double r     = product - g(i) + (n + 16.L) * epsilon * terms;
-        const long double least = f[i].least(r, -infinity, 0.);
-        sum += least - 0.5L * s(i) * product;
-        size += std::abs(s(i)) * terms + std::abs(least);
-      }
-    sum -= (n + 16.L) * epsilon * size;
-    const double value = static_cast<double>(sum);
-    return value - std::numeric_limits<double>::epsilon() * std::abs(value);
+    return LowerBound({A,
+                       g,
+                       f,
+                       Eigen::VectorXd::Constant(n, nothing),
+                       Eigen::VectorXd::Zero(n)},
+                      s)
+      .value;
   }
 
 
@@ -422,14 +402,10 @@ namespace Debond
   NodeResult
   NodeBound::bound(ProofNode   &node,
                    const double best_value,
-                   const double tolerance,
-                   const bool   only_while_halving) const
+                   const double tolerance) const
   {
     return Relaxations(S, g, phi, node)
-      .run(best_value,
-           tolerance,
-           node.number == 0 ? n_root_rounds : n_rounds,
-           only_while_halving);
+      .run(best_value, tolerance, node.number == 0 ? n_root_rounds : n_rounds);
   }
 
 
