@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/memory.h>
 #include <debond/base/run_watch.h>
+#include <debond/base/tolerances.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
 #include <debond/input/bad_input.h>
@@ -21,11 +22,6 @@ namespace Debond
 {
   namespace
   {
-    /// Displacements this close to the kink, relative, count as on it.
-    constexpr double kink_width = 1e-6;
-
-
-
     /// On contact boundaries with more nodes a search takes more than a fifth
     /// of the solve, so that it has to be asked for: automatic searches on a
     /// coarser one.
@@ -351,8 +347,8 @@ namespace Debond
 
     // No quadrature point is so close to the kink that it changes its branch.
     const Eigen::SparseMatrix<double> difference =
-      adhesion.curvature((1. + kink_width) * s) -
-      adhesion.curvature((1. - kink_width) * s);
+      adhesion.curvature((1. + Tolerance::at_kink) * s) -
+      adhesion.curvature((1. - Tolerance::at_kink) * s);
     return difference.norm() == 0. ? MinimumKind::local_minimum :
                                      MinimumKind::stationary;
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 
@@ -9,10 +10,6 @@ namespace Debond
 {
   namespace
   {
-    /// Of majorise-minimise, where the method's own was not reached: what
-    /// rounding leaves of a body of 100 x 1 is about 1e-8.
-    constexpr double second_tolerance = 1e-6;
-
     /// States that are minimised, at most.
     constexpr unsigned int maximum_trials = 100000;
 
@@ -178,7 +175,7 @@ namespace Debond
         result.status == SolverStatus::interrupted)
       return result;
     MajoriseMinimiseParameters parameters;
-    parameters.tolerance = second_tolerance;
+    parameters.tolerance = Tolerance::trial;
     return MajoriseMinimise(parameters).minimize(problem, monitor);
   }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/optimization/global/convex_envelope.h>
 
 #include <algorithm>
@@ -287,7 +288,7 @@ namespace Debond
         long double constant =
           value(near, a) - a * (slope + 0.5L * far.curvature * a);
         // Branches without slopes have the constant of the near one here.
-        const long double rounding = 1e-12L * value(far, b);
+        const long double rounding = Tolerance::same_constant * value(far, b);
         if (std::abs(constant - near.constant) < rounding)
           constant = near.constant;
         branches.push_back(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/interrupt.h>
+#include <debond/base/tolerances.h>
 #include <debond/optimization/global/envelope_relaxation.h>
 
 #include <Eigen/Cholesky>
@@ -14,9 +15,6 @@ namespace Debond
   {
     /// Where more would be needed the steps cycle; any point has a bound.
     constexpr unsigned int maximum_newton_steps = 12;
-
-    /// Covers the rounding of a diagonal entry of an inverse.
-    constexpr double inverse_rounding = 1. + 1e-6;
 
     /// Other places are numbers of parts of the envelope.
     enum Place
@@ -155,12 +153,13 @@ namespace Debond
                      const double       inverse_diagonal) const
   {
     const BranchMinimum::Piece &p = problem.f[i].pieces[piece];
-    const double quadratic        = 1. / (inverse_rounding * inverse_diagonal);
-    const double c                = problem.f[i].convexity + p.curvature;
-    const double r_i              = static_cast<double>(r[i]);
-    const double least_i          = static_cast<double>(least[i]);
-    const double constant         = static_cast<double>(p.constant);
-    const double size             = std::abs(x(i));
+    const double                quadratic =
+      1. / ((1. + Tolerance::outwards) * inverse_diagonal);
+    const double c        = problem.f[i].convexity + p.curvature;
+    const double r_i      = static_cast<double>(r[i]);
+    const double least_i  = static_cast<double>(least[i]);
+    const double constant = static_cast<double>(p.constant);
+    const double size     = std::abs(x(i));
 
     // A piece between kinks can be steep. It is written about s = 0, where its
     // terms are no larger than the energy of the kinks.

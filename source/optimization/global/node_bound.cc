@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/interrupt.h>
+#include <debond/base/tolerances.h>
 #include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/global/node_bound.h>
 
@@ -29,12 +30,6 @@ namespace Debond
     /// How much the gap of an envelope counts when its unknown is chosen,
     /// beside the bound of the lower one of its halves.
     constexpr double envelope_weight = 0.3;
-
-    /// What a bound at a point takes more than it needs, relative to that and
-    /// to the curvature of branch or body: a residual d of s then costs d^2 /
-    /// (2 D).
-    constexpr double excess_at_point = 1e-2;
-    constexpr double floor_at_point  = 1e-8;
 
 
 
@@ -340,10 +335,10 @@ namespace Debond
     // Within this distance of s_0 by the energy, and a little more.
     const double distance = 2. * (best_value + 0.5 * g.dot(s_0));
     without_phi.lower =
-      (s_0 -
-       (distance * inverse->diagonal()).cwiseMax(0.).cwiseSqrt() * (1. + 1e-6))
+      (s_0 - (distance * inverse->diagonal()).cwiseMax(0.).cwiseSqrt() *
+               (1. + Tolerance::outwards))
         .cwiseMin(0.);
-    without_phi.lower -= 1e-6 * without_phi.lower.cwiseAbs();
+    without_phi.lower -= Tolerance::outwards * without_phi.lower.cwiseAbs();
 
     ProofNode node;
     node.number = 0;
@@ -379,8 +374,8 @@ namespace Debond
               convexity =
                 std::max(convexity, needed_convexity(f_i[own], f_i[k], s(i)));
           }
-        A(i, i) -= (1. + excess_at_point) * convexity +
-                   floor_at_point * std::min(largest, S(i, i));
+        A(i, i) -= (1. + Tolerance::excess_at_point) * convexity +
+                   Tolerance::floor_at_point * std::min(largest, S(i, i));
         // What was taken, without the rounding of the difference.
         f[i].convexity = S(i, i) - A(i, i);
         if (!(A(i, i) > 0.))
