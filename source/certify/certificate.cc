@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/certify/certificate.h>
 #include <debond/certify/side_moments.h>
 #include <debond/contact/exact_energy.h>
@@ -19,22 +20,6 @@ namespace Debond
   {
     template <int dim>
     using SideOf = typename EquilibriumProblem<dim>::ContactSide;
-
-
-
-    /// What one's own computations may have lost, relative to J and the strain
-    /// energy.
-    constexpr double certificate_rounding = 1e-9;
-
-    /// Of tractions, relative to the largest one, or that of the boundary if it
-    /// were held.
-    constexpr double traction_rounding = 1e-9;
-
-    /// Of bonds and gaps along a side, relative.
-    constexpr double bond_rounding = 1e-10;
-
-    /// Of displacements in contact, relative to the largest one.
-    constexpr double contact_rounding = 1e-9;
 
 
 
@@ -65,7 +50,8 @@ namespace Debond
       for (const auto &face : boundary.faces)
         for (const unsigned int node : face.nodes)
           if (node < boundary.nodes.size() &&
-              (boundary.nodes[node].normal - face.normal).norm() > 1e-8)
+              (boundary.nodes[node].normal - face.normal).norm() >
+                Tolerance::same_normal)
             throw EquilibriumError("a contact boundary with corners that are "
                                    "rounded by a mean normal is not done");
     }
@@ -95,7 +81,7 @@ namespace Debond
                 position += barycentric[k] * side.corners[k];
               scales.push_back(bonds.bonds_at(position, side.id));
               const auto differ = [](const double a, const double b) {
-                return std::abs(a - b) > bond_rounding * std::abs(b);
+                return std::abs(a - b) > Tolerance::linear_data * std::abs(b);
               };
               if (differ(scales.back().energy, scales[0].energy) ||
                   differ(scales.back().stretch, scales[0].stretch))
@@ -138,7 +124,7 @@ namespace Debond
             largest = std::max(largest, std::abs(side.gap[k]));
           }
       const auto check = [&](const double gap, const double linear) {
-        if (std::abs(gap - linear) > bond_rounding * largest)
+        if (std::abs(gap - linear) > Tolerance::linear_data * largest)
           throw EquilibriumError("a gap that is not linear on each side, or "
                                  "differs between sides, is not done");
       };
@@ -323,8 +309,8 @@ namespace Debond
       // Where the displacement is in contact, and what is wrong there is found.
       ActiveSet active(dim * n, 0);
       for (Eigen::Index i = 0; i < dim * n; ++i)
-        active[i] = u_nu(i) >=
-                    -contact_rounding * u_nu.template lpNorm<Eigen::Infinity>();
+        active[i] = u_nu(i) >= -Tolerance::certificate *
+                                 u_nu.template lpNorm<Eigen::Infinity>();
       const BoundQPResult minimum =
         solve_bound_qp(M, r, Eigen::VectorXd::Zero(dim * n), active);
       if (minimum.status != SolverStatus::success &&
@@ -369,7 +355,7 @@ namespace Debond
             conjugate_integral<dim>(pieces[i],
                                     sides[i].measure,
                                     tractions,
-                                    traction_rounding * largest_traction);
+                                    Tolerance::certificate * largest_traction);
           const Trace<dim> trace(sides[i], fields.unknowns(), displacement);
           const double     of_bonds = trace.integral(
             [&](const auto &, const double s) { return pieces[i].value(s); });
@@ -466,7 +452,7 @@ namespace Debond
     double
     own_rounding(const Certificate &certificate, const double strain_energy)
     {
-      return certificate_rounding *
+      return Tolerance::certificate *
              std::max(std::abs(certificate.upper), strain_energy);
     }
   } // namespace

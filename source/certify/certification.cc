@@ -4,6 +4,7 @@
 #include <debond/base/interrupt.h>
 #include <debond/base/processes.h>
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/certify/certification.h>
 #include <debond/input/bad_input.h>
 #include <debond/output/csv_table.h>
@@ -108,7 +109,7 @@ namespace Debond
                            [&](const CertifiedSide &other) {
                              const auto &[a, b] = other.ends;
                              return a.distance(middle) + middle.distance(b) <=
-                                    (1. + 1e-9) * a.distance(b);
+                                    (1. + Tolerance::on_side) * a.distance(b);
                            });
             field.second.push_back(
               side == certificate.sides.end() || !side->piece ? -1. :

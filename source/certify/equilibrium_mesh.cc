@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
+#include <debond/base/tolerances.h>
 #include <debond/certify/equilibrium_mesh.h>
 #include <debond/certify/side_moments.h>
 #include <debond/contact/field_value.h>
@@ -16,12 +17,6 @@ namespace Debond
   {
     template <int dim>
     using CellOf = typename dealii::Triangulation<dim>::cell_iterator;
-
-    /// Of body forces and temperatures in a cell, and of what is prescribed
-    /// along a side, relative.
-    constexpr double load_rounding = 1e-10;
-
-
 
     /// Of a point of the reference simplex.
     template <int dim>
@@ -134,8 +129,8 @@ namespace Debond
         for (unsigned int d = 0; d < dim; ++d)
           load(d) = mean[d];
         for (const dealii::Tensor<1, dim> &force : forces)
-          exact_loads =
-            exact_loads && (force - mean).norm() <= load_rounding * largest;
+          exact_loads = exact_loads && (force - mean).norm() <=
+                                         Tolerance::linear_data * largest;
       }
   }
 
@@ -159,8 +154,8 @@ namespace Debond
             least              = std::min(least, value);
             largest            = std::max(largest, value);
           }
-        if (largest - least >
-            load_rounding * std::max(std::abs(largest), std::abs(least)))
+        if (largest - least > Tolerance::linear_data *
+                                std::max(std::abs(largest), std::abs(least)))
           return false;
       }
     return true;
@@ -277,9 +272,9 @@ namespace Debond
           const dealii::Point<dim> middle(0.5 *
                                           (side.corners[k] + side.corners[l]));
           exact_loads =
-            exact_loads &&
-            std::abs(field_value(function, middle, component) -
-                     0.5 * (values[k] + values[l])) <= load_rounding * largest;
+            exact_loads && std::abs(field_value(function, middle, component) -
+                                    0.5 * (values[k] + values[l])) <=
+                             Tolerance::linear_data * largest;
         }
     // dim times the mean of lambda_k lambda_l is (1 + delta_kl) / (dim + 1).
     for (unsigned int k = 0; k < dim; ++k)

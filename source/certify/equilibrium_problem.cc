@@ -4,6 +4,7 @@
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/sparsity_pattern.h>
 
+#include <debond/base/tolerances.h>
 #include <debond/certify/equilibrium_problem.h>
 #include <debond/certify/side_moments.h>
 
@@ -25,11 +26,10 @@ namespace Debond
     bool
     is_moved(const SimplexCorners<dim> &one, const SimplexCorners<dim> &other)
     {
-      constexpr double rounding = 1e-12;
-      const double     size     = (one[1] - one[0]).norm();
+      const double size = (one[1] - one[0]).norm();
       for (unsigned int i = 1; i <= dim; ++i)
         if (((one[i] - one[0]) - (other[i] - other[0])).norm() >
-            rounding * size)
+            Tolerance::same_cell * size)
           return false;
       return true;
     }

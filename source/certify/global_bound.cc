@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/certify/global_bound.h>
 #include <debond/certify/mean_problem.h>
 #include <debond/certify/side_ranges.h>
@@ -192,11 +193,8 @@ namespace Debond
         problems.mean_problem(known.ranges, given_means, D));
       const BranchAndBoundResult bound =
         branch_and_bound(parameters,
-                         problem->S,
-                         problem->g,
-                         *problem->phi,
-                         problem->kept_of(given_means),
-                         [&](const ProofProgress &) { return may_go_on(); });
+                         {problem->S, problem->g, *problem->phi, may_go_on},
+                         problem->kept_of(given_means));
       nodes += bound.nodes;
       const double lower =
         bound.status == ProofStatus::no_bound ?
@@ -298,8 +296,6 @@ namespace Debond
       Material          material;
       double            constant;
     };
-    // Shapes count as the same if they are to less than this.
-    constexpr double    rounding = 1e-9;
     std::vector<Known>  known;
     std::vector<double> constants;
     for (const ContactSide &side : equilibrium.contact_sides())
@@ -310,7 +306,7 @@ namespace Debond
           std::find_if(known.begin(), known.end(), [&](const Known &other) {
             return std::abs(other.shape.height - own.height) +
                        std::abs(other.shape.apex - own.apex) <=
-                     rounding * own.height &&
+                     Tolerance::certificate * own.height &&
                    other.material.young_modulus == material.young_modulus &&
                    other.material.poisson_ratio == material.poisson_ratio;
           });
@@ -318,8 +314,8 @@ namespace Debond
           same = known.insert(
             known.end(),
             {own, material, trace_constant(own, material, tangential_fixed)});
-        constants.push_back((1. - 100. * rounding) * same->constant /
-                            side.measure);
+        constants.push_back((1. - 100. * Tolerance::certificate) *
+                            same->constant / side.measure);
       }
     return constants;
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/certify/mean_problem.h>
 #include <debond/optimization/global/convex_envelope.h>
 #include <debond/optimization/global/convexity_shift.h>
@@ -86,7 +87,8 @@ namespace Debond
         {
           long double constant = whole[k].constant - nearest.constant;
           // Branches without slopes have the constant of a near one.
-          if (std::abs(constant) < 1e-12L * whole[last].constant)
+          if (std::abs(constant) <
+              Tolerance::same_constant * whole[last].constant)
             constant = 0.L;
           branches.push_back({factor * whole[k].curvature,
                               factor * whole[k].slope,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature.h>
 
+#include <debond/base/tolerances.h>
 #include <debond/certify/side_moments.h>
 #include <debond/elasticity/load_vector.h>
 
@@ -10,15 +11,6 @@
 
 namespace Debond
 {
-  namespace
-  {
-    /// How far a traction may be from a linear one, relative to it.
-    constexpr double linear_rounding = 1e-10;
-
-  } // namespace
-
-
-
   template <int dim>
   SideTraction<dim>
   side_traction(
@@ -59,7 +51,7 @@ namespace Debond
         largest = std::max(largest, values[q].norm());
         square += (dim - 1.) * rule.weight(q) * rest.norm_square();
       }
-    if (std::sqrt(square) <= linear_rounding * largest)
+    if (std::sqrt(square) <= Tolerance::linear_data * largest)
       square = 0.;
     return {linear, square};
   }

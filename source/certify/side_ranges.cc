@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/certify/side_ranges.h>
 #include <debond/optimization/global/node_bound.h>
 #include <debond/optimization/interval.h>
@@ -56,7 +57,7 @@ namespace Debond
           if (ball.value > upper)
             return {};
           const double radius =
-            std::sqrt(2. * (upper - ball.value)) * (1. + 1e-6);
+            std::sqrt(2. * (upper - ball.value)) * (1. + Tolerance::outwards);
           const Eigen::VectorXd x         = problem.all(ball.x);
           const Eigen::MatrixXd of_means  = means * ball.inverse;
           const Eigen::MatrixXd of_slopes = slopes * ball.inverse;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/certify/mean_problem.h>
 #include <debond/certify/trace_constant.h>
 
@@ -12,10 +13,6 @@ namespace Debond
 {
   namespace
   {
-    constexpr double constant_rounding = 1e-9;
-
-
-
     /// A triangle with its side I from 0 to (1, 0), divided into n x n; I is
     /// the boundary 1.
     void
@@ -118,6 +115,6 @@ namespace Debond
                           S, Eigen::EigenvaluesOnly)
                           .eigenvalues()(0));
       }
-    return (1. - constant_rounding) * best * material.young_modulus;
+    return (1. - Tolerance::certificate) * best * material.young_modulus;
   }
 } // namespace Debond

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/check/coming_off.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/optimization/polar_cone.h>
@@ -11,12 +12,6 @@ namespace Debond
 {
   namespace
   {
-    /// Of the displacements of contact nodes, in parts of the largest normal
-    /// one.
-    constexpr double rounding_of_motion = 1e-9;
-
-
-
     /// The sum with @p parts of the motions, of the displacement of @p centre
     /// and of rotations.
     template <int dim>
@@ -78,14 +73,13 @@ namespace Debond
                           work.along.dot(parts),
                           (towards.transpose() * parts).maxCoeff()};
     for (unsigned int i = 0; i < result.motion.translation.dimension; ++i)
-      if (std::abs(result.motion.translation[i]) <= rounding_of_motion)
+      if (std::abs(result.motion.translation[i]) <= Tolerance::motion_off)
         result.motion.translation[i] = 0.;
     for (unsigned int i = 0; i < result.motion.rotation.dimension; ++i)
-      if (std::abs(result.motion.rotation[i]) * radius <= rounding_of_motion)
+      if (std::abs(result.motion.rotation[i]) * radius <= Tolerance::motion_off)
         result.motion.rotation[i] = 0.;
-    if (!(result.work >
-          rounding_of_work * work.largest.dot(parts.cwiseAbs())) ||
-        result.towards_foundation > rounding_of_motion)
+    if (!(result.work > Tolerance::work * work.largest.dot(parts.cwiseAbs())) ||
+        result.towards_foundation > Tolerance::motion_off)
       return {};
     return result;
   }

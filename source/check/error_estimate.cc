@@ -5,6 +5,7 @@
 
 #include <debond/base/ranks.h>
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/check/error_estimate.h>
 #include <debond/contact/field_value.h>
 #include <debond/mesh/owned_cells.h>
@@ -454,16 +455,17 @@ namespace Debond
                       const std::array<double, dim> &coordinates) const
       {
         // Displacements of iterative methods may be off by so much.
-        constexpr double             tolerance = 1e-6;
-        const double                 measure   = side.area.norm();
-        const dealii::Tensor<1, dim> normal    = side.area / measure;
+        const double                 measure = side.area.norm();
+        const dealii::Tensor<1, dim> normal  = side.area / measure;
         const double traction  = of.adhesion.traction(face, coordinates, s);
         const double trace     = of.adhesion.trace(face, coordinates, s);
         double       r_nu      = r * normal - traction;
         bool         is_closed = true;
         for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
-          is_closed = is_closed && (face.is_held(k) ||
-                                    s(face.node(k)) >= -tolerance * largest_s);
+          is_closed =
+            is_closed &&
+            (face.is_held(k) ||
+             s(face.node(k)) >= -Tolerance::estimated_contact * largest_s);
         if (is_closed)
           r_nu = std::min(r_nu, 0.);
         // What yields stretches the bonds, too.

@@ -3,6 +3,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <debond/base/ranks.h>
+#include <debond/base/tolerances.h>
 #include <debond/check/probes.h>
 #include <debond/mesh/owned_cells.h>
 
@@ -59,8 +60,7 @@ namespace Debond
       const double       deepest = dealii::Utilities::MPI::max(least, ranks);
       const unsigned int first   = dealii::Utilities::MPI::min(
         least == deepest ? rank : number_of_ranks(ranks), ranks);
-      constexpr double rounding = 1e-8;
-      if (deepest < -rounding)
+      if (deepest < -Tolerance::point_in_body)
         throw ProbeError(probe.name, "the point is not in the body");
 
       Weights weights;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/check/broken_zone.h>
 #include <debond/check/verification.h>
 
@@ -23,21 +24,13 @@ namespace Debond
 
 
 
-  namespace
-  {
-    /// Of Verification::force_rounding.
-    constexpr double largest_force_rounding = 0.1;
-  } // namespace
-
-
-
   template <int dim>
   double
   Verification<dim>::error() const
   {
     // Were all forces rounding, they would balance whatever u is. The
     // comparisons of std::max would lose a NaN.
-    if (!(force_rounding <= largest_force_rounding))
+    if (!(force_rounding <= Tolerance::force_rounding))
       return std::numeric_limits<double>::infinity();
     return std::isfinite(equilibrium_residual + force_imbalance +
                          law_violation) ?
@@ -55,10 +48,10 @@ namespace Debond
     text.precision(3);
     const std::string advice =
       ". Are bonds, loads and gaps in the units of the Young modulus?";
-    if (!(force_rounding <= largest_force_rounding))
+    if (!(force_rounding <= Tolerance::force_rounding))
       text << "verification: rounding of the displacements makes forces of "
            << force_rounding << " of the largest one, required is at most "
-           << largest_force_rounding << advice;
+           << Tolerance::force_rounding << advice;
     else
       {
         text << "verification: the largest of residual, force imbalance and "
@@ -109,14 +102,6 @@ namespace Debond
 
 
 
-    /// Forces that are less than so many times their rounding are not resolved.
-    constexpr double digits_above_rounding = 1e4;
-
-    /// Of the largest one: what rounding of gaps may make beside it.
-    constexpr double negligible_force = 1e-7;
-
-
-
     /// What the displacement and the force of a node are compared with, see
     /// Verification::law_violation.
     struct LawScale
@@ -137,10 +122,8 @@ namespace Debond
                const VectorView                    &resolved,
                const LawScale                      &largest)
     {
-      constexpr double smallest_contact_force = 1e-3;
-
-      const AdhesiveLaw &law           = adhesion.adhesive_law();
-      double             largest_force = smallest_contact_force * largest.force;
+      const AdhesiveLaw &law = adhesion.adhesive_law();
+      double largest_force   = Tolerance::contact_force * largest.force;
       for (const ContactNodeState &node : nodes)
         largest_force = std::max(largest_force, std::abs(node.normal_force));
 
@@ -200,9 +183,9 @@ namespace Debond
         (threshold > 0. ? std::min(threshold, largest_s) : largest_s);
       // A small gap under pressure is contact that an iterative method has not
       // closed yet.
-      constexpr double largest_gap = 1e-3;
-      const double     gap =
-        std::max(tolerance, std::min(largest_gap, 1.01 * node.violation));
+      const double gap =
+        std::max(tolerance,
+                 std::min(Tolerance::open_contact, 1.01 * node.violation));
       if (node.s >= -no_gap ||
           (node.normal_force > 0. && node.s >= -gap * scale.length))
         {
@@ -509,13 +492,13 @@ namespace Debond
           .linfty_norm() :
         0.;
     // A body at rest, or off, has no other forces.
-    if (largest_force_rounding * largest_force < rounding_of_gaps)
+    if (Tolerance::force_rounding * largest_force < rounding_of_gaps)
       rounding.add(rounding_of_gaps);
     const double resolved_above_gaps =
-      digits_above_rounding *
-      std::min(rounding_of_gaps, negligible_force * largest_force);
+      Tolerance::resolved *
+      std::min(rounding_of_gaps, Tolerance::negligible_force * largest_force);
     const Eigen::VectorXd resolved_at_nodes =
-      (digits_above_rounding * contact.trace(rounding))
+      (Tolerance::resolved * contact.trace(rounding))
         .cwiseMax(resolved_above_gaps);
     const std::vector<LawScale> scales =
       law_scales(adhesion,
@@ -535,7 +518,7 @@ namespace Debond
       }
 
     const double resolved =
-      std::max(digits_above_rounding * rounding.linfty_norm(),
+      std::max(Tolerance::resolved * rounding.linfty_norm(),
                resolved_above_gaps);
     result.equilibrium_residual =
       largest.free > 0. ?
@@ -546,7 +529,7 @@ namespace Debond
                           residual,
                           factors,
                           std::max(resolved,
-                                   digits_above_rounding * rounding.l1_norm()),
+                                   Tolerance::resolved * rounding.l1_norm()),
                           adhesion.held_forces(s),
                           result);
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/contact/bond_field.h>
 #include <debond/contact/field_value.h>
 
@@ -19,8 +20,9 @@ namespace Debond
       try
         {
           // That of a stiffness that ends at zero.
-          const double rounding = is_threshold ? 0. : 1e-12 * everywhere;
-          const double value    = nonnegative_value(*field, point, rounding);
+          const double rounding =
+            is_threshold ? 0. : Tolerance::rounding_of_data * everywhere;
+          const double value = nonnegative_value(*field, point, rounding);
           if (is_threshold && value == 0.)
             throw std::invalid_argument("it is 0 at " + point_text(point));
           return value;

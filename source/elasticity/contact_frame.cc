@@ -2,6 +2,7 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/numbers.h>
 
+#include <debond/base/tolerances.h>
 #include <debond/elasticity/contact_frame.h>
 
 #include <algorithm>
@@ -70,7 +71,7 @@ namespace Debond
       {
         normal /= normal.norm();
         for (unsigned int d = 0; d < dim; ++d)
-          if (std::abs(normal[d]) < 1e-14)
+          if (std::abs(normal[d]) < Tolerance::zero_in_normal)
             normal[d] = 0.;
         normal /= normal.norm();
       }
@@ -119,7 +120,7 @@ namespace Debond
     // Faces of two groups are at least 31.4 degrees apart, so a small
     // determinant means opposite normals (or three in one plane), not
     // neighbours.
-    if (std::abs(dealii::determinant(frame)) < 1e-3)
+    if (std::abs(dealii::determinant(frame)) < Tolerance::dependent_normals)
       throw std::invalid_argument(
         "The normals of the contact sides that meet at a vertex are linearly "
         "dependent.");

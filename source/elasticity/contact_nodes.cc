@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/contact/field_value.h>
 #include <debond/elasticity/contact_frame.h>
 #include <debond/elasticity/contact_nodes.h>
@@ -121,7 +122,8 @@ namespace Debond
           std::vector<double> coordinates;
           for (const auto &node : nodes)
             coordinates.push_back(node.position[d]);
-          coordinate_ranks[d] = ranks(coordinates, 1e-10 * size);
+          coordinate_ranks[d] =
+            ranks(coordinates, Tolerance::same_coordinate * size);
         }
       std::vector<unsigned int> order(nodes.size());
       std::iota(order.begin(), order.end(), 0u);
@@ -283,7 +285,7 @@ namespace Debond
             dealii::Tensor<1, dim> rest = normals[k];
             for (const auto &row : rows)
               rest -= (normals[k] * row.direction) * row.direction;
-            if (rest.norm() > 1e-6 && !is_clamped)
+            if (rest.norm() > Tolerance::free_normal && !is_clamped)
               unknown.push_back(k);
           }
         if (!is_clamped && vertex.is_tangential_fixed &&

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/elasticity/correction_solver.h>
 
 #include <algorithm>
@@ -28,14 +29,15 @@ namespace Debond
     whole += E;
     const Eigen::MatrixXd matrix = whole(free, free);
     // Where rounding has made S + E indefinite a larger diagonal mends it.
-    for (double shift = 0.; shift < 1e-3;
-         shift = std::max(10. * shift, std::numeric_limits<double>::epsilon()))
+    double shift = 0.;
+    while (shift < Tolerance::largest_shift)
       {
         Eigen::MatrixXd shifted = matrix;
         shifted.diagonal() *= 1. + shift;
         factor.emplace(shifted);
         if (factor->is_positive_definite())
           return;
+        shift = std::max(10. * shift, Tolerance::epsilon);
       }
     // Any positive definite matrix is a preconditioner.
     factor.emplace(matrix.diagonal().cwiseAbs().asDiagonal());

@@ -2,6 +2,7 @@
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_control.h>
 
+#include <debond/base/tolerances.h>
 #include <debond/elasticity/displacement_problem.h>
 #include <debond/linear_algebra/stagnation.h>
 
@@ -68,8 +69,7 @@ namespace Debond
     // and cancel.
     Vector terms = diagonal;
     terms.scale(u);
-    force_rounding =
-      4. * std::numeric_limits<double>::epsilon() * terms.l2_norm();
+    force_rounding            = Tolerance::row_of_product * terms.l2_norm();
     state.functional_rounding = force_rounding * u.l2_norm();
 
     Vector violation = f;
@@ -106,9 +106,10 @@ namespace Debond
     b_c                                            = E_s - phi.subgradient(s);
     if (previous_b_c.size() != b_c.size())
       return true;
-    constexpr double noise = 1e-12;
-    return (b_c - previous_b_c).norm() > noise * (E_s.norm() + b_c.norm()) ||
-           curvature_norm(E - previous_E) > noise * curvature_norm(E);
+    return (b_c - previous_b_c).norm() >
+             Tolerance::same_majorant * (E_s.norm() + b_c.norm()) ||
+           curvature_norm(E - previous_E) >
+             Tolerance::same_majorant * curvature_norm(E);
   }
 
 

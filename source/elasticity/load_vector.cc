@@ -5,6 +5,7 @@
 #include <deal.II/fe/mapping_fe.h>
 
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/contact/field_value.h>
 #include <debond/elasticity/load_vector.h>
 #include <debond/mesh/owned_cells.h>
@@ -100,11 +101,6 @@ namespace Debond
 
   namespace
   {
-    /// Errors of the integral that no note speaks of, relative to the load.
-    constexpr double small_error = 1e-6;
-
-
-
     /// A traction on the face on which its integral is worst.
     template <int dim>
     struct WorstFace
@@ -145,7 +141,7 @@ namespace Debond
     void
     add_note(const WorstFace<dim> &worst, std::vector<std::string> &notes)
     {
-      if (worst.difference <= small_error * worst.size)
+      if (worst.difference <= Tolerance::load_integral * worst.size)
         return;
       const auto mean_by = [&](const unsigned int n_parts) {
         return mean_traction<dim>(*worst.traction,
@@ -158,7 +154,7 @@ namespace Debond
         (mean_by(2 * parts_of_a_face<dim>) - mean_by(parts_of_a_face<dim>))
           .norm() /
         worst.size;
-      if (error <= small_error)
+      if (error <= Tolerance::load_integral)
         return;
       dealii::Point<dim> centre;
       for (const dealii::Point<dim> &corner : worst.corners)

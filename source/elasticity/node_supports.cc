@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/contact/field_value.h>
 #include <debond/elasticity/contact_frame.h>
 #include <debond/elasticity/node_supports.h>
@@ -156,9 +157,8 @@ namespace Debond
     std::vector<bool> is_done(frame_of_node.size(), false);
     for (const BoundaryFace<dim> &face : faces)
       {
-        constexpr double rounding = 1e-8;
         if (condition.is_roller &&
-            (face.normal - faces[0].normal).norm() > rounding)
+            (face.normal - faces[0].normal).norm() > Tolerance::same_normal)
           fail("a roller is flat, but the normals of " + condition.name +
                " differ: prescribe components by Displacement " +
                condition.name);
@@ -167,7 +167,8 @@ namespace Debond
         for (unsigned int d = 0; d < dim; ++d)
           if (!condition.is_roller && !condition.components[d])
             free_part = std::max(free_part, std::abs(face.normal[d]));
-        if (conditions.contact.count(face.id) > 0 && free_part <= rounding)
+        if (conditions.contact.count(face.id) > 0 &&
+            free_part <= Tolerance::same_normal)
           fail(condition.name +
                " is a contact boundary, whose normal displacement is left to "
                "the foundation and cannot be prescribed");
@@ -183,7 +184,7 @@ namespace Debond
                 // Sides along the axes have exact normals.
                 dealii::Tensor<1, dim> normal = faces[0].normal;
                 for (unsigned int d = 0; d < dim; ++d)
-                  if (std::abs(normal[d]) < 1e-14)
+                  if (std::abs(normal[d]) < Tolerance::zero_in_normal)
                     normal[d] = 0.;
                 rows.push_back({normal / normal.norm(), 0., support});
               }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/elasticity/extended_operator.h>
 #include <debond/elasticity/refinement.h>
 
@@ -11,9 +12,6 @@ namespace Debond
 {
   namespace
   {
-    /// Of corrections, in the energy norm.
-    constexpr double refinement_tolerance = 1e-13;
-
     constexpr unsigned int maximum_refinement_iterations = 2000;
     constexpr unsigned int maximum_refinement_systems    = 500;
   } // namespace
@@ -23,8 +21,9 @@ namespace Debond
   double
   allowed_energy_rounding(const unsigned int n_unknowns)
   {
-    return std::clamp(
-      100. * std::numeric_limits<double>::epsilon() * n_unknowns, 1e-10, 1e-9);
+    return std::clamp(100. * Tolerance::epsilon * n_unknowns,
+                      Tolerance::least_energy_rounding,
+                      Tolerance::largest_energy_rounding);
   }
 
 
@@ -105,10 +104,10 @@ namespace Debond
         // Without contact nodes the first one looks like none.
         if (!has_majorant)
           return has_majorant = true;
-        constexpr double noise = 1e-12;
         return (b_c - previous_b_c).norm() >
-                 noise * (E_s.norm() + b_c.norm()) ||
-               curvature_norm(E - previous_E) > noise * curvature_norm(E);
+                 Tolerance::same_majorant * (E_s.norm() + b_c.norm()) ||
+               curvature_norm(E - previous_E) >
+                 Tolerance::same_majorant * curvature_norm(E);
       }
 
       bool
@@ -270,14 +269,14 @@ namespace Debond
             long double       rho = r.dot(z);
             const long double all = std::max(energy(), rho);
             const long double target =
-              all * (refinement_tolerance * refinement_tolerance);
+              all * (Tolerance::refinement * Tolerance::refinement);
             result.error =
               all == 0. ? 0. : static_cast<double>(std::sqrt(rho / all));
             if (rho <= target)
               return true;
             // Residuals that are computed again do not fall for ever.
             if (!(rho < 0.01 * error))
-              return result.error <= 1e3 * refinement_tolerance;
+              return result.error <= 1e3 * Tolerance::refinement;
             error = rho;
 
             ExtendedVector correction = ExtendedVector::Zero(u.size());
@@ -385,7 +384,7 @@ namespace Debond
     // All stresses of a body at rest, or off, are rounding: nothing is lost.
     const bool has_stresses =
       !problem.unknowns().has_lifting() ||
-      rounding * std::numeric_limits<double>::epsilon() < 1e-2;
+      rounding * Tolerance::epsilon < Tolerance::no_stresses;
     if (!refined.converged && has_stresses)
       note
         << "in double precision rounding can change " << rounding

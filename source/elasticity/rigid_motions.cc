@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/elasticity/rigid_motions.h>
 
 #include <Eigen/Eigenvalues>
@@ -40,7 +41,8 @@ namespace Debond
     double spread = 0.;
     for (const Support<dim> &support : supports)
       spread = std::max(spread, (support.position - centre).norm());
-    const double length = spread > 1e-12 * diameter ? spread : diameter;
+    const double length =
+      spread > Tolerance::one_support * diameter ? spread : diameter;
 
     // Gram matrix of the supports' displacements under unit motions; its null
     // space holds the free motions.
@@ -65,7 +67,8 @@ namespace Debond
       }
 
     const Eigen::SelfAdjointEigenSolver<Gram> eigen(gram);
-    const double threshold = 1e-12 * static_cast<double>(supports.size());
+    const double                              threshold =
+      Tolerance::free_motion * static_cast<double>(supports.size());
 
     Gram    null_projector = Gram::Zero();
     Motions null_vector    = Motions::Zero();
@@ -94,7 +97,7 @@ namespace Debond
           k < dim ?
             std::string("translation in ") + axes[k] :
             std::string("rotation about ") + axes[dim == 2 ? 2 : k - dim];
-        if (null_projector(k, k) > 1. - 1e-6)
+        if (null_projector(k, k) > 1. - Tolerance::pure_motion)
           pure.push_back(name);
         if (std::abs(null_vector[k]) > 0.1)
           components.push_back(name);

@@ -3,6 +3,7 @@
 
 #include <debond/base/append.h>
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/input/load_path_parameters.h>
 
 #include <algorithm>
@@ -34,8 +35,9 @@ namespace Debond
           const double       last)
     {
       const double n = step == 0. ? -1. : std::round((last - first) / step);
-      if (!(n >= 1. && std::abs(first + n * step - last) <=
-                         1e-9 * (std::abs(first) + std::abs(last))))
+      if (!(n >= 1. &&
+            std::abs(first + n * step - last) <=
+              Tolerance::decimals * (std::abs(first) + std::abs(last))))
         throw std::invalid_argument("the step of " + item +
                                     " does not lead from its first to its "
                                     "last factor");
@@ -47,7 +49,8 @@ namespace Debond
       for (unsigned int k = 0; k <= n; ++k)
         {
           const double value = first + (last - first) * (k / n);
-          values.push_back(std::abs(value) < 1e-9 * std::abs(step) ?
+          values.push_back(std::abs(value) <
+                               Tolerance::decimals * std::abs(step) ?
                              0. :
                              rounded_to_decimals(value));
         }

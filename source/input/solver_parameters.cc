@@ -136,7 +136,7 @@ namespace Debond
         {{"automatic", BondSearchChoice::automatic},
          {"none", BondSearchChoice::none},
          {"full", BondSearchChoice::full}},
-        "Whether a lower minimum than the one found is searched for by changing which bonds are broken: full does what automatic does, and then starts from rest and from all bonds broken, moves the edges of the broken patches by up to four nodes and breaks, closes and splits patches; automatic is none unless the method is automatic, and then as much of this as it takes until a lower bound of J (with nodal quadrature) or the minimum on coarser contact nodes says that it is enough, with more than 200 contact nodes on coarser ones but for the starts from rest and from all bonds broken");
+        "Whether a lower minimum than the one found is searched for by changing which bonds are broken: full does what automatic does, and then starts from rest and from all bonds broken, moves the edges of the broken patches by up to four nodes and breaks, closes and splits patches; automatic is none unless the method is automatic, and then as much of this as it takes until a lower bound of J (with nodal quadrature) says that it is enough, with more than 200 contact nodes on coarser ones but for the starts from rest and from all bonds broken");
     }
 
 

@@ -2,6 +2,7 @@
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/solver_control.h>
 
+#include <debond/base/tolerances.h>
 #include <debond/linear_algebra/block_factor.h>
 #include <debond/linear_algebra/multigrid_factor.h>
 #include <debond/linear_algebra/stagnation.h>
@@ -15,13 +16,6 @@ namespace Debond
   namespace
   {
     constexpr unsigned int maximum_iterations = 2000;
-
-    /// Of the residual, relative to the right side: what is aimed at, and what
-    /// has to be reached if rounding leaves more.
-    constexpr double wanted_residual   = 1e-14;
-    constexpr double required_residual = 1e-9;
-
-
 
     class MultigridFactor : public BlockFactor
     {
@@ -74,7 +68,7 @@ namespace Debond
             right(row) = b(i);
         const double                        size = right.l2_norm();
         dealii::SolverControl               control(maximum_iterations,
-                                      wanted_residual * size);
+                                      Tolerance::wanted_residual * size);
         dealii::SolverCG<DistributedVector> cg(control);
         Stagnation                          stagnation;
         cg.connect(
@@ -89,13 +83,13 @@ namespace Debond
           }
         catch (const dealii::SolverControl::NoConvergence &)
           {
-            if (!(control.last_value() <= required_residual * size))
+            if (!(control.last_value() <= Tolerance::required_residual * size))
               {
                 std::ostringstream text;
                 text << "Condensation by multigrid: relative residual "
                      << control.last_value() / size << " after "
                      << control.last_step() << " steps, required is "
-                     << required_residual
+                     << Tolerance::required_residual
                      << "; try Solver/Linear solver = direct";
                 throw std::runtime_error(text.str());
               }

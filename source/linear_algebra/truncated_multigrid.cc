@@ -3,6 +3,7 @@
 #include <deal.II/lac/precondition.h>
 #include <deal.II/lac/trilinos_solver.h>
 
+#include <debond/base/tolerances.h>
 #include <debond/linear_algebra/truncated_multigrid.h>
 
 #include <EpetraExt_MatrixMatrix.h>
@@ -155,7 +156,7 @@ namespace Debond
       auto result = std::make_unique<Epetra_CrsMatrix>(M.trilinos_matrix());
       Epetra_Vector diagonal(result->RowMap());
       check(result->ExtractDiagonalCopy(diagonal));
-      check(diagonal.Scale(1. + 1e-10));
+      check(diagonal.Scale(1. + Tolerance::regular_diagonal));
       check(result->ReplaceDiagonalValues(diagonal));
       return result;
     }
@@ -268,7 +269,8 @@ namespace Debond
       DistributedVector inverse(b);
       for (int i = 0; i < M.NumMyRows(); ++i)
         {
-          if (const int row = M.GRID(i); diagonal[i] <= 1e-12 * before[i])
+          if (const int row = M.GRID(i);
+              diagonal[i] <= Tolerance::held_diagonal * before[i])
             {
               check(M.ReplaceGlobalValues(row, 1, &before[i], &row));
               diagonal[i] = before[i];

@@ -2,6 +2,7 @@
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/numerics/rtree.h>
 
+#include <debond/base/tolerances.h>
 #include <debond/mesh/body.h>
 #include <debond/mesh/parts.h>
 
@@ -135,9 +136,8 @@ namespace Debond
             result[d + 1] = {cell->vertex_index(d + 1), xi[d]};
         };
         // Any cell that the point is inside of will do.
-        constexpr double rounding = 1e-12;
         for (auto found = tree.qbegin(index::intersects(point));
-             found != tree.qend() && farthest < -rounding;
+             found != tree.qend() && farthest < -Tolerance::same_cell;
              ++found)
           look_at(*found);
         if (farthest == -std::numeric_limits<double>::max())
@@ -214,15 +214,12 @@ namespace Debond
         for (const dealii::Point<dim> &point :
              levels.empty() ? points : levels.back().vertices)
           {
-            // Beside the mesh, as on curved sides, next to it. What rounding
-            // makes of a zero is none.
-            constexpr double noise = 1e-6;
-            double           sum   = 0.;
-            const auto       found = search(point);
+            double     sum   = 0.;
+            const auto found = search(point);
             for (const auto &[unused, weight] : found)
-              sum += weight > noise ? weight : 0.;
+              sum += weight > Tolerance::zero_weight ? weight : 0.;
             for (const auto &[vertex, weight] : found)
-              if (weight > noise)
+              if (weight > Tolerance::zero_weight)
                 {
                   level.to_finer.nodes.push_back(vertex);
                   level.to_finer.weights.push_back(

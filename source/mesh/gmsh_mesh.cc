@@ -4,6 +4,7 @@
 #include <deal.II/numerics/rtree.h>
 
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/mesh/gmsh_file.h>
 #include <debond/mesh/source_mesh.h>
 
@@ -261,7 +262,7 @@ namespace Debond
         cells        = std::move(different);
         is_hypercube = kinds == std::set<std::size_t>{1u << dim};
         is_cut       = !is_hypercube && kinds != std::set<std::size_t>{dim + 1};
-        if (dim == 2 && !(most_z - least_z <= tolerance * size))
+        if (dim == 2 && !(most_z - least_z <= Tolerance::same_node * size))
           fail("z must be the same at all nodes of a plane mesh, but it goes "
                "from " +
                std::to_string(least_z) + " to " + std::to_string(most_z) +
@@ -329,8 +330,6 @@ namespace Debond
       void
       add_simplex(const Corners &corners, const std::size_t cell)
       {
-        // Aspects up to 1e4 in 3D have more, rounding makes less.
-        constexpr double       flat    = 1e-13;
         Simplex                simplex = {{}, cell};
         dealii::Tensor<2, dim> edges;
         double                 size = 0.;
@@ -341,7 +340,7 @@ namespace Debond
             size     = std::max(size, edges[d].norm());
           }
         const double volume = dealii::determinant(edges / size);
-        if (!(std::abs(volume) > flat))
+        if (!(std::abs(volume) > Tolerance::flat_simplex))
           fail(element(cell) + " is flat" +
                (corners.size() == cells[cell].corners.size() ?
                   "" :
@@ -498,7 +497,8 @@ namespace Debond
               corners.push_back(vertices[face[v]]);
             dealii::BoundingBox<dim> box(corners);
             const auto              &ends = box.get_boundary_points();
-            const double near_by = tolerance * ends.first.distance(ends.second);
+            const double             near_by =
+              Tolerance::same_node * ends.first.distance(ends.second);
             box.extend(near_by);
             std::vector<std::size_t> near;
             tree.query(boost::geometry::index::intersects(box),
@@ -521,7 +521,7 @@ namespace Debond
                   twins.insert(candidates[i]);
                 else if (std::abs(n * (places[i] - corners[0])) <=
                            near_by * n.norm() &&
-                         sum <= (1. + tolerance) * n.norm())
+                         sum <= (1. + Tolerance::same_node) * n.norm())
                   {
                     std::ostringstream place;
                     place << places[i];
@@ -548,9 +548,6 @@ namespace Debond
       static constexpr const char *on_one_place =
         " at the same place as others, which "
         "are not connected with them; Coherence Mesh in Gmsh joins them";
-
-      /// Relative to a face's size.
-      static constexpr double tolerance = 1e-8;
 
       const std::string               file_name;
       bool                            is_of_higher_order = false;

@@ -2,6 +2,7 @@
 #include <deal.II/base/bounding_box.h>
 
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/mesh/parts.h>
 
 #include <algorithm>
@@ -66,8 +67,8 @@ namespace Debond
       const bool inside = part.contains(object->center());
       for (const unsigned int v : object->vertex_indices())
         if (part.contains(object->vertex(v) +
-                          1e-3 * (object->center() - object->vertex(v))) !=
-            inside)
+                          Tolerance::beside_vertex *
+                            (object->center() - object->vertex(v))) != inside)
           return true;
       return false;
     }

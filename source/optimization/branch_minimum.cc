@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/optimization/branch_minimum.h>
 
 #include <algorithm>
@@ -68,8 +69,6 @@ namespace Debond
     successor(const std::vector<ConvexBranch> &branches,
               const Successor                 &current)
     {
-      constexpr long double rounding = 1e-15L;
-
       Successor result = {nullptr, -infinity};
       for (const ConvexBranch &branch : branches)
         {
@@ -77,7 +76,7 @@ namespace Debond
           if (s >= current.end)
             {
               // Three branches meet, at one point but for rounding.
-              if (s > (1.L - rounding) * current.end ||
+              if (s > (1.L - Tolerance::same_crossing) * current.end ||
                   !is_lower_below(branch, *current.branch, current.end))
                 continue;
               s = current.end;
@@ -160,7 +159,8 @@ namespace Debond
                      piece.upper) :
             (piece.slope > 0. ? piece.lower : piece.upper);
         require(std::isfinite(s) &&
-                  piece.value(s) >= -1e-12 * static_cast<double>(largest),
+                  piece.value(s) >=
+                    -Tolerance::negative_branch * static_cast<double>(largest),
                 branches[piece.branch],
                 "is negative where it is the least");
       }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/optimization/interval.h>
 
 #include <algorithm>
@@ -7,14 +8,6 @@
 
 namespace Debond
 {
-  namespace
-  {
-    /// Rounding in roots, relative.
-    constexpr double outwards = 1e-6;
-  } // namespace
-
-
-
   Interval
   hull(const Interval &a, const Interval &b)
   {
@@ -64,8 +57,8 @@ namespace Debond
     const double radius =
       std::sqrt(
         std::max(0., centre * centre - 2. * (constant - level) / curvature)) *
-        (1. + outwards) +
-      outwards * std::abs(centre);
+        (1. + Tolerance::outwards) +
+      Tolerance::outwards * std::abs(centre);
     // Rounding must not leave out the least value.
     const Interval inner = {std::max(interval.lower, x + centre - radius),
                             std::min(interval.upper, x + centre + radius)};

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/optimization/polar_cone.h>
 
 #include <Eigen/QR>
@@ -9,22 +10,13 @@
 
 namespace Debond
 {
-  namespace
-  {
-    /// Directions that differ by less are the same or opposite.
-    constexpr double dependent = 1e-12;
-  } // namespace
-
-
-
   std::optional<Eigen::VectorXd>
   project_on_polar_cone(const MatrixView &B, const Eigen::VectorXd &f)
   {
     Eigen::MatrixXd directions = B;
     for (auto direction : directions.colwise())
       direction.normalize();
-    const double rounding =
-      16. * std::numeric_limits<double>::epsilon() * f.norm();
+    const double rounding = Tolerance::in_cone * f.norm();
 
     std::vector<Eigen::Index> active;
     Eigen::VectorXd           lambda; // of the active columns
@@ -55,7 +47,7 @@ namespace Debond
           {
             const Eigen::MatrixXd A = directions(Eigen::all, active);
             Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-            qr.setThreshold(dependent);
+            qr.setThreshold(Tolerance::dependent);
             const Eigen::VectorXd least_squares = qr.compute(A).solve(f);
             // As far towards it as no multiplier becomes negative.
             double       part   = 1.;

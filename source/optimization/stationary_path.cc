@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/optimization/stationary_path.h>
 
 #include <Eigen/Cholesky>
@@ -124,8 +125,8 @@ namespace Debond
         right(k, 1) = rest(i) - bond.energy / bond.stretch * p.slope;
       }
     const Eigen::LLT<Eigen::MatrixXd> factor(M);
-    constexpr double                  noise = 1e-13;
-    if (n > 0 && (factor.info() != Eigen::Success || factor.rcond() < noise))
+    if (n > 0 && (factor.info() != Eigen::Success ||
+                  factor.rcond() < Tolerance::condition_on_path))
       return false;
     const Eigen::MatrixXd x = factor.solve(right);
     ds.setZero();
@@ -174,10 +175,9 @@ namespace Debond
           return Event::degenerate;
       }
 
-    constexpr double    rounding = 1e-11;
-    const double        tied     = rounding * (upper - lower);
-    const double        end      = direction > 0. ? upper : lower;
-    double              step     = std::max(0., direction * (end - parameter));
+    const double        tied = Tolerance::same_breakpoint * (upper - lower);
+    const double        end  = direction > 0. ? upper : lower;
+    double              step = std::max(0., direction * (end - parameter));
     std::vector<double> steps(s.size(),
                               std::numeric_limits<double>::infinity());
     // Changes that are as far as the end come after it.

@@ -121,7 +121,6 @@ namespace Debond
       record.add("/minimum/search_improvements", minimum.search_improvements);
       record.add("/minimum/search_failures", minimum.search_failures);
       record.add("/minimum/search_nodes", minimum.search_nodes);
-      record.add("/minimum/closed_nodes", minimum.closed_nodes);
       if (is_success)
         {
           std::string text = kind;
@@ -131,10 +130,6 @@ namespace Debond
               (minimum.search_nodes < n_nodes ?
                  words(" on ", minimum.search_nodes, " of the contact nodes") :
                  "");
-          if (details && minimum.closed_nodes > 0)
-            text += words(", the minimum on ",
-                          minimum.closed_nodes,
-                          " coarser ones leads here");
           if (minimum.search_failures > 0)
             text += words(", ",
                           minimum.search_failures,

@@ -2,6 +2,7 @@
 #include <deal.II/base/timer.h>
 
 #include <debond/base/append.h>
+#include <debond/base/tolerances.h>
 #include <debond/check/plausibility.h>
 #include <debond/input/bad_input.h>
 #include <debond/input/expression.h>
@@ -39,9 +40,6 @@ namespace Debond
 
   namespace
   {
-    /// Energies are off by the square of what displacements are.
-    constexpr double largest_relative_descent = 1e-6;
-
     /// Up to here estimates are from half of the error to twice of it, see
     /// doc/notes/accuracy.md.
     constexpr double largest_judged_error = 0.2;
@@ -60,13 +58,13 @@ namespace Debond
       if (!(result.verification.error() <= tolerance))
         return result.verification.failure(tolerance);
       if (const std::optional<double> &descent = result.solve.relative_descent;
-          descent && !(*descent <= largest_relative_descent))
+          descent && !(*descent <= Tolerance::descent))
         {
           std::ostringstream text;
           text.precision(3);
           text << "verification: the predicted descent v_k is " << *descent
                << " of the strain energy, required is at most "
-               << largest_relative_descent << ". Try a smaller stop tolerance.";
+               << Tolerance::descent << ". Try a smaller stop tolerance.";
           return text.str();
         }
       return "";
@@ -215,8 +213,7 @@ namespace Debond
                                    scene.adhesion(),
                                    scene.law(),
                                    result.solve.u,
-                                   result.solve.load_factor,
-                                   1e-6);
+                                   result.solve.load_factor);
     const auto values = [&](const Probes<dim> &probes) {
       return probes.values(scene.problem(),
                            result.solve.u,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/optimization/stationary_path.h>
 #include <debond/solve/bond_change.h>
 
@@ -157,7 +158,7 @@ namespace Debond
     for (unsigned int k = 0;
          event == Event::contact && k < 2 * last.s.size() && may_go_on();
          ++k)
-      event = path.advance(0., 1. + 1e-10);
+      event = path.advance(0., 1. + Tolerance::end_of_path);
     if (event != Event::bond)
       return {};
     return factor_between(last.factors, next, std::min(1., path.t()));

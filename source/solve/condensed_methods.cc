@@ -100,16 +100,11 @@ namespace Debond
       if (!has_start && is_loose)
         s = unknowns.contact().at_rest();
       else if (!has_start)
-        s = coarse_start(S,
-                         g,
-                         scene.adhesion(),
-                         coarsen(unknowns.contact().boundary(),
-                                 coarsest_contact_nodes),
-                         method,
-                         result.notes,
-                         [&watch](const MajoriseMinimiseIteration &) {
-                           return watch.may_go_on();
-                         });
+        s = coarse_start(
+          {S, g, scene.adhesion(), [&watch]() { return watch.may_go_on(); }},
+          coarsen(unknowns.contact().boundary(), coarsest_contact_nodes),
+          method,
+          result.notes);
       CondensedProblem problem(S,
                                g,
                                scene.adhesion(),
@@ -309,8 +304,7 @@ namespace Debond
 
     // Where nothing else holds the body J may fall without end.
     if (can_be_verified(result.status) && !is_held)
-      result.minimum.kind =
-        kind_without_search(scene.law(), scene.adhesion(), s);
+      result.minimum.kind = kind_without_search(scene.adhesion(), s);
     else if (can_be_verified(result.status))
       {
         SolverParameters limited = parameters;
@@ -321,8 +315,6 @@ namespace Debond
         const Eigen::VectorXd followed = s;
         result.minimum                 = find_better_minimum(
           limited,
-          problem.unknowns().contact().boundary(),
-          scene.law(),
           scene.adhesion(),
           condensed,
           [&]() { return watch.may_go_on(); },

@@ -79,13 +79,8 @@ namespace Debond
       {
         const AdhesionIntegral<dim> bonds     = scene.bonds(factor);
         const Condensation          condensed = scene.at(factor);
-        WhichMinimum                which     = find_better_minimum(what,
-                                                 scene.scene.contact_boundary(),
-                                                 scene.scene.law(),
-                                                 bonds,
-                                                 condensed,
-                                                 may_go_on,
-                                                 point.s);
+        WhichMinimum                which =
+          find_better_minimum(what, bonds, condensed, may_go_on, point.s);
         point.functional = condensed_functional(condensed, bonds, point.s);
         if (which.proof_attempted)
           round_outwards(point.functional + condensed.energy_at_zero(),

@@ -264,7 +264,7 @@ namespace Debond
           verify(factors, bonds, progress.u);
         step.state  = state_of(scene, bonds, factors, progress.u, verification);
         step.status = to_string(minimum.status);
-        kinds.push_back(kind_without_search(scene.law(), bonds, s));
+        kinds.push_back(kind_without_search(bonds, s));
         if (!can_be_verified(minimum.status))
           step.message = result.message = location(step) + minimum.message;
         else if (!is_verified(verification))

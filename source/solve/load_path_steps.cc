@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/solve/load_path_steps.h>
 
 #include <algorithm>
@@ -44,9 +45,6 @@ namespace Debond
   load_path_totals(const std::vector<LoadPathStep<dim>> &steps,
                    const unsigned int                    n_factors)
   {
-    // Differences that are rounding.
-    constexpr double tolerance = 1e-9;
-
     LoadPathTotals totals;
     totals.factors = n_factors;
     totals.steps   = static_cast<unsigned int>(steps.size());
@@ -64,7 +62,7 @@ namespace Debond
         const double     growth = change.broken_after - change.broken_before;
         const auto       size   = [](const std::optional<BondChange> &other) {
           return other ? std::abs(other->broken_after - other->broken_before) :
-                                 tolerance;
+                                 Tolerance::decimals;
         };
         if (growth > size(totals.largest_break))
           totals.largest_break = change;
@@ -78,7 +76,7 @@ namespace Debond
               step.state.functional - step.global->functional;
             const double scale = std::abs(step.global->functional);
             ++totals.compared;
-            if (excess > tolerance * scale)
+            if (excess > Tolerance::decimals * scale)
               {
                 ++totals.above_global;
                 totals.largest_excess =

@@ -46,8 +46,7 @@ namespace Debond
     if (after.size() > 0 && (has_failed || (scene.adhesion().curvature(after) -
                                             scene.adhesion().curvature(before))
                                                .norm() > 0.))
-      result.minimum.kind =
-        kind_without_search(scene.law(), scene.adhesion(), after);
+      result.minimum.kind = kind_without_search(scene.adhesion(), after);
     result.parts["refinement"] = timer.wall_time();
     return !note.empty();
   }

@@ -2,6 +2,7 @@
 #include <deal.II/base/function.h>
 
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/contact/field_value.h>
 #include <debond/input/expression.h>
 #include <debond/solve/scene_conditions.h>
@@ -226,13 +227,13 @@ namespace Debond
   check_held_vertices(const ElasticUnknowns<dim> &unknowns,
                       const std::vector<double>  &load_factors)
   {
-    constexpr double rounding = 1e-12;
     for (const auto &vertex : unknowns.contact().boundary().held_vertices)
       for (const double factor : load_factors)
         {
           const double normal = factor * vertex.normal_displacement;
           if (normal - vertex.gap <=
-              rounding * (std::abs(normal) + std::abs(vertex.gap)))
+              Tolerance::rounding_of_data *
+                (std::abs(normal) + std::abs(vertex.gap)))
             continue;
           if (vertex.normal_displacement == 0.)
             throw SupportError(SupportError::Subject::gap,

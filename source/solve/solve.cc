@@ -115,9 +115,8 @@ namespace Debond
         solve_by_multigrid(choice, parameters, scene, start, *watch, result);
     }
     if (!choice.is_condensed)
-      result.minimum.kind = kind_without_search(scene.law(),
-                                                scene.adhesion(),
-                                                scene.contact_trace(result.u));
+      result.minimum.kind =
+        kind_without_search(scene.adhesion(), scene.contact_trace(result.u));
     result.functional = result.status == SolverStatus::comes_off ?
                           std::numeric_limits<double>::quiet_NaN() :
                           functional_of(scene, result.u);

@@ -347,7 +347,7 @@ namespace
         BranchAndBoundParameters parameters;
         parameters.tolerance = 1e-10;
         const auto proof =
-          branch_and_bound(parameters, p.S, p.g, p.bonds, Vector::Zero(n));
+          branch_and_bound(parameters, {p.S, p.g, p.bonds}, Vector::Zero(n));
         good  = good && proof.status == ProofStatus::proved;
         found = found && std::abs(proof.upper - minimum) < 1e-10 &&
                 proof.lower <= minimum;
@@ -372,12 +372,13 @@ namespace
         parameters.tolerance     = 1e-9;
         parameters.maximum_nodes = 300;
         const auto one =
-          branch_and_bound(parameters, p.S, p.g, p.bonds, Vector::Zero(80));
+          branch_and_bound(parameters, {p.S, p.g, p.bonds}, Vector::Zero(80));
         for (const unsigned int n_threads : {2, 3, 16})
           {
             parameters.n_threads = n_threads;
-            const auto more =
-              branch_and_bound(parameters, p.S, p.g, p.bonds, Vector::Zero(80));
+            const auto more      = branch_and_bound(parameters,
+                                               {p.S, p.g, p.bonds},
+                                               Vector::Zero(80));
             same = same && more.nodes == one.nodes && more.lower == one.lower &&
                    more.upper == one.upper && more.s == one.s &&
                    more.status == one.status;
@@ -399,17 +400,17 @@ namespace
     little.tolerance     = 1e-9;
     little.maximum_bytes = 2 * 4 * 80 * sizeof(double);
     const auto full =
-      branch_and_bound(little, q.S, q.g, q.bonds, Vector::Zero(80));
+      branch_and_bound(little, {q.S, q.g, q.bonds}, Vector::Zero(80));
     section("limits");
     check("room for 2 nodes", full.status == ProofStatus::memory_limit);
     check("its gap is valid",
           std::isfinite(full.lower) && full.lower <= full.upper);
     check("at most a batch more", full.history.back().open <= 2 + 8);
-    unsigned int rounds      = 0;
-    const auto   interrupted = branch_and_bound(
-      {}, q.S, q.g, q.bonds, Vector::Zero(80), [&](const auto &) {
-        return ++rounds < 3;
-      });
+    unsigned int rounds = 0;
+    const auto   interrupted =
+      branch_and_bound({},
+                       {q.S, q.g, q.bonds, [&]() { return ++rounds < 3; }},
+                       Vector::Zero(80));
     check("stopped by the monitor",
           interrupted.status == ProofStatus::interrupted);
     check("at once", rounds == 3);
@@ -418,11 +419,11 @@ namespace
     BranchAndBoundParameters parameters;
     parameters.maximum_seconds = 0.;
     const auto late =
-      branch_and_bound(parameters, p.S, p.g, p.bonds, Vector::Zero(8));
+      branch_and_bound(parameters, {p.S, p.g, p.bonds}, Vector::Zero(8));
     Problem indefinite = p;
     indefinite.S(3, 3) = -1.;
     const auto nothing =
-      branch_and_bound({}, indefinite.S, p.g, p.bonds, Vector::Zero(8));
+      branch_and_bound({}, {indefinite.S, p.g, p.bonds}, Vector::Zero(8));
     check("no time", late.status == ProofStatus::time_limit);
     check("an indefinite matrix has no bound",
           nothing.status == ProofStatus::no_bound &&
@@ -445,7 +446,7 @@ namespace
       CondensedProblem       problem(p.S, p.g, p.bonds, s);
       method.minimize(problem);
       return search_branches(
-        {p.S, p.g, p.bonds, p.bonds, chain(s.size()), method}, {}, s);
+        {{p.S, p.g, p.bonds}, p.bonds, chain(s.size()), method}, {}, s);
     };
     Vector     s     = Vector::Zero(1);
     const auto found = search(s);
@@ -482,14 +483,14 @@ namespace
         BranchAndBoundParameters parameters;
         parameters.tolerance = 1e-10 * std::max(1., std::abs(minimum));
         const auto proof =
-          branch_and_bound(parameters, p.S, p.g, p.bonds, Vector::Zero(n));
+          branch_and_bound(parameters, {p.S, p.g, p.bonds}, Vector::Zero(n));
         invalid += proof.lower > minimum + 1e-15;
         wrong += std::abs(proof.upper - minimum) > parameters.tolerance;
         proved += proof.status == ProofStatus::proved;
 
         parameters.maximum_nodes = 0;
         const auto certificate =
-          branch_and_bound(parameters, p.S, p.g, p.bonds, minimiser);
+          branch_and_bound(parameters, {p.S, p.g, p.bonds}, minimiser);
         invalid += certificate.lower > minimum + 1e-15;
         certified += certificate.status == ProofStatus::proved;
       }

@@ -22,7 +22,7 @@ grep -q '"status": "success"' output/bar/summary.json || fail "no success"
 keys=$(sed -n 's/^ *"\([a-z][a-z0-9_ ]*\)":.*/\1/p' output/bar/summary.json |
   LC_ALL=C sort -u | tr '\n' ' ')
 expected="applied_force assembly bond_states bonded broken build_type cells\
- clamped_reaction closed_nodes condition_estimate contact contact_nodes\
+ clamped_reaction condition_estimate contact contact_nodes\
  contact_reaction deal_ii_version degree degrees_of_freedom degrees_of_freedom_paper\
  dimension equilibrium_residual force_imbalance functional\
  functional_from_start iterations kink largest_displacement\

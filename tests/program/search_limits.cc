@@ -34,17 +34,15 @@ namespace
         const Scene<2>     scene(parameters);
         const Condensation condensed =
           condense_to_contact(scene.problem(), scene.adhesion());
+        const ContactQuadrature<2> quadrature(parameters.quadrature, 1);
+        const AdhesionIntegral<2>  adhesion(scene.contact_boundary(),
+                                           law,
+                                           quadrature);
         Eigen::VectorXd s = Eigen::VectorXd::Zero(condensed.load().size());
         try
           {
             const WhichMinimum result = find_better_minimum(
-              parameters.solver,
-              scene.problem().unknowns().contact().boundary(),
-              law,
-              scene.adhesion(),
-              condensed,
-              []() { return true; },
-              s);
+              parameters.solver, adhesion, condensed, []() { return true; }, s);
             noted += result.notes.size() == 1 &&
                      result.kind != MinimumKind::best_known &&
                      result.kind != MinimumKind::global;
@@ -85,13 +83,7 @@ namespace
         MajoriseMinimise(solver.majorise_minimise).minimize(problem);
         const Eigen::VectorXd start  = s;
         const WhichMinimum    result = find_better_minimum(
-          solver,
-          scene.problem().unknowns().contact().boundary(),
-          scene.law(),
-          scene.adhesion(),
-          condensed,
-          []() { return true; },
-          s);
+          solver, scene.adhesion(), condensed, []() { return true; }, s);
         std::cout << (seconds > 0. ? "with" : "without")
                   << " time: " << to_string(result.kind) << ", "
                   << result.notes.size() << " notes"

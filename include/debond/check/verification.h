@@ -4,6 +4,7 @@
 
 #include <deal.II/base/tensor.h>
 
+#include <debond/base/tolerances.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/dof_vector.h>
@@ -172,7 +173,7 @@ namespace Debond
          const AdhesiveLaw           &law,
          const DofVector             &u,
          const LoadFactors            factors   = 1.,
-         const double                 tolerance = 1e-6);
+         const double                 tolerance = Tolerance::contact_law);
 } // namespace Debond
 
 #endif

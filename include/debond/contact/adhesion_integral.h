@@ -45,6 +45,12 @@ namespace Debond
     unsigned int
     n_nodes() const;
 
+    const ContactBoundary<dim> &
+    contact_boundary() const
+    {
+      return boundary;
+    }
+
     const AdhesiveLaw &
     adhesive_law() const
     {

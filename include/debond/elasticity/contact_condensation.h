@@ -3,6 +3,7 @@
 #define debond_elasticity_contact_condensation_h
 
 #include <debond/base/run_watch.h>
+#include <debond/base/tolerances.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/condensation.h>
@@ -99,12 +100,6 @@ namespace Debond
 
 
 
-  /// The part of the work that forces could do, had they all the same sign,
-  /// below which what they do is rounding.
-  constexpr double rounding_of_work = 1e-12;
-
-
-
   struct WorkOfLoads
   {
     /// Of the nodal forces along each of the motions.
@@ -163,7 +158,7 @@ namespace Debond
                     factors,
                     problem.unknowns().held_by_contact().motions);
     for (Eigen::Index k = 0; k < work.along.size(); ++k)
-      if (std::abs(work.along[k]) <= rounding_of_work * work.largest[k])
+      if (std::abs(work.along[k]) <= Tolerance::work * work.largest[k])
         work.along[k] = 0.;
     return g + free_motions.transpose().completeOrthogonalDecomposition().solve(
                  work.along - free_motions.transpose() * g);

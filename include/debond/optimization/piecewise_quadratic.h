@@ -6,6 +6,8 @@
 
 #include <Eigen/SparseCore>
 
+#include <functional>
+
 namespace Debond
 {
   /**
@@ -32,6 +34,23 @@ namespace Debond
     virtual Eigen::SparseMatrix<double>
     curvature(const VectorView &s) const = 0;
   };
+
+
+
+  /// 1/2 s'S s - g's + Phi(s), s <= 0, with a Phi of a kind of
+  /// PiecewiseQuadratic. Keeps references.
+  template <typename Phi>
+  struct BoundedProblem
+  {
+    MatrixView S;
+    VectorView g;
+    const Phi &phi;
+
+    /// Returns false to end what is done with it.
+    std::function<bool()> may_go_on = []() { return true; };
+  };
+
+  using PiecewiseProblem = BoundedProblem<PiecewiseQuadratic>;
 
 
 

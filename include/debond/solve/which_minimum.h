@@ -7,7 +7,6 @@
 #include <debond/linear_algebra/condensation.h>
 #include <debond/linear_algebra/views.h>
 #include <debond/optimization/global/branch_and_bound.h>
-#include <debond/optimization/global/separable_branches.h>
 
 #include <functional>
 #include <string>
@@ -38,10 +37,6 @@ namespace Debond
     unsigned int search_failures     = 0; ///< trials without a result
     unsigned int search_nodes = 0; ///< contact nodes of the mesh of the search
 
-    /// Contact nodes of the coarser mesh, with lumped bonds, on which the
-    /// minimum is proved and leads to the result; 0 if there is none.
-    unsigned int closed_nodes = 0;
-
     bool interrupted = false; ///< search or proof, by a signal
 
     bool         proof_attempted = false;
@@ -68,17 +63,11 @@ namespace Debond
   bool
   wants_search(const SolverParameters &parameters);
 
-  /// The bonds lumped at the contact nodes.
-  template <int dim>
-  SeparableBranches
-  lumped_bonds(const AdhesiveLaw &law, const AdhesionIntegral<dim> &adhesion);
-
   /// stationary, local minimum, or global if there is no adhesion and J is
   /// convex.
   template <int dim>
   MinimumKind
-  kind_without_search(const AdhesiveLaw           &law,
-                      const AdhesionIntegral<dim> &adhesion,
+  kind_without_search(const AdhesionIntegral<dim> &adhesion,
                       const VectorView            &s);
 
   /// The search and the proof that are asked for, from the stationary point
@@ -87,8 +76,6 @@ namespace Debond
   template <int dim>
   WhichMinimum
   find_better_minimum(const SolverParameters      &parameters,
-                      const ContactBoundary<dim>  &boundary,
-                      const AdhesiveLaw           &law,
                       const AdhesionIntegral<dim> &adhesion,
                       const Condensation          &condensed,
                       const std::function<bool()> &may_go_on,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/optimization/bundle/bundle_qp.h>
-#include <debond/optimization/bundle/bundle_qp_tolerances.h>
 
 #include <algorithm>
 #include <cmath>

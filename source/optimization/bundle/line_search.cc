@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/optimization/bundle/line_search.h>
 
 #include <algorithm>
@@ -26,9 +27,6 @@ namespace Debond
 
   namespace
   {
-    /// Smaller steps than this count as no step.
-    constexpr double smallest_step = 1e-12;
-
     /// Bisections for t_R.
     constexpr unsigned int maximum_bisections = 60;
 
@@ -50,7 +48,7 @@ namespace Debond
       while (!descends(t, change))
         {
           t *= 0.5;
-          if (t < smallest_step)
+          if (t < Tolerance::no_step)
             return;
           change_at_twice_t = change;
           change            = line.change(t);
@@ -58,7 +56,7 @@ namespace Debond
 
       if (parameters.line_search == DescentRule::minimum)
         for (double half = line.change(0.5 * t);
-             half < change && descends(0.5 * t, half) && t > smallest_step;
+             half < change && descends(0.5 * t, half) && t > Tolerance::no_step;
              half = line.change(0.5 * t))
           {
             t *= 0.5;

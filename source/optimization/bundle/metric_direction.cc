@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/bundle/bundle_qp.h>
 #include <debond/optimization/bundle/metric_direction.h>
@@ -87,9 +88,9 @@ namespace Debond
         const double largest_force = n > 0 ? force_terms.maxCoeff() : 0.;
         settled                    = rule.update(d - b,
                               mu,
-                              active_set_noise *
+                              Tolerance::active_set *
                                 (n > 0 ? d.lpNorm<Eigen::Infinity>() : 0.),
-                              active_set_noise * largest_force,
+                              Tolerance::active_set * largest_force,
                               active) == 0;
       }
 

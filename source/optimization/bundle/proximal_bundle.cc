@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/tolerances.h>
 #include <debond/optimization/bundle/bundle_qp.h>
 #include <debond/optimization/bundle/line_search.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
@@ -14,10 +15,6 @@ namespace Debond
 {
   namespace
   {
-    /// Relative residual of the direction problem above which its solution is
-    /// not used.
-    constexpr double acceptable_qp_residual = 1e-9;
-
     /// The paper's direction problem, M = u I (u > 0, energy per squared
     /// length). Only the components with bounds are handed to the QP; of all
     /// others it knows the Gram matrix. Keeps a reference to the bounds.
@@ -274,7 +271,7 @@ namespace Debond
             text
               << "bundle QP, which ended as '" << qp_status
               << "': relative residual " << qp_residual
-              << ", required is at most " << acceptable_qp_residual
+              << ", required is at most " << Tolerance::direction
               << ". Try a larger proximal weight (it has units: energy per squared "
                  "length) or a smaller bundle size.";
             break;
@@ -368,7 +365,7 @@ namespace Debond
             break;
           }
         if (result.v > parameters.epsilon_s ||
-            !(direction->residual <= acceptable_qp_residual))
+            !(direction->residual <= Tolerance::direction))
           {
             // Old subgradients may be to blame: once more without them.
             if (bundle.size() > 1)

@@ -7,6 +7,7 @@
 #include <debond/optimization/majorise/majorise_minimise.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <future>
@@ -22,11 +23,6 @@ namespace Debond
 
     /// A node's vectors.
     constexpr unsigned int vectors_per_node = 4;
-
-
-
-    /// The piece that holds at each unknown.
-    using BranchState = std::vector<unsigned int>;
 
 
 
@@ -53,16 +49,12 @@ namespace Debond
     {
     public:
       ProofTree(const BranchAndBoundParameters &parameters,
-                const MatrixView               &S,
-                const VectorView               &g,
-                const SeparableBranches        &phi,
+                const SeparableProblem         &problem,
                 const VectorView               &start)
         : parameters(parameters)
-        , S(S)
-        , g(g)
-        , phi(phi)
-        , n(static_cast<unsigned int>(g.size()))
-        , node_bound(S, g, phi)
+        , problem(problem)
+        , n(static_cast<unsigned int>(problem.g.size()))
+        , node_bound(problem.S, problem.g, problem.phi)
         , least_left_out(std::numeric_limits<double>::infinity())
       {
         result.upper = std::numeric_limits<double>::infinity();
@@ -73,7 +65,7 @@ namespace Debond
       }
 
       BranchAndBoundResult
-      run(const std::function<bool(const ProofProgress &)> &monitor)
+      run()
       {
         const double at_start = node_bound.bound_at(result.s);
         if (at_start >= result.upper - parameters.tolerance)
@@ -114,8 +106,7 @@ namespace Debond
                   branch(job);
               }
             result.nodes += static_cast<unsigned int>(batch.size());
-            if ((InterruptGuard::requested() ||
-                 (monitor && !monitor(progress()))) &&
+            if ((InterruptGuard::requested() || !problem.may_go_on()) &&
                 !open.empty())
               result.status = ProofStatus::interrupted;
             if (result.nodes >= next_record)
@@ -136,9 +127,7 @@ namespace Debond
 
     private:
       const BranchAndBoundParameters &parameters;
-      const MatrixView               &S;
-      const VectorView               &g;
-      const SeparableBranches        &phi;
+      const SeparableProblem         &problem;
       const unsigned int              n;
       const NodeBound                 node_bound;
 
@@ -152,15 +141,13 @@ namespace Debond
       void
       minimise_from(const Eigen::VectorXd &x, Job &job) const
       {
-        job.state.resize(n);
-        for (unsigned int i = 0; i < n; ++i)
-          job.state[i] = phi.f[i].index(x(i));
+        job.state = problem.phi.state(x);
         if (tried.count(job.state) > 0)
           return;
         Eigen::VectorXd  s = x.cwiseMin(0.);
-        CondensedProblem problem(S, g, phi, s);
-        MajoriseMinimise({}).minimize(problem);
-        const double value = problem.evaluate().functional;
+        CondensedProblem condensed(problem.S, problem.g, problem.phi, s);
+        MajoriseMinimise({}).minimize(condensed);
+        const double value = condensed.evaluate().functional;
         if (value < job.value)
           {
             job.s     = s;
@@ -219,11 +206,9 @@ namespace Debond
         const auto                work = [&]() {
           for (unsigned int k = next++; k < batch.size(); k = next++)
             {
-              Job &job   = batch[k];
-              job.result = node_bound.bound(job.node,
-                                            result.upper,
-                                            parameters.tolerance,
-                                            parameters.only_while_halving);
+              Job &job = batch[k];
+              job.result =
+                node_bound.bound(job.node, result.upper, parameters.tolerance);
               if (job.node.bound < result.upper - parameters.tolerance)
                 minimise_from(job.node.x, job);
             }
@@ -247,7 +232,7 @@ namespace Debond
             return;
           }
         const unsigned int i     = *job.result.unknown;
-        const double       kink  = phi.f[i][job.result.piece].upper;
+        const double       kink  = problem.phi.f[i][job.result.piece].upper;
         ProofNode          upper = job.node, lower = job.node;
         upper.number   = ++n_created;
         lower.number   = ++n_created;
@@ -285,36 +270,23 @@ namespace Debond
   std::string
   to_string(const ProofStatus status)
   {
-    switch (status)
-      {
-        case ProofStatus::proved:
-          return "proved";
-        case ProofStatus::node_limit:
-          return "node limit";
-        case ProofStatus::time_limit:
-          return "time limit";
-        case ProofStatus::memory_limit:
-          return "memory limit";
-        case ProofStatus::interrupted:
-          return "interrupted";
-        case ProofStatus::rounding:
-          return "tolerance too small";
-        case ProofStatus::no_bound:
-          return "no bound";
-      }
-    return "unknown";
+    static const std::array<const char *, 7> words = {{"proved",
+                                                       "node limit",
+                                                       "time limit",
+                                                       "memory limit",
+                                                       "interrupted",
+                                                       "tolerance too small",
+                                                       "no bound"}};
+    return words[static_cast<std::size_t>(status)];
   }
 
 
 
   BranchAndBoundResult
-  branch_and_bound(const BranchAndBoundParameters                   &parameters,
-                   const MatrixView                                 &S,
-                   const VectorView                                 &g,
-                   const SeparableBranches                          &phi,
-                   const VectorView                                 &start,
-                   const std::function<bool(const ProofProgress &)> &monitor)
+  branch_and_bound(const BranchAndBoundParameters &parameters,
+                   const SeparableProblem         &problem,
+                   const VectorView               &start)
   {
-    return ProofTree(parameters, S, g, phi, start).run(monitor);
+    return ProofTree(parameters, problem, start).run();
   }
 } // namespace Debond

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/optimization/global/convex_envelope.h>
 
 #include <algorithm>
@@ -93,24 +94,6 @@ namespace Debond
 
 
 
-    /// min r s + c/2 s^2 on [lower, upper], and where it is.
-    struct LeastPoint
-    {
-      long double s, value;
-    };
-
-    LeastPoint
-    least_on_parabola(const long double r,
-                      const long double c,
-                      const long double lower,
-                      const long double upper)
-    {
-      const long double s = c > 0. ? std::min(std::max(-r / c, lower), upper) :
-                                     (r > 0. ? lower : upper);
-      if (!std::isfinite(s))
-        return {s, -std::numeric_limits<long double>::infinity()};
-      return {s, r * s + 0.5L * c * s * s};
-    }
   } // namespace
 
 
@@ -132,21 +115,26 @@ namespace Debond
                       const double       upper,
                       const unsigned int piece) const
   {
-    constexpr long double epsilon = std::numeric_limits<long double>::epsilon();
+    using Limits = std::numeric_limits<long double>;
 
-    const Piece &p     = pieces[piece];
-    const double left  = std::max(lower, p.lower);
-    const double right = std::min(upper, p.upper);
+    const Piece      &p     = pieces[piece];
+    const long double left  = std::max(lower, p.lower);
+    const long double right = std::min(upper, p.upper);
     if (left > right)
-      return std::numeric_limits<long double>::infinity();
-    const LeastPoint least =
-      least_on_parabola(r + p.slope,
-                        static_cast<long double>(convexity) + p.curvature,
-                        left,
-                        right);
-    const long double line = p.slope == 0. ? 0.L : p.slope * least.s;
-    return least.value + p.constant -
-           16.L * epsilon * (std::abs(p.constant) + std::abs(line));
+      return Limits::infinity();
+    const long double c     = static_cast<long double>(convexity) + p.curvature;
+    const long double slope = r + p.slope;
+    const long double s     = c > 0.L ?
+                                std::min(std::max(-slope / c, left), right) :
+                              slope > 0.L ? left :
+                                            right;
+    if (!std::isfinite(s))
+      return -Limits::infinity();
+    const long double square = 0.5L * c * s * s;
+    return slope * s + square + p.constant -
+           16.L * Limits::epsilon() *
+             (std::abs(p.constant) + square +
+              (std::abs(r) + std::abs(p.slope)) * std::abs(s));
   }
 
 
@@ -300,7 +288,7 @@ namespace Debond
         long double constant =
           value(near, a) - a * (slope + 0.5L * far.curvature * a);
         // Branches without slopes have the constant of the near one here.
-        const long double rounding = 1e-12L * value(far, b);
+        const long double rounding = Tolerance::same_constant * value(far, b);
         if (std::abs(constant - near.constant) < rounding)
           constant = near.constant;
         branches.push_back(

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/linear_algebra/cholesky.h>
 #include <debond/optimization/global/convexity_shift.h>
 
@@ -16,8 +17,6 @@ namespace Debond
     /// The part of a coordinate's step that is done.
     constexpr double step_share = 0.7;
 
-    /// Steps that change log det A by less are not worth their update.
-    constexpr double least_step = 1e-3;
   } // namespace
 
 
@@ -96,7 +95,7 @@ namespace Debond
         const unsigned int i    = which[k];
         const double       best = v(i) > 0. ? 1. / P(k, k) - mu / v(i) : -D(i);
         const double       step = step_share * std::max(best, -D(i));
-        if (std::abs(step) * P(k, k) < least_step)
+        if (std::abs(step) * P(k, k) < Tolerance::shift_step)
           continue;
         D(i) += step;
         const Eigen::VectorXd column = P.col(k);

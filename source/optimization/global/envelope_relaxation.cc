@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/interrupt.h>
+#include <debond/base/tolerances.h>
 #include <debond/optimization/global/envelope_relaxation.h>
 
 #include <Eigen/Cholesky>
@@ -12,17 +13,8 @@ namespace Debond
 {
   namespace
   {
-    constexpr unsigned int maximum_newton_steps = 100;
-
-    /// Full Newton steps; further ones must not rise, and have sweeps between
-    /// them.
-    constexpr unsigned int n_full_steps = 12;
-    constexpr unsigned int n_sweeps     = 3;
-
-    constexpr unsigned int maximum_halvings = 10;
-
-    /// Covers the rounding of a diagonal entry of an inverse.
-    constexpr double inverse_rounding = 1. + 1e-6;
+    /// Where more would be needed the steps cycle; any point has a bound.
+    constexpr unsigned int maximum_newton_steps = 12;
 
     /// Other places are numbers of parts of the envelope.
     enum Place
@@ -51,31 +43,6 @@ namespace Debond
             return static_cast<int>(p);
         }
       return e.parts.empty() ? at_lower : at_upper;
-    }
-
-
-
-    void
-    sweep(const BoxProblem                  &problem,
-          const std::vector<ConvexEnvelope> &envelopes,
-          Eigen::VectorXd                   &s)
-    {
-      for (unsigned int i = 0; i < s.size(); ++i)
-        {
-          const double weight = problem.A(i, i);
-          const double z =
-            s(i) - (problem.A.col(i).dot(s) - problem.g(i)) / weight;
-          const int place = place_of_minimum(envelopes[i], weight, z);
-          if (place == at_lower)
-            s(i) = problem.lower(i);
-          else if (place == at_upper)
-            s(i) = problem.upper(i);
-          else
-            {
-              const auto &part = envelopes[i].parts[place];
-              s(i) = (weight * z - part.slope) / (weight + part.curvature);
-            }
-        }
     }
 
 
@@ -117,38 +84,6 @@ namespace Debond
       for (unsigned int k = 0; k < free.size(); ++k)
         s(free[k]) = r(k);
     }
-
-
-
-    double
-    value(const BoxProblem                  &problem,
-          const std::vector<ConvexEnvelope> &envelopes,
-          const Eigen::VectorXd             &s)
-    {
-      double sum = s.dot(0.5 * (problem.A * s) - problem.g);
-      for (unsigned int i = 0; i < s.size(); ++i)
-        sum += envelopes[i].value(s(i));
-      return sum;
-    }
-
-
-
-    /// Takes s into the box, and back towards old_s, which is in it, until the
-    /// relaxation does not rise.
-    void
-    step_back(const BoxProblem                  &problem,
-              const std::vector<ConvexEnvelope> &envelopes,
-              Eigen::VectorXd                    old_s,
-              Eigen::VectorXd                   &s)
-    {
-      old_s = old_s.cwiseMax(problem.lower).cwiseMin(problem.upper);
-      s     = s.cwiseMax(problem.lower).cwiseMin(problem.upper);
-      const double old_value = value(problem, envelopes, old_s);
-      for (unsigned int k = 0;
-           k < maximum_halvings && value(problem, envelopes, s) > old_value;
-           ++k)
-        s = 0.5 * (old_s + s);
-    }
   } // namespace
 
 
@@ -169,17 +104,11 @@ namespace Debond
           places[i] = place_of_minimum(envelopes[i],
                                        problem.A(i, i),
                                        s(i) - gradient(i) / problem.A(i, i));
-        // Any point has a bound.
         if (places == old_places || InterruptGuard::noticed())
           return;
-        const Eigen::VectorXd old_s = s;
         solve_for(places, problem, envelopes, s);
-        if (step < n_full_steps)
-          continue;
-        step_back(problem, envelopes, old_s, s);
-        for (unsigned int k = 0; k < n_sweeps; ++k)
-          sweep(problem, envelopes, s);
       }
+    s = s.cwiseMax(problem.lower).cwiseMin(problem.upper);
   }
 
 
@@ -191,12 +120,12 @@ namespace Debond
     , least(x.size())
   {
     // Sums of n terms lose at most n units of their absolute sum.
-    const unsigned int n    = static_cast<unsigned int>(x.size());
-    long double        sum  = 0.;
-    long double        size = 0.; // of all terms, at the largest |s_i|
+    const unsigned int    n       = static_cast<unsigned int>(x.size());
+    constexpr long double epsilon = std::numeric_limits<long double>::epsilon();
+    long double           sum = 0., size = 0.;
     for (unsigned int i = 0; i < n; ++i)
       {
-        long double product = 0., terms = 0.;
+        long double product = 0., terms = std::abs(problem.g(i));
         for (unsigned int j = 0; j < n; ++j)
           {
             const long double term =
@@ -205,15 +134,13 @@ namespace Debond
             terms += std::abs(term);
           }
         const BranchEnergy &f = problem.f[i];
-        r[i]                  = product - problem.g(i);
+        // As s_i <= 0, the largest r_i that it can be gives a bound.
+        r[i]     = product - problem.g(i) + (n + 16.L) * epsilon * terms;
         least[i] = f.least(r[i], problem.lower(i), problem.upper(i));
         sum += least[i] - 0.5L * x(i) * product;
-
-        const double s = largest(i);
-        size += (terms + std::abs(problem.g(i))) * (std::abs(x(i)) + s) +
-                (std::abs(r[i]) + f.convexity * s) * s + std::abs(least[i]);
+        size += std::abs(x(i)) * terms + std::abs(least[i]);
       }
-    sum -= (n + 16.L) * std::numeric_limits<long double>::epsilon() * size;
+    sum -= (n + 16.L) * epsilon * size;
     value = static_cast<double>(sum);
     value -= std::numeric_limits<double>::epsilon() * std::abs(value);
   }
@@ -226,12 +153,13 @@ namespace Debond
                      const double       inverse_diagonal) const
   {
     const BranchMinimum::Piece &p = problem.f[i].pieces[piece];
-    const double quadratic        = 1. / (inverse_rounding * inverse_diagonal);
-    const double c                = problem.f[i].convexity + p.curvature;
-    const double r_i              = static_cast<double>(r[i]);
-    const double least_i          = static_cast<double>(least[i]);
-    const double constant         = static_cast<double>(p.constant);
-    const double size             = std::abs(x(i));
+    const double                quadratic =
+      1. / ((1. + Tolerance::outwards) * inverse_diagonal);
+    const double c        = problem.f[i].convexity + p.curvature;
+    const double r_i      = static_cast<double>(r[i]);
+    const double least_i  = static_cast<double>(least[i]);
+    const double constant = static_cast<double>(p.constant);
+    const double size     = std::abs(x(i));
 
     // A piece between kinks can be steep. It is written about s = 0, where its
     // terms are no larger than the energy of the kinks.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/interrupt.h>
+#include <debond/base/tolerances.h>
 #include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/global/node_bound.h>
 
@@ -29,12 +30,6 @@ namespace Debond
     /// How much the gap of an envelope counts when its unknown is chosen,
     /// beside the bound of the lower one of its halves.
     constexpr double envelope_weight = 0.3;
-
-    /// What a bound at a point takes more than it needs, relative to that and
-    /// to the curvature of branch or body: a residual d of s then costs d^2 /
-    /// (2 D).
-    constexpr double excess_at_point = 1e-2;
-    constexpr double floor_at_point  = 1e-8;
 
 
 
@@ -78,14 +73,12 @@ namespace Debond
       NodeResult
       run(const double       best_value,
           const double       tolerance,
-          const unsigned int maximum_rounds,
-          const bool         only_while_halving)
+          const unsigned int maximum_rounds)
       {
         NodeResult result;
         for (unsigned int round = 0;; ++round)
           {
-            const std::size_t n_undecided = undecided().size();
-            const bool        all_decided = n_undecided == 0;
+            const bool all_decided = undecided().empty();
             if (InterruptGuard::noticed() || !set_up(round == 0))
               break;
             minimise_relaxation(problem, envelopes, node.x);
@@ -107,10 +100,7 @@ namespace Debond
                 if (round > 0)
                   raise(best_value - lower_bound.value);
               }
-            // The second relaxation is the first with shifts that raise it.
-            const bool is_slow = only_while_halving && round > 0 &&
-                                 2 * undecided().size() > n_undecided;
-            if (round + 1 >= maximum_rounds || is_slow)
+            if (round + 1 >= maximum_rounds)
               choose(lower_bound, result);
             if (result.unknown)
               return result;
@@ -345,10 +335,10 @@ namespace Debond
     // Within this distance of s_0 by the energy, and a little more.
     const double distance = 2. * (best_value + 0.5 * g.dot(s_0));
     without_phi.lower =
-      (s_0 -
-       (distance * inverse->diagonal()).cwiseMax(0.).cwiseSqrt() * (1. + 1e-6))
+      (s_0 - (distance * inverse->diagonal()).cwiseMax(0.).cwiseSqrt() *
+               (1. + Tolerance::outwards))
         .cwiseMin(0.);
-    without_phi.lower -= 1e-6 * without_phi.lower.cwiseAbs();
+    without_phi.lower -= Tolerance::outwards * without_phi.lower.cwiseAbs();
 
     ProofNode node;
     node.number = 0;
@@ -384,8 +374,8 @@ namespace Debond
               convexity =
                 std::max(convexity, needed_convexity(f_i[own], f_i[k], s(i)));
           }
-        A(i, i) -= (1. + excess_at_point) * convexity +
-                   floor_at_point * std::min(largest, S(i, i));
+        A(i, i) -= (1. + Tolerance::excess_at_point) * convexity +
+                   Tolerance::floor_at_point * std::min(largest, S(i, i));
         // What was taken, without the rounding of the difference.
         f[i].convexity = S(i, i) - A(i, i);
         if (!(A(i, i) > 0.))
@@ -393,28 +383,13 @@ namespace Debond
       }
     if (!is_safely_positive_definite(A))
       return nothing;
-
-    constexpr double      infinity = std::numeric_limits<double>::infinity();
-    constexpr long double epsilon = std::numeric_limits<long double>::epsilon();
-    long double           sum = 0., size = 0.;
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        long double product = 0., terms = std::abs(g(i));
-        for (unsigned int j = 0; j < n; ++j)
-          {
-            const long double term = static_cast<long double>(A(j, i)) * s(j);
-            product += term;
-            terms += std::abs(term);
-          }
-        // Of all that r can be the largest gives the least value, as s_i <= 0.
-        const long double r     = product - g(i) + (n + 16.L) * epsilon * terms;
-        const long double least = f[i].least(r, -infinity, 0.);
-        sum += least - 0.5L * s(i) * product;
-        size += std::abs(s(i)) * terms + std::abs(least);
-      }
-    sum -= (n + 16.L) * epsilon * size;
-    const double value = static_cast<double>(sum);
-    return value - std::numeric_limits<double>::epsilon() * std::abs(value);
+    return LowerBound({A,
+                       g,
+                       f,
+                       Eigen::VectorXd::Constant(n, nothing),
+                       Eigen::VectorXd::Zero(n)},
+                      s)
+      .value;
   }
 
 
@@ -422,14 +397,10 @@ namespace Debond
   NodeResult
   NodeBound::bound(ProofNode   &node,
                    const double best_value,
-                   const double tolerance,
-                   const bool   only_while_halving) const
+                   const double tolerance) const
   {
     return Relaxations(S, g, phi, node)
-      .run(best_value,
-           tolerance,
-           node.number == 0 ? n_root_rounds : n_rounds,
-           only_while_halving);
+      .run(best_value, tolerance, node.number == 0 ? n_root_rounds : n_rounds);
   }
 
 

@@ -3,6 +3,17 @@
 
 namespace Debond
 {
+  BranchState
+  SeparableBranches::state(const VectorView &s) const
+  {
+    BranchState result(s.size());
+    for (unsigned int i = 0; i < s.size(); ++i)
+      result[i] = f[i].index(s(i));
+    return result;
+  }
+
+
+
   double
   SeparableBranches::value(const VectorView &s) const
   {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/interrupt.h>
+#include <debond/base/tolerances.h>
 #include <debond/linear_algebra/cholesky.h>
 #include <debond/optimization/majorise/bound_qp.h>
 
@@ -27,9 +28,7 @@ namespace Debond
 
     constexpr unsigned int largest_number_of_refinements = 5;
 
-    /// Of a step on the projected path: the part of the first-order descent
-    /// that it has to bring, and how often it is halved.
-    constexpr double       least_descent            = 1e-4;
+    /// Of a step on the projected path.
     constexpr unsigned int maximum_halvings_of_step = 30;
 
 
@@ -162,14 +161,14 @@ namespace Debond
         for (unsigned int j = 0; j < n; ++j)
           if (x(j) != 0.)
             terms += M.col(j).cwiseAbs() * std::abs(x(j));
-        return active_set_noise *
+        return Tolerance::active_set *
                (r.lpNorm<Eigen::Infinity>() + terms.lpNorm<Eigen::Infinity>());
       }
 
       static double
       noise(const Eigen::VectorXd &x)
       {
-        return active_set_noise * x.lpNorm<Eigen::Infinity>();
+        return Tolerance::active_set * x.lpNorm<Eigen::Infinity>();
       }
 
       void
@@ -259,8 +258,8 @@ namespace Debond
           {
             const Eigen::VectorXd change = (x + direction).cwiseMin(b) - x;
             const double          slope  = force.dot(change);
-            if (slope > 0. &&
-                0.5 * change.dot(M * change) <= (1. - least_descent) * slope)
+            if (slope > 0. && 0.5 * change.dot(M * change) <=
+                                (1. - Tolerance::least_descent) * slope)
               {
                 x = (x + direction).cwiseMin(b);
                 return true;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/polar_cone.h>
 
@@ -15,38 +16,8 @@ namespace Debond
 {
   namespace
   {
-    /// Of a Cholesky factorisation and two products, in units of rounding of
-    /// the terms in a row of S s.
-    constexpr double rounding_factor = 4.;
-
-    /// Bonds that hold a motion by less than this part of the body's stiffness
-    /// are lost in the rounding of S + E.
-    constexpr double least_stiffness = 1e-12;
-
-    /// A motion is loose if bonds hold it by less than this part of what all of
-    /// them, unbroken, hold: by rounding, not by bonds.
-    constexpr double loose = 1e-10;
-
-    /// Of the proximal terms, relative to the body's: small, so that few steps
-    /// do, but far from rounding.
-    constexpr double proximal_stiffness = 1e-8;
-
     /// Far more than scenes need.
     constexpr unsigned int maximum_proximal_steps = 500;
-
-    /// What is left of a resultant, relative to the forces, when it is
-    /// balanced.
-    constexpr double balanced = 1e-12;
-
-    /// Of the repeated part of a step, relative to the step: what is left.
-    constexpr double same_step = 1e-3;
-
-    /// What a rigid motion away from the foundation may go towards it, relative
-    /// to itself: no more than rounding, since a long thin body that turns on
-    /// one of its ends presses there by little of what the other end moves.
-    constexpr double towards_foundation = 1e-7;
-
-
 
     Eigen::MatrixXd
     orthonormal(const Eigen::MatrixXd &motions)
@@ -93,7 +64,7 @@ namespace Debond
   {
     if (N.cols() > 0)
       loose_stiffness =
-        loose *
+        Tolerance::loose_motion *
         (N.transpose() * (phi.curvature(Eigen::VectorXd::Zero(s.size())) * N))
           .norm();
     for (unsigned int i = 0; i < s.size(); ++i)
@@ -149,7 +120,7 @@ namespace Debond
     state.residual_rounding =
       largest_force == 0. ?
         0. :
-        rounding_factor * epsilon * largest_terms / largest_force;
+        Tolerance::row_of_product * largest_terms / largest_force;
     return state;
   }
 
@@ -166,13 +137,14 @@ namespace Debond
     r                                            = g - phi.subgradient(s) + E_s;
     if (previous_r.size() == r.size() && majorised)
       {
-        constexpr double noise = 1e-12;
         // Squares of what rounding leaves of a vanishing load would underflow.
         const auto size = [](const Eigen::VectorXd &v) {
           return v.lpNorm<Eigen::Infinity>();
         };
-        if (size(r - previous_r) <= noise * (size(E_s) + size(r)) &&
-            curvature_norm(E - previous_E) <= noise * curvature_norm(E))
+        if (size(r - previous_r) <=
+              Tolerance::same_majorant * (size(E_s) + size(r)) &&
+            curvature_norm(E - previous_E) <=
+              Tolerance::same_majorant * curvature_norm(E))
           return false;
       }
     majorised = true;
@@ -189,12 +161,10 @@ namespace Debond
     if (N.cols() > 0)
       {
         const Eigen::MatrixXd Z = motions_held_by_less(
-          std::max(least_stiffness * stiffness, loose_stiffness));
+          std::max(Tolerance::least_stiffness * stiffness, loose_stiffness));
         if (Z.cols() > 0)
           return minimise_along(Z);
       }
-    if (guess != nullptr && !guess->empty())
-      active = guess->active_set(M, E, r);
     const BoundQPResult qp =
       solve_bound_qp(M, r, Eigen::VectorXd::Zero(s.size()), active);
     if (qp.status != SolverStatus::interrupted)
@@ -221,11 +191,11 @@ namespace Debond
     Eigen::MatrixXd towards  = Z.transpose();
     const double    furthest = towards.colwise().norm().maxCoeff();
     for (auto node : towards.colwise())
-      if (node.norm() <= towards_foundation * furthest)
+      if (node.norm() <= Tolerance::towards_foundation * furthest)
         node.setZero();
     const std::optional<Eigen::VectorXd> unbalanced =
       project_on_polar_cone(towards, Z.transpose() * r);
-    return unbalanced && unbalanced->norm() > balanced * r.norm();
+    return unbalanced && unbalanced->norm() > Tolerance::balanced * r.norm();
   }
 
 
@@ -238,7 +208,7 @@ namespace Debond
       return {SolverStatus::comes_off, 0, 0};
     // Where bonds hold all of them, by little, more than what the least of them
     // has only makes the steps shorter.
-    double delta = proximal_stiffness * stiffness;
+    double delta = Tolerance::proximal_stiffness * stiffness;
     if (loose_motions.cols() == 0)
       delta = std::min(delta, held(Z.col(0)));
     const Eigen::MatrixXd proximal = M + delta * Z * Z.transpose();
@@ -261,11 +231,10 @@ namespace Debond
         x                            = qp.x;
         // The proximal force balances what the foundation does not, and where
         // bonds are soft what rounding leaves of S x.
-        constexpr double epsilon = std::numeric_limits<double>::epsilon();
-        const bool       is_balanced =
+        const bool is_balanced =
           delta * motion.norm() <=
-          std::max(balanced * forces,
-                   rounding_factor * epsilon * stiffness * x.norm());
+          std::max(Tolerance::balanced * forces,
+                   Tolerance::row_of_product * stiffness * x.norm());
         if (is_balanced)
           {
             s = x;
@@ -279,13 +248,15 @@ namespace Debond
         const double          ratio   = last_step.size() > 0 ?
                                           step.dot(last_step) / last_step.squaredNorm() :
                                           0.;
-        const bool            is_same = ratio >= 1. - same_step;
-        const bool is_rigid = (step - rigid).norm() <= same_step * step.norm();
+        const bool            is_same = ratio >= 1. - Tolerance::same_step;
+        const bool            is_rigid =
+          (step - rigid).norm() <= Tolerance::same_step * step.norm();
         if (ratio > 0. && (is_rigid || !is_same) &&
-            (step - ratio * last_step).norm() <= same_step * step.norm())
+            (step - ratio * last_step).norm() <=
+              Tolerance::same_step * step.norm())
           {
-            const Eigen::VectorXd &way   = is_same ? rigid : step;
-            const double           least = towards_foundation * way.norm();
+            const Eigen::VectorXd &way = is_same ? rigid : step;
+            const double least = Tolerance::towards_foundation * way.norm();
             // Bonds that are far softer than delta let steps repeat as nothing
             // does, but end the sum of the steps at delta over their stiffness.
             const bool is_loose =

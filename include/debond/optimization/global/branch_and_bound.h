@@ -5,7 +5,6 @@
 #include <debond/optimization/global/separable_branches.h>
 #include <debond/optimization/interval.h>
 
-#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -20,10 +19,6 @@ namespace Debond
 
     /// With 0 there is only the bound at the start, NodeBound::bound_at().
     unsigned int maximum_nodes = 1000000;
-
-    /// Whether a node is left once a relaxation decides less than half of the
-    /// unknowns that were undecided: then it takes many.
-    bool only_while_halving = false;
 
     double maximum_seconds = std::numeric_limits<double>::infinity();
 
@@ -85,16 +80,12 @@ namespace Debond
    * as there are. The order of the nodes does not depend on the number of
    * threads, so that only a limit of time makes a result depend on the machine.
    *
-   * @p start is a good point, with s <= 0; the monitor returns false to end.
+   * @p start is a good point, with s <= 0.
    */
   BranchAndBoundResult
-  branch_and_bound(
-    const BranchAndBoundParameters                   &parameters,
-    const MatrixView                                 &S,
-    const VectorView                                 &g,
-    const SeparableBranches                          &phi,
-    const VectorView                                 &start,
-    const std::function<bool(const ProofProgress &)> &monitor = {});
+  branch_and_bound(const BranchAndBoundParameters &parameters,
+                   const SeparableProblem         &problem,
+                   const VectorView               &start);
 } // namespace Debond
 
 #endif

@@ -3,43 +3,24 @@
 #define debond_optimization_global_branch_search_h
 
 #include <debond/optimization/global/branch_and_bound.h>
+#include <debond/optimization/global/moves.h>
 #include <debond/optimization/global/separable_branches.h>
-#include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
-#include <functional>
 #include <optional>
-#include <set>
 #include <vector>
 
 namespace Debond
 {
-  /// Which unknowns are neighbours on the contact boundary.
-  using NeighbourGraph = std::vector<std::set<unsigned int>>;
-
-
-
-  /// 1/2 s'S s - g's + Phi(s), s <= 0, and what a search needs to know of it.
-  /// Keeps references.
-  struct SearchProblem
+  /// What a search needs to know of a problem. Keeps references.
+  struct SearchProblem : public PiecewiseProblem
   {
-    MatrixView                S;
-    VectorView                g;
-    const PiecewiseQuadratic &phi;
-
-    /// Says on which branch a node is (lumped_branches()); all its terms have
-    /// to have the same number of pieces.
+    /// Says on which branch a node is (lumped_branches()).
     const SeparableBranches &lumped;
 
     const NeighbourGraph   &neighbours;
     const MajoriseMinimise &method;
-
-    /// Returns false to end.
-    std::function<bool()> may_go_on = []() { return true; };
-
-    /// For states that are far from the point that they are made from.
-    const ActiveSetGuess *guess = nullptr;
   };
 
 
@@ -84,18 +65,10 @@ namespace Debond
 
 
   /**
-   * Improves a minimum by moves on patches. For each kink of the branches of
-   * `lumped`, these are the connected parts of the nodes below it (with the
-   * paper's law: the broken ones) and of those above: starts from rest and from
-   * all nodes on each further branch; the edge of a patch (an end of an
-   * interval in 2D, all around in 3D) moved in or out by some nodes; a patch
-   * taken to the other side of the kink as a whole, which merges its
-   * neighbours, or in its middle, which splits it. Each new state goes through
+   * Improves a minimum by starts from rest and from all nodes on each further
+   * branch, and by the moves of moves_from(). Each new state goes through
    * majorise-minimise and is taken if the functional falls; then the moves
-   * begin anew.
-   *
-   * @p s has to be <= 0. What comes to the majorant of a minimum that is known
-   * is not followed further: it ends there.
+   * begin anew. @p s has to be <= 0.
    */
   BranchSearchResult
   search_branches(const SearchProblem          &problem,
@@ -113,17 +86,6 @@ namespace Debond
                   const BranchMinimum       &branches,
                   const std::vector<double> &stretches = {});
 
-  struct GuidedSearchParameters
-  {
-    double tolerance = 0.; ///< of the gap, an energy
-
-    unsigned int n_threads = 1;
-
-    /// Not only the bound at the minimum but the first node of branch and bound
-    /// is tried before the search, whether Phi is separable or not.
-    bool proof_first = false;
-  };
-
 
 
   struct GuidedSearchResult
@@ -132,37 +94,28 @@ namespace Debond
 
     /// A bound for the functional, if Phi is separable.
     std::optional<BranchAndBoundResult> proof;
-
-    /// Whether the minimum of the lumped problem is known, and lies in a state
-    /// that was tried.
-    bool is_closed = false;
   };
 
 
 
   /**
    * Improves a minimum with as much effort as it takes to prove it, up to a
-   * limit: nothing if the bound at it does
-   * (NodeBound::bound_at) or, with proof_first, the first node of branch
-   * and bound, or up to 100 unknowns a few relaxations of that node
-   * (BranchAndBoundParameters::only_while_halving), else a search that starts
-   * from rest and from all bonds broken and moves edges by one node; if the
-   * bound at what that finds is not enough, the first node of branch and
-   * bound; then the full search, and branch and bound with a number of nodes
-   * that depends on n only, 500 up to n = 92 and as n^-3 from there on; both
-   * again, at most thrice, if that finds something. @p may_end is asked after
-   * the first search, with whether that found anything; if true the search
-   * ends.
+   * limit: nothing if the bound at it does (NodeBound::bound_at) or, up to 100
+   * unknowns, the first node of branch and bound; else a search that starts
+   * from rest and from all bonds broken and moves edges by one node, and the
+   * first node; then the full search, and branch and bound with a number of
+   * nodes that depends on n only, 500 up to n = 92 and as n^-3 from there on;
+   * both again, at most thrice, if that finds something. Tolerance and threads
+   * of branch and bound are those of @p limits.
    *
    * If Phi is not separable, the proof is for the lumped one and says where
    * to look: the minimum that it finds is a start for the true Phi.
    */
   GuidedSearchResult
-  guided_search(const SearchProblem             &problem,
-                const bool                       is_separable,
-                const GuidedSearchParameters    &parameters,
-                Eigen::VectorXd                 &s,
-                const std::function<bool(bool)> &may_end = {});
+  guided_search(const SearchProblem            &problem,
+                const bool                      is_separable,
+                const BranchAndBoundParameters &limits,
+                Eigen::VectorXd                &s);
 } // namespace Debond
 
 #endif

@@ -20,8 +20,7 @@ namespace Debond
     value(const double s) const;
 
     /// The least value of r s + f(s) on [lower, upper] where the piece holds,
-    /// less what rounding can do to its constant and slope; infinite if there
-    /// is no such s.
+    /// less what rounding can do to it; infinite if there is no such s.
     long double
     least(const long double  r,
           const double       lower,

@@ -13,8 +13,8 @@
 
 namespace Debond
 {
-  /// q(s) = 1/2 s'A s - g's + sum_i f_i(s_i) on the box lower <= s <= upper,
-  /// A symmetric and positive definite.
+  /// q(s) = 1/2 s'A s - g's + sum_i f_i(s_i) on the box lower <= s <= upper
+  /// <= 0, A symmetric and positive definite.
   struct BoxProblem
   {
     Eigen::MatrixXd           A;
@@ -25,9 +25,8 @@ namespace Debond
 
   /**
    * Moves s towards the minimum of q with the convex envelopes of f_i in place
-   * of f_i, by a Newton method for s = prox(s - D^{-1}(A s - g)), D = diag A,
-   * with sweeps over the unknowns where it cycles. Whatever s is in the end,
-   * LowerBound holds there.
+   * of f_i, by a Newton method for s = prox(s - D^{-1}(A s - g)), D = diag A.
+   * Whatever s is in the end, LowerBound holds there.
    */
   void
   minimise_relaxation(const BoxProblem                  &problem,

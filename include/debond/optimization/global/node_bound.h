@@ -96,13 +96,11 @@ namespace Debond
     double
     bound_at(const Eigen::VectorXd &s) const;
 
-    /// Raises the node's bound and shrinks its box; with @p only_while_halving
-    /// as long as each relaxation decides half of what is undecided.
+    /// Raises the node's bound and shrinks its box.
     NodeResult
     bound(ProofNode   &node,
           const double best_value,
-          const double tolerance,
-          const bool   only_while_halving = false) const;
+          const double tolerance) const;
 
     /// Balls for the convexity that the node's bound was raised with, which has
     /// a high value, and for that of its first relaxation, which has a large A;

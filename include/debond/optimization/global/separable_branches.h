@@ -23,6 +23,9 @@ namespace Debond
       : f(f)
     {}
 
+    BranchState
+    state(const VectorView &s) const;
+
     double
     value(const VectorView &s) const override;
 
@@ -36,6 +39,8 @@ namespace Debond
     double
     largest_value() const;
   };
+
+  using SeparableProblem = BoundedProblem<SeparableBranches>;
 } // namespace Debond
 
 #endif

@@ -11,10 +11,6 @@
 
 namespace Debond
 {
-  /// Rounding in x and mu, relative to their largest terms.
-  constexpr double active_set_noise =
-    16. * std::numeric_limits<double>::epsilon();
-
   /// Factorisations after which a solver gives up.
   constexpr unsigned int maximum_active_set_steps = 10000;
 

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_optimization_global_moves_h
+#define debond_optimization_global_moves_h
+
+#include <debond/optimization/global/separable_branches.h>
+
+#include <set>
+#include <vector>
+
+namespace Debond
+{
+  using NodeSet = std::set<unsigned int>;
+
+  /// Which unknowns are neighbours on the contact boundary.
+  using NeighbourGraph = std::vector<NodeSet>;
+
+  /// Nodes that go down to a piece, or up to the one above it.
+  struct BranchMove
+  {
+    unsigned int piece;
+    NodeSet      down, up;
+  };
+
+  /**
+   * Moves from a state, for each kink of branches with up to @p n_pieces
+   * pieces. Patches are the connected parts of the nodes below the kink (with
+   * the paper's law: the broken ones), and of those above. The edge of a lower
+   * patch (an end of an interval in 2D, all around in 3D) goes out or in by up
+   * to @p maximum_shift nodes; with @p flips a patch also goes to the other
+   * side as a whole, which merges its neighbours, or in its middle, which
+   * splits it.
+   */
+  std::vector<BranchMove>
+  moves_from(const BranchState    &state,
+             const NeighbourGraph &graph,
+             const unsigned int    n_pieces,
+             const unsigned int    maximum_shift,
+             const bool            flips);
+} // namespace Debond
+
+#endif

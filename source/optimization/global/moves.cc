@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/optimization/global/moves.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace Debond
+{
+  namespace
+  {
+    /// The nodes that are neighbours of @p nodes, but not among them.
+    NodeSet
+    neighbours_of(const NodeSet &nodes, const NeighbourGraph &graph)
+    {
+      NodeSet result;
+      for (const unsigned int i : nodes)
+        for (const unsigned int j : graph[i])
+          if (nodes.count(j) == 0)
+            result.insert(j);
+      return result;
+    }
+
+
+
+    NodeSet
+    common(const NodeSet &a, const NodeSet &b)
+    {
+      NodeSet result;
+      for (const unsigned int i : a)
+        if (b.count(i) > 0)
+          result.insert(result.end(), i);
+      return result;
+    }
+
+
+
+    std::vector<NodeSet>
+    connected_parts(NodeSet nodes, const NeighbourGraph &graph)
+    {
+      std::vector<NodeSet> parts;
+      while (!nodes.empty())
+        {
+          NodeSet part, front = {*nodes.begin()};
+          while (!front.empty())
+            {
+              for (const unsigned int i : front)
+                nodes.erase(i);
+              part.insert(front.begin(), front.end());
+              front = common(neighbours_of(front, graph), nodes);
+            }
+          parts.push_back(part);
+        }
+      return parts;
+    }
+
+
+
+    /// The last that is left of @p nodes if those beside others are taken off
+    /// again and again; the middle one by number if that leaves none.
+    NodeSet
+    middle(NodeSet nodes, const NeighbourGraph &graph)
+    {
+      while (true)
+        {
+          NodeSet inner;
+          for (const unsigned int i : nodes)
+            if (std::includes(
+                  nodes.begin(), nodes.end(), graph[i].begin(), graph[i].end()))
+              inner.insert(i);
+          if (inner.empty() || inner.size() == nodes.size())
+            return {*std::next(nodes.begin(), nodes.size() / 2)};
+          nodes = inner;
+        }
+    }
+
+
+
+    /// @p layer, then with its neighbours among @p others, with theirs, and so
+    /// on: up to @p n sets.
+    std::vector<NodeSet>
+    layers(NodeSet               layer,
+           const NodeSet        &others,
+           const unsigned int    n,
+           const NeighbourGraph &graph)
+    {
+      std::vector<NodeSet> result;
+      NodeSet              all;
+      while (!layer.empty() && result.size() < n)
+        {
+          all.insert(layer.begin(), layer.end());
+          result.push_back(all);
+          layer = common(neighbours_of(all, graph), others);
+        }
+      return result;
+    }
+  } // namespace
+
+
+
+  std::vector<BranchMove>
+  moves_from(const BranchState    &state,
+             const NeighbourGraph &graph,
+             const unsigned int    n_pieces,
+             const unsigned int    maximum_shift,
+             const bool            flips)
+  {
+    std::vector<BranchMove> moves;
+    for (unsigned int piece = 1; piece < n_pieces; ++piece)
+      {
+        NodeSet below, above;
+        for (unsigned int i = 0; i < state.size(); ++i)
+          (state[i] >= piece ? below : above).insert(i);
+        const std::vector<NodeSet> lower = connected_parts(below, graph);
+        const std::vector<NodeSet> upper = connected_parts(above, graph);
+
+        for (const NodeSet &patch : lower)
+          for (const NodeSet &edge :
+               connected_parts(neighbours_of(patch, graph), graph))
+            {
+              const NodeSet inner = common(neighbours_of(edge, graph), patch);
+              for (const NodeSet &nodes :
+                   layers(edge, above, maximum_shift, graph))
+                moves.push_back({piece, nodes, {}});
+              for (const NodeSet &nodes :
+                   layers(inner, patch, maximum_shift, graph))
+                moves.push_back({piece, {}, nodes});
+            }
+        if (!flips)
+          continue;
+        for (const NodeSet &patch : upper)
+          moves.push_back({piece, patch, {}});
+        for (const NodeSet &patch : lower)
+          moves.push_back({piece, {}, patch});
+        for (const NodeSet &patch : upper)
+          moves.push_back({piece, middle(patch, graph), {}});
+        for (const NodeSet &patch : lower)
+          moves.push_back({piece, {}, middle(patch, graph)});
+      }
+    return moves;
+  }
+} // namespace Debond
