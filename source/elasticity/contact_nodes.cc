@@ -236,7 +236,7 @@ namespace Debond
             square += part * part;
             largest = std::max(largest, std::abs(row.value));
           }
-        constexpr double rounding = 1e-8;
+        constexpr double rounding = Tolerance::same_normal;
         const double     multiple =
           square > rounding * rounding ? product / square : 0.;
         for (const auto &row : prescribed.rows)

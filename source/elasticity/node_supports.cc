@@ -220,13 +220,13 @@ namespace Debond
                     size = std::max(size, std::abs(other.value));
                   }
                 const double length = row.direction.norm();
-                if (length > rounding)
+                if (length > Tolerance::same_normal)
                   {
                     row.direction /= length;
                     row.value /= length;
                     vertex.rows.push_back(row);
                   }
-                else if (std::abs(row.value) > rounding * size)
+                else if (std::abs(row.value) > Tolerance::same_normal * size)
                   fail("the displacement at " + point_text(vertex.position) +
                        " is prescribed otherwise by " +
                        support_names[vertex.rows[0].support]);
