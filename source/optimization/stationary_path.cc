@@ -2,8 +2,6 @@
 #include <debond/base/tolerances.h>
 #include <debond/optimization/stationary_path.h>
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -96,19 +94,38 @@ namespace Debond
 
 
   bool
-  StationaryPath::solve()
+  StationaryPath::factorise()
   {
     free.clear();
     for (unsigned int i = 0; i < s.size(); ++i)
       if (is_free(i))
         free.push_back(i);
     const Eigen::Index n = static_cast<Eigen::Index>(free.size());
+    Eigen::MatrixXd    M(n, n);
+    for (Eigen::Index k = 0; k < n; ++k)
+      {
+        const unsigned int i    = free[k];
+        const Bond        &bond = bonds[i];
+        for (Eigen::Index l = 0; l < n; ++l)
+          M(k, l) = S(i, free[l]);
+        M(k, k) += bond.energy / (bond.stretch * bond.stretch) *
+                   f[(segments[i] - 1) / 2].curvature;
+      }
+    factor.compute(M);
+    return n == 0 || (factor.info() == Eigen::Success &&
+                      factor.rcond() >= Tolerance::condition_on_path);
+  }
 
+
+
+  void
+  StationaryPath::solve()
+  {
     // Of s at t: S s + r = load + (t - first_t) slope, r known by s_i on
     // pieces.
-    Eigen::MatrixXd M(n, n);
-    Eigen::MatrixXd right(n, 2);
-    Eigen::VectorXd held = s;
+    const Eigen::Index n = static_cast<Eigen::Index>(free.size());
+    Eigen::MatrixXd    right(n, 2);
+    Eigen::VectorXd    held = s;
     for (const unsigned int i : free)
       held(i) = 0.;
     const Eigen::VectorXd rest =
@@ -117,17 +134,10 @@ namespace Debond
       {
         const unsigned int i    = free[k];
         const Bond        &bond = bonds[i];
-        const auto        &p    = f[(segments[i] - 1) / 2];
-        for (Eigen::Index l = 0; l < n; ++l)
-          M(k, l) = S(i, free[l]);
-        M(k, k) += bond.energy / (bond.stretch * bond.stretch) * p.curvature;
-        right(k, 0) = slope(i);
-        right(k, 1) = rest(i) - bond.energy / bond.stretch * p.slope;
+        right(k, 0)             = slope(i);
+        right(k, 1) =
+          rest(i) - bond.energy / bond.stretch * f[(segments[i] - 1) / 2].slope;
       }
-    const Eigen::LLT<Eigen::MatrixXd> factor(M);
-    if (n > 0 && (factor.info() != Eigen::Success ||
-                  factor.rcond() < Tolerance::condition_on_path))
-      return false;
     const Eigen::MatrixXd x = factor.solve(right);
     ds.setZero();
     for (Eigen::Index k = 0; k < n; ++k)
@@ -135,9 +145,10 @@ namespace Debond
         ds(free[k]) = x(k, 0);
         s(free[k])  = x(k, 1);
       }
-    dr = slope - S * ds;
-    r  = load + (parameter - first_t) * slope - S * s;
-    return true;
+    dr         = slope - S * ds;
+    r          = load + (parameter - first_t) * slope - S * s;
+    largest_ds = ds.lpNorm<Eigen::Infinity>();
+    largest_dr = (slope.cwiseAbs() + S.cwiseAbs() * ds.cwiseAbs()).maxCoeff();
   }
 
 
@@ -145,8 +156,9 @@ namespace Debond
   StationaryPath::Event
   StationaryPath::advance(const double lower, const double upper)
   {
-    if (!solve())
+    if (!factorise())
       return Event::no_stiffness;
+    solve();
     // All go on to their next segments, or if t had to rise for some of them
     // and to fall for others, the first one does.
     const auto sense = [this](const Change &change) {
@@ -167,8 +179,9 @@ namespace Debond
                 hold(changes[k].i);
               }
             changes.resize(1);
-            if (!solve())
+            if (!factorise())
               return Event::no_stiffness;
+            solve();
           }
         direction = sense(changes[0]);
         if (direction == 0.)
@@ -205,8 +218,7 @@ namespace Debond
           changes.push_back(
             {i, direction * opening(i) > 0., segments[i], bonds[i].least});
     parameter = reaches_end ? end : parameter + direction * step;
-    if (!solve())
-      return Event::no_stiffness;
+    solve();
     if (reaches_end)
       {
         // What changes there has come to its change.

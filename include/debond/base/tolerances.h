@@ -166,6 +166,9 @@ namespace Debond
     /// Forces against a cone: what rounding leaves of balanced ones.
     constexpr double in_cone = 16. * epsilon;
 
+    /// Speeds along a path to the fastest one, which are rounding of that.
+    constexpr double no_speed = 1e-12;
+
     /// Breakpoints of a path that coincide, to the interval, and an end of it
     /// that one at the end still belongs to.
     constexpr double same_breakpoint = 1e-11, end_of_path = 1e-10;

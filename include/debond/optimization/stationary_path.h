@@ -2,11 +2,13 @@
 #ifndef debond_optimization_stationary_path_h
 #define debond_optimization_stationary_path_h
 
+#include <debond/base/tolerances.h>
 #include <debond/linear_algebra/views.h>
 #include <debond/optimization/branch_minimum.h>
 
-#include <Eigen/Core>
+#include <Eigen/Cholesky>
 
+#include <cmath>
 #include <vector>
 
 namespace Debond
@@ -113,11 +115,15 @@ namespace Debond
     double
     derivative(const unsigned int i, const unsigned int piece) const;
 
-    /// How fast s_i goes to greater segments as t rises.
+    /// How fast s_i goes to greater segments as t rises. Far from what moves,
+    /// displacements and forces decay to rounding, whose signs are no changes.
     double
     opening(const unsigned int i) const
     {
-      return is_free(i) ? -ds(i) : segments[i] == 0 ? -dr(i) : dr(i);
+      const double speed   = segments[i] == 0 || is_free(i) ? -1. : 1.;
+      const double by_t    = is_free(i) ? ds(i) : dr(i);
+      const double fastest = is_free(i) ? largest_ds : largest_dr;
+      return std::abs(by_t) > Tolerance::no_speed * fastest ? speed * by_t : 0.;
     }
 
     /// What is left of the segment of s_i on the way to greater ones or back,
@@ -133,9 +139,13 @@ namespace Debond
     void
     change(const Change &change);
 
-    /// Takes the velocities of s and r from S. Returns whether S is definite
+    /// The free part of S with its pieces. Returns whether it is definite
     /// enough.
     bool
+    factorise();
+
+    /// s, r and their velocities.
+    void
     solve();
 
     const MatrixView      S;
@@ -154,6 +164,10 @@ namespace Debond
     bool                      had_kink  = false;
     std::vector<unsigned int> free;
     Eigen::VectorXd           ds, dr; ///< by t
+    double                    largest_ds = 0.;
+    double                    largest_dr = 0.; ///< of the terms of dr
+
+    Eigen::LLT<Eigen::MatrixXd> factor;
   };
 } // namespace Debond
 
