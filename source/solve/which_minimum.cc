@@ -27,6 +27,9 @@ namespace Debond
     /// coarser one.
     constexpr unsigned int largest_automatic_search = 200;
 
+    /// Of the coarsest space that says where starts are in contact.
+    constexpr unsigned int guess_nodes = 50;
+
 
 
     /// Of the bonds at the nodes, or on coarser spaces their means; empty if
@@ -170,6 +173,9 @@ namespace Debond
                                 parameters.search_seconds * CLOCKS_PER_SEC;
       };
 
+      /// For starts on many nodes, else empty.
+      ActiveSetGuess guess;
+
       SearchProblem
       problem() const
       {
@@ -177,7 +183,8 @@ namespace Debond
           {condensed.schur_complement(), condensed.load(), adhesion, has_time},
           lumped,
           graph,
-          method};
+          method,
+          &guess};
       }
 
       SeparableProblem
@@ -238,6 +245,9 @@ namespace Debond
       {
         if (is_proved_at_start())
           return;
+        guess =
+          ActiveSetGuess(condensed.schur_complement(),
+                         coarsen(adhesion.contact_boundary(), guess_nodes));
         BranchSearchParameters starts;
         starts.maximum_shift = 0;
         starts.flips         = false;

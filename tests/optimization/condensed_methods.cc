@@ -203,6 +203,69 @@ namespace
     check("converged from there", converged);
     check("failures of levels are told", all_named && n_failed > 0);
   }
+
+
+
+  /// The square root of the second differences on 255 nodes, which resembles
+  /// the elastic half plane, with bonds on a part of them and forces that
+  /// change their sign: from a guess by coarser spaces one or two systems do
+  /// where from no contact it takes more.
+  void
+  test_active_set_guess()
+  {
+    const unsigned int n           = 255;
+    Eigen::MatrixXd    differences = Eigen::MatrixXd::Zero(n, n);
+    differences.diagonal().setConstant(2.);
+    differences.diagonal<1>().setConstant(-1.);
+    differences.diagonal<-1>().setConstant(-1.);
+    const Eigen::MatrixXd root =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(differences)
+        .operatorSqrt();
+    const Eigen::MatrixXd S = 0.5 * (root + root.transpose());
+
+    std::vector<Eigen::SparseMatrix<double>> prolongations;
+    for (unsigned int fine = n; fine > 20; fine /= 2)
+      {
+        Eigen::SparseMatrix<double> P(fine, fine / 2);
+        for (unsigned int j = 0; j < fine / 2; ++j)
+          {
+            P.insert(2 * j, j)     = 0.5;
+            P.insert(2 * j + 1, j) = 1.;
+            P.insert(2 * j + 2, j) = 0.5;
+          }
+        prolongations.push_back(P);
+      }
+    const ActiveSetGuess guess(S, prolongations);
+
+    bool         same = true;
+    unsigned int most = 0, fewest_without = n;
+    for (unsigned int waves = 1; waves <= 4; ++waves)
+      for (const double stiffness : {0., 1e-2, 1.})
+        {
+          Eigen::SparseMatrix<double> E(n, n);
+          Eigen::VectorXd             r(n);
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              E.insert(i, i) = i < n / 3 ? stiffness : 0.;
+              r(i)           = std::sin(6.3 * waves * (i + 0.3) / n) - 0.2;
+            }
+          Eigen::MatrixXd M = S;
+          M += E;
+          const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
+          ActiveSet             active(n, 0);
+          const BoundQPResult   without = solve_bound_qp(M, r, zero, active);
+          ActiveSet             guessed = guess.active_set(M, E, r);
+          const BoundQPResult   with    = solve_bound_qp(M, r, zero, guessed);
+          same = same && with.status == SolverStatus::success &&
+                 (with.x - without.x).norm() <= 1e-12 * without.x.norm();
+          raise(most, with.steps);
+          fewest_without = std::min(fewest_without, without.steps);
+        }
+    section("active sets guessed by coarser spaces");
+    check("the same minima", same);
+    check("in at most two systems", most <= 2);
+    check("in place of at least three", fewest_without >= 3);
+  }
 } // namespace
 
 
@@ -214,4 +277,5 @@ main(int argc, char *[])
   std::mt19937_64 engine(20261121);
   test_beam_qp();
   test_coarse_start(engine);
+  test_active_set_guess();
 }

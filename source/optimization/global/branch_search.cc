@@ -129,7 +129,9 @@ namespace Debond
           return false;
 
         ++result.trials;
-        CondensedProblem             trial = condensed(problem, next);
+        CondensedProblem trial = condensed(problem, next);
+        if (is_start)
+          trial.guess_by(problem.guess);
         const MajoriseMinimiseResult minimum =
           minimise_trial(problem.method, trial, [&](const auto &) {
             return problem.may_go_on();

@@ -165,6 +165,8 @@ namespace Debond
         if (Z.cols() > 0)
           return minimise_along(Z);
       }
+    if (guess != nullptr && !guess->empty())
+      active = guess->active_set(M, E, r);
     const BoundQPResult qp =
       solve_bound_qp(M, r, Eigen::VectorXd::Zero(s.size()), active);
     if (qp.status != SolverStatus::interrupted)

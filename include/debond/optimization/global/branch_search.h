@@ -5,6 +5,7 @@
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/moves.h>
 #include <debond/optimization/global/separable_branches.h>
+#include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
@@ -21,6 +22,9 @@ namespace Debond
 
     const NeighbourGraph   &neighbours;
     const MajoriseMinimise &method;
+
+    /// For starts, which are far from the point that they are made from.
+    const ActiveSetGuess *guess = nullptr;
   };
 
 

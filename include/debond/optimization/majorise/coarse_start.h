@@ -2,6 +2,8 @@
 #ifndef debond_optimization_majorise_coarse_start_h
 #define debond_optimization_majorise_coarse_start_h
 
+#include <debond/linear_algebra/views.h>
+#include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
@@ -13,6 +15,59 @@
 
 namespace Debond
 {
+  /**
+   * Where bounds of min 1/2 x'(S + E)x - r'x, x <= 0, may be active: the
+   * problem is solved on subspaces x = P_1 ... P_k x_k, coarsest first, each
+   * minimum, after a projected Gauss-Seidel sweep on the next finer space,
+   * being where that one's active set starts (nested iteration). From there
+   * solve_bound_qp() mostly needs one system, where from afar it needs the more
+   * the more unknowns there are (10 for 639 contact nodes).
+   */
+  class ActiveSetGuess
+  {
+  public:
+    /// Knows nothing.
+    ActiveSetGuess() = default;
+
+    /// @p prolongations as for coarse_start(): finest first, entries >= 0.
+    ActiveSetGuess(
+      const MatrixView                               &S,
+      const std::vector<Eigen::SparseMatrix<double>> &prolongations);
+
+    /// Whether there are no subspaces.
+    bool
+    empty() const
+    {
+      return levels.empty();
+    }
+
+    /// For @p M = S + E.
+    ActiveSet
+    active_set(const Eigen::MatrixXd             &M,
+               const Eigen::SparseMatrix<double> &E,
+               const Eigen::VectorXd             &r) const
+    {
+      return active_set(0, M, E, r);
+    }
+
+  private:
+    struct Level
+    {
+      Eigen::SparseMatrix<double> P; ///< to the next finer one
+      Eigen::MatrixXd             S;
+    };
+
+    ActiveSet
+    active_set(const unsigned int                 level,
+               const Eigen::MatrixXd             &M,
+               const Eigen::SparseMatrix<double> &E,
+               const Eigen::VectorXd             &r) const;
+
+    std::vector<Level> levels;
+  };
+
+
+
   /// Gets the problem of a level and its point.
   using CoarseVisitor =
     std::function<void(const PiecewiseProblem &problem, Eigen::VectorXd &s)>;

@@ -3,6 +3,7 @@
 #define debond_optimization_majorise_condensed_problem_h
 
 #include <debond/optimization/majorise/bound_qp.h>
+#include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
@@ -38,6 +39,14 @@ namespace Debond
                      Eigen::VectorXd          &s,
                      const Eigen::MatrixXd    &free_motions = {},
                      const double              stiffness    = 0.);
+
+    /// From now on a majorant's active set starts from this guess, if it is not
+    /// null, in place of the one before.
+    void
+    guess_by(const ActiveSetGuess *other)
+    {
+      guess = other;
+    }
 
     State
     evaluate() override;
@@ -89,6 +98,7 @@ namespace Debond
     Eigen::MatrixXd             M;
     Eigen::VectorXd             r;
     ActiveSet                   active;
+    const ActiveSetGuess       *guess = nullptr;
   };
 } // namespace Debond
 
