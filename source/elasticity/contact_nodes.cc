@@ -30,9 +30,6 @@ namespace Debond
       /// On one of its faces.
       bool is_tangential_fixed = false;
 
-      /// Of the faces where it is zero, not what supports prescribe on them.
-      std::vector<dealii::Tensor<1, dim>> normals_without_slip;
-
       /// Of its faces, and for each group the node or the held vertex.
       std::vector<unsigned int> groups;
       std::vector<unsigned int> nodes;
@@ -170,6 +167,7 @@ namespace Debond
             clamps.emplace(supported.dof, supported.support);
         for (auto &[index, vertex] : vertices)
           make_nodes(index, vertex);
+        check_slip(conditions);
       }
 
       ContactSpace<dim>
@@ -208,22 +206,55 @@ namespace Debond
               vertex.normals.push_back(faces[f].normal);
               vertex.measures.push_back(faces[f].measure);
               vertex.gaps.push_back(gap_at(supports, faces[f], v));
-              if (!conditions.fixes_tangential(faces[f].id))
-                continue;
-              vertex.is_tangential_fixed = true;
-              if (std::none_of(supports.displacements.begin(),
-                               supports.displacements.end(),
-                               [&](const auto &condition) {
-                                 return condition.boundaries.count(
-                                          faces[f].id) > 0;
-                               }))
-                vertex.normals_without_slip.push_back(faces[f].normal);
+              vertex.is_tangential_fixed =
+                vertex.is_tangential_fixed ||
+                conditions.fixes_tangential(faces[f].id);
             }
       }
 
+      /// Whether it is joined at a vertex to a face with another normal.
+      bool
+      is_curved(const unsigned int f) const
+      {
+        for (unsigned int v = 0; v < faces[f].n_nodes; ++v)
+          {
+            const ContactVertex<dim> &vertex = vertices.at(faces[f].indices[v]);
+            for (unsigned int k = 0; k < vertex.normals.size(); ++k)
+              if (vertex.groups[k] == vertex.groups[places[f][v]] &&
+                  (vertex.normals[k] - faces[f].normal).norm() >
+                    Tolerance::same_normal)
+                return true;
+          }
+        return false;
+      }
+
+      /// Where u_tau = 0 meets another value the displacement jumps, which no
+      /// displacement of finite energy does. What is prescribed on a contact
+      /// boundary takes the place of u_tau = 0; on curved ones the normals of
+      /// the mesh are not exact.
+      void
+      check_slip(const BoundaryConditions &conditions) const
+      {
+        const auto is_moved = [this](const dealii::types::boundary_id id) {
+          return std::any_of(supports.displacements.begin(),
+                             supports.displacements.end(),
+                             [id](const auto &condition) {
+                               return condition.boundaries.count(id) > 0;
+                             });
+        };
+        for (unsigned int f = 0; f < faces.size(); ++f)
+          if (conditions.fixes_tangential(faces[f].id) &&
+              !is_moved(faces[f].id) && !is_curved(f))
+            for (unsigned int v = 0; v < faces[f].n_nodes; ++v)
+              check_prescribed(
+                node_supports.prescribed_at(faces[f].indices[v],
+                                            faces[f].dofs[v],
+                                            faces[f].positions[v]),
+                faces[f].normal);
+      }
+
       /// Throws unless a multiple of @p normal is a displacement that supports
-      /// allow: where u_tau = 0 meets another value, the displacement jumps,
-      /// which no displacement of finite energy does.
+      /// allow.
       void
       check_prescribed(const PrescribedNode<dim>    &prescribed,
                        const dealii::Tensor<1, dim> &normal) const
@@ -266,8 +297,6 @@ namespace Debond
         PrescribedNode<dim> prescribed =
           node_supports.prescribed_at(index, vertex.dofs, vertex.position);
         const auto &rows = prescribed.rows;
-        for (const dealii::Tensor<1, dim> &normal : vertex.normals_without_slip)
-          check_prescribed(prescribed, normal);
         // As far from the foundation as at rest.
         const bool is_clamped =
           node_supports.constraints().is_constrained(vertex.dofs[0]);

@@ -20,7 +20,7 @@ namespace Debond
       supports.displacements,
       Pattern(
         "nothing, or for each component 'free' or an expression, separated by ';'"),
-      "The displacement of the boundary of this name in global coordinates, such as 'free; 0.001'; expressions as in Loads. Where it meets another boundary, in contact and with Tangential displacement = fixed, it is along the normal of that. A load path's factors multiply it",
+      "The displacement of the boundary of this name in global coordinates, such as 'free; 0.001'; expressions as in Loads. Where it meets a flat contact boundary with Tangential displacement = fixed, it is along the normal of that. A load path's factors multiply it",
       "length");
     const Pattern     gap("nothing, or an expression");
     const std::string documentation =

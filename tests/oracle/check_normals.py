@@ -144,6 +144,30 @@ def check_disc():
           and all(3.3 < e / f < 4.7 for e, f in zip(errors, errors[1:])), errors)
 
 
+def check_drawn_in():
+    """A quarter of a disc whose cuts and pressed rim leave u = c (x, y): along the arc's
+    normal, though not along those of the facets at its ends, so that u_tau = 0 on it
+    contradicts nothing. With a rim of one facet it does."""
+    c = -1e-3
+    sigma = 70. * c / (1. - 0.25)
+    for n in (1, 6):
+        arc = [(math.cos(k * math.pi / 2. / n), math.sin(k * math.pi / 2. / n))
+               for k in range(n + 1)]
+        mesh = ([(0., 0.), *arc],
+                [(1, (k, k + 1)) for k in range(1, n + 1)] + [(2, (0, 1)), (3, (n + 1, 0))],
+                [(0, k, k + 1) for k in range(1, n + 1)])
+        found = solve(mesh, *HELD, "Contact law/Law=none", f"Loads/Pressure contact={-sigma}",
+                      "Contact law/Tangential displacement=fixed",
+                      *(f"Boundary conditions/Displacement {side}={c} * x; {c} * y"
+                        for side in ("base", "cut")))
+        if n == 1:
+            check("one facet", found["exit_code"] == 2
+                  and "prescribed otherwise by Tangential" in found["errors"], found["errors"])
+        else:
+            close("J", found["functional"], -sigma * c * n / 2. * math.sin(math.pi / 2. / n),
+                  1e-12)
+
+
 def check_dome(rough, *extra):
     """In other orders and turned."""
     points, faces, cells = dome(random.Random(1), rough)
@@ -205,7 +229,7 @@ QUADRATIC = ["Mesh/Degree=2", "Contact law/Quadrature=gauss 3"]
 MM = "Solver/Method=majorise minimise"
 scenes.together(
     *((f"{sides} sides", check_polygon, sides) for sides in (10, 11, 12, 13)),
-    ("disc", check_disc), ("tips", check_tips),
+    ("disc", check_disc), ("drawn in", check_drawn_in), ("tips", check_tips),
     *((f"dome {rough} {extra}", check_dome, rough, *extra) for rough in (0., 0.02, 0.06)
       for extra in (["Contact law/Tangential displacement=fixed"],
                     ["Contact law/Tangential displacement=fixed", *QUADRATIC])),
