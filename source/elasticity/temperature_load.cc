@@ -4,10 +4,10 @@
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_fe.h>
 
-#include <debond/contact/field_value.h>
+#include <debond/base/field_value.h>
+#include <debond/base/owned_cells.h>
 #include <debond/elasticity/fields.h>
 #include <debond/elasticity/temperature_load.h>
-#include <debond/mesh/owned_cells.h>
 
 #include <numeric>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/utilities.h>
 
+#include <debond/base/field_value.h>
 #include <debond/base/text.h>
-#include <debond/contact/field_value.h>
 #include <debond/input/expression.h>
 #include <debond/input/mesh_parameters.h>
 #include <debond/mesh/body.h>

@@ -7,10 +7,10 @@
 #include <deal.II/numerics/data_out.h>
 
 #include <debond/base/atomic_file.h>
+#include <debond/base/bernstein.h>
+#include <debond/base/owned_cells.h>
 #include <debond/base/processes.h>
 #include <debond/base/ranks.h>
-#include <debond/contact/bernstein.h>
-#include <debond/mesh/owned_cells.h>
 #include <debond/output/vtu.h>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/multithread_info.h>
 
+#include <debond/base/blas_threads.h>
 #include <debond/base/interrupt.h>
 #include <debond/base/processes.h>
 #include <debond/base/ranks.h>
@@ -8,7 +9,6 @@
 #include <debond/base/text.h>
 #include <debond/base/version.h>
 #include <debond/input/parameters.h>
-#include <debond/linear_algebra/blas_threads.h>
 #include <debond/program/command_line.h>
 #include <debond/program/run.h>
 #include <debond/solve/method_choice.h>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/dof_vector.h>
 #include <debond/base/run_watch.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/elasticity/refinement.h>
-#include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/bundle/metric_direction.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The number of threads of OpenBLAS after use_one_blas_thread_by_default().
-#include <debond/linear_algebra/blas_threads.h>
+#include <debond/base/blas_threads.h>
 
 #include <dlfcn.h>
 

@@ -2,10 +2,10 @@
 #ifndef debond_certify_certificate_h
 #define debond_certify_certificate_h
 
+#include <debond/base/dof_vector.h>
 #include <debond/certify/equilibrium_problem.h>
 #include <debond/certify/global_bound.h>
 #include <debond/input/accuracy_parameters.h>
-#include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/solve/scene.h>
 

@@ -4,8 +4,8 @@
 
 #include <deal.II/base/function.h>
 
+#include <debond/base/dof_vector.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/linear_algebra/dof_vector.h>
 
 namespace Debond
 {

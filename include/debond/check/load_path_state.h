@@ -2,9 +2,9 @@
 #ifndef debond_check_load_path_state_h
 #define debond_check_load_path_state_h
 
+#include <debond/base/dof_vector.h>
 #include <debond/check/probes.h>
 #include <debond/check/verification.h>
-#include <debond/linear_algebra/dof_vector.h>
 
 #include <string>
 #include <utility>

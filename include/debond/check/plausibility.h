@@ -2,8 +2,8 @@
 #ifndef debond_check_plausibility_h
 #define debond_check_plausibility_h
 
+#include <debond/base/dof_vector.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/body.h>
 
 #include <string>

@@ -4,10 +4,10 @@
 
 #include <deal.II/base/tensor.h>
 
+#include <debond/base/dof_vector.h>
 #include <debond/base/tolerances.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/linear_algebra/dof_vector.h>
 
 #include <map>
 #include <string>

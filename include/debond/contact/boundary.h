@@ -6,7 +6,7 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/base/types.h>
 
-#include <debond/contact/bernstein.h>
+#include <debond/base/bernstein.h>
 
 #include <array>
 #include <vector>

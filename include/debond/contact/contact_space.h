@@ -4,9 +4,9 @@
 
 #include <deal.II/base/types.h>
 
+#include <debond/base/dof_vector.h>
+#include <debond/base/views.h>
 #include <debond/contact/boundary.h>
-#include <debond/linear_algebra/dof_vector.h>
-#include <debond/linear_algebra/views.h>
 #include <debond/optimization/objective.h>
 
 #include <vector>

@@ -6,7 +6,7 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/dofs/dof_handler.h>
 
-#include <debond/contact/bernstein.h>
+#include <debond/base/bernstein.h>
 #include <debond/elasticity/boundary_conditions.h>
 
 #include <array>

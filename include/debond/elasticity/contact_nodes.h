@@ -2,11 +2,11 @@
 #ifndef debond_elasticity_contact_nodes_h
 #define debond_elasticity_contact_nodes_h
 
+#include <debond/base/dof_vector.h>
 #include <debond/contact/contact_space.h>
 #include <debond/elasticity/boundary_conditions.h>
 #include <debond/elasticity/boundary_face.h>
 #include <debond/elasticity/node_supports.h>
-#include <debond/linear_algebra/dof_vector.h>
 
 #include <vector>
 

@@ -2,10 +2,10 @@
 #ifndef debond_elasticity_contact_unknowns_h
 #define debond_elasticity_contact_unknowns_h
 
+#include <debond/base/views.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/linear_algebra/distributed_vector.h>
 #include <debond/linear_algebra/truncated_multigrid.h>
-#include <debond/linear_algebra/views.h>
 #include <debond/optimization/majorise/bound_qp.h>
 
 #include <Eigen/SparseCore>

@@ -2,10 +2,10 @@
 #ifndef debond_elasticity_correction_solver_h
 #define debond_elasticity_correction_solver_h
 
+#include <debond/base/dof_vector.h>
 #include <debond/elasticity/contact_unknowns.h>
 #include <debond/linear_algebra/cholesky.h>
 #include <debond/linear_algebra/condensation.h>
-#include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/majorise/bound_qp.h>
 
 #include <Eigen/SparseCore>

@@ -7,11 +7,11 @@
 #include <deal.II/lac/sparsity_pattern.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <debond/base/dof_vector.h>
 #include <debond/elasticity/fields.h>
 #include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/material.h>
 #include <debond/elasticity/unknowns.h>
-#include <debond/linear_algebra/dof_vector.h>
 
 #include <memory>
 #include <vector>

@@ -7,9 +7,9 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <debond/base/dof_vector.h>
 #include <debond/elasticity/material.h>
 #include <debond/elasticity/unknowns.h>
-#include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/by_region.h>
 
 #include <cmath>

@@ -8,7 +8,7 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/dofs/dof_handler.h>
 
-#include <debond/linear_algebra/dof_vector.h>
+#include <debond/base/dof_vector.h>
 
 #include <map>
 #include <memory>

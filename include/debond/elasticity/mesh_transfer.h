@@ -2,8 +2,8 @@
 #ifndef debond_elasticity_mesh_transfer_h
 #define debond_elasticity_mesh_transfer_h
 
+#include <debond/base/dof_vector.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/body.h>
 
 #include <vector>

@@ -6,11 +6,11 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/lac/affine_constraints.h>
 
+#include <debond/base/dof_vector.h>
 #include <debond/elasticity/boundary_conditions.h>
 #include <debond/elasticity/boundary_face.h>
 #include <debond/elasticity/edge_coefficients.h>
 #include <debond/elasticity/rigid_motions.h>
-#include <debond/linear_algebra/dof_vector.h>
 
 #include <array>
 #include <map>

@@ -2,9 +2,9 @@
 #ifndef debond_elasticity_refinement_h
 #define debond_elasticity_refinement_h
 
+#include <debond/base/dof_vector.h>
 #include <debond/elasticity/correction_solver.h>
 #include <debond/elasticity/elastic_problem.h>
-#include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
 #include <functional>

@@ -4,9 +4,9 @@
 
 #include <deal.II/dofs/dof_handler.h>
 
+#include <debond/base/dof_vector.h>
 #include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/material.h>
-#include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/by_region.h>
 
 #include <stdexcept>

@@ -10,13 +10,13 @@
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/full_matrix.h>
 
+#include <debond/base/dof_vector.h>
 #include <debond/contact/contact_space.h>
 #include <debond/elasticity/boundary_conditions.h>
 #include <debond/elasticity/edge_coefficients.h>
 #include <debond/elasticity/load_factors.h>
 #include <debond/elasticity/node_supports.h>
 #include <debond/elasticity/rigid_motions.h>
-#include <debond/linear_algebra/dof_vector.h>
 
 #include <string>
 #include <vector>

@@ -5,7 +5,7 @@
 #include <deal.II/base/index_set.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
-#include <debond/linear_algebra/dof_vector.h>
+#include <debond/base/dof_vector.h>
 
 namespace Debond
 {

@@ -4,8 +4,8 @@
 
 #include <deal.II/lac/full_matrix.h>
 
-#include <debond/linear_algebra/dof_vector.h>
-#include <debond/linear_algebra/views.h>
+#include <debond/base/dof_vector.h>
+#include <debond/base/views.h>
 
 #include <Eigen/Core>
 

@@ -2,7 +2,7 @@
 #ifndef debond_optimization_objective_h
 #define debond_optimization_objective_h
 
-#include <debond/linear_algebra/dof_vector.h>
+#include <debond/base/dof_vector.h>
 
 #include <Eigen/Core>
 

@@ -2,7 +2,7 @@
 #ifndef debond_optimization_piecewise_quadratic_h
 #define debond_optimization_piecewise_quadratic_h
 
-#include <debond/linear_algebra/views.h>
+#include <debond/base/views.h>
 
 #include <Eigen/SparseCore>
 

@@ -2,7 +2,7 @@
 #ifndef debond_optimization_polar_cone_h
 #define debond_optimization_polar_cone_h
 
-#include <debond/linear_algebra/views.h>
+#include <debond/base/views.h>
 
 #include <Eigen/Core>
 

@@ -3,7 +3,7 @@
 #define debond_optimization_stationary_path_h
 
 #include <debond/base/tolerances.h>
-#include <debond/linear_algebra/views.h>
+#include <debond/base/views.h>
 #include <debond/optimization/branch_minimum.h>
 
 #include <Eigen/Cholesky>

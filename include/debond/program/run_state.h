@@ -2,7 +2,7 @@
 #ifndef debond_program_run_state_h
 #define debond_program_run_state_h
 
-#include <debond/linear_algebra/dof_vector.h>
+#include <debond/base/dof_vector.h>
 #include <debond/solve/adaptive_loop.h>
 #include <debond/solve/load_path.h>
 

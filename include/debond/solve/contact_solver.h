@@ -2,12 +2,12 @@
 #ifndef debond_solve_contact_solver_h
 #define debond_solve_contact_solver_h
 
+#include <debond/base/dof_vector.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/load_factors.h>
 #include <debond/elasticity/refinement.h>
 #include <debond/input/solver_parameters.h>
 #include <debond/linear_algebra/condensation.h>
-#include <debond/linear_algebra/dof_vector.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 
 #include <functional>

@@ -2,8 +2,8 @@
 #ifndef debond_solve_displacement_h
 #define debond_solve_displacement_h
 
+#include <debond/base/dof_vector.h>
 #include <debond/elasticity/unknowns.h>
-#include <debond/linear_algebra/dof_vector.h>
 
 #include <string>
 

@@ -2,11 +2,11 @@
 #ifndef debond_solve_scene_h
 #define debond_solve_scene_h
 
+#include <debond/base/dof_vector.h>
 #include <debond/check/probes.h>
 #include <debond/contact/functional.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/input/problem_parameters.h>
-#include <debond/linear_algebra/dof_vector.h>
 #include <debond/mesh/body.h>
 #include <debond/mesh/by_region.h>
 

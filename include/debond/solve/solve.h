@@ -2,8 +2,8 @@
 #ifndef debond_solve_solve_h
 #define debond_solve_solve_h
 
+#include <debond/base/dof_vector.h>
 #include <debond/input/solver_parameters.h>
-#include <debond/linear_algebra/dof_vector.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve_result.h>

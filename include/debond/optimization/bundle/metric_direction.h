@@ -2,8 +2,8 @@
 #ifndef debond_optimization_bundle_metric_direction_h
 #define debond_optimization_bundle_metric_direction_h
 
-#include <debond/linear_algebra/dof_vector.h>
-#include <debond/linear_algebra/views.h>
+#include <debond/base/dof_vector.h>
+#include <debond/base/views.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/objective.h>
 #include <debond/optimization/piecewise_quadratic.h>

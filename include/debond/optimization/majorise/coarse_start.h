@@ -2,7 +2,7 @@
 #ifndef debond_optimization_majorise_coarse_start_h
 #define debond_optimization_majorise_coarse_start_h
 
-#include <debond/linear_algebra/views.h>
+#include <debond/base/views.h>
 #include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/linear_algebra/blas_threads.h>
+#include <debond/base/blas_threads.h>
 
 #include <dlfcn.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_linear_algebra_blas_threads_h
-#define debond_linear_algebra_blas_threads_h
+#ifndef debond_base_blas_threads_h
+#define debond_base_blas_threads_h
 
 namespace Debond
 {

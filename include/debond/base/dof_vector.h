@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_linear_algebra_dof_vector_h
-#define debond_linear_algebra_dof_vector_h
+#ifndef debond_base_dof_vector_h
+#define debond_base_dof_vector_h
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/vector.h>
