@@ -70,7 +70,6 @@ namespace Debond
     , elastic_body(std::move(body))
     , body_materials(given.materials.everywhere)
   {
-    const Stage   stage("assembly");
     dealii::Timer timer;
     std::string   entry    = "Mesh/Lengths"; // that errors belong to
     const auto    describe = [&](const std::invalid_argument &error) {
@@ -134,6 +133,7 @@ namespace Debond
     body_notes                      = names.notes;
     seconds_for_mesh                = timer.wall_time();
 
+    const Stage stage("assembly");
     entry               = "Boundary conditions/Clamped boundaries";
     boundary_conditions = make_conditions(given, boundaries);
     body_supports       = make_supports<dim>(given, boundary_conditions);
