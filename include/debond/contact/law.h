@@ -153,7 +153,7 @@ namespace Debond
     /// Binds its own entries to variables of the maker.
     LawMaker (*bind)(ParameterTable &table);
 
-    std::string entries = {}; ///< these, as without_effect() takes them
+    std::string entries = {}; ///< these: paths, or a section, "A/B/"
   };
 
   /// The names of all kinds, for messages.
