@@ -42,14 +42,10 @@ namespace Debond
   joined_file(const std::string &file_name, const MPI_Comm ranks);
 
   /**
-   * Writes the contact boundary as VTU: displacement, u_nu, gap (-u_nu),
-   * normal_force_density (nodal force over nodal measure, pressure positive),
-   * tangential_force_density (of the foundation on the body), law_violation.
-   * A face is cut into the shares of its vertices, which are the cells of the
-   * file, with bond_state as cell data: 0 contact, 1 bonded, 2 kink, 3 broken,
-   * 4 free (no adhesion), 5 held (a vertex that is clamped as well, where
-   * forces and violation are NaN), from 6 on the other branches of the law;
-   * and @p more of the faces.
+   * Writes the contact boundary as VTU, with the fields that
+   * doc/reference/output.md has. A face is cut into the shares of its vertices,
+   * which are the cells of the file, with bond_state and @p more of the faces
+   * as cell data.
    */
   template <int dim>
   void
