@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/memory.h>
+#include <debond/base/processes.h>
 #include <debond/base/run_watch.h>
 #include <debond/base/tolerances.h>
 #include <debond/contact/boundary_coarsening.h>
@@ -169,8 +170,9 @@ namespace Debond
       /// Processor time: what else the machine does changes no result.
       const std::clock_t          first    = std::clock();
       const std::function<bool()> has_time = [this]() {
-        return may_go_on() && static_cast<double>(std::clock() - first) <=
-                                parameters.search_seconds * CLOCKS_PER_SEC;
+        const double seconds =
+          static_cast<double>(std::clock() - first) / CLOCKS_PER_SEC;
+        return may_go_on() && !any_rank(seconds > parameters.search_seconds);
       };
 
       /// For starts on many nodes, else empty.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A search that has no time, and search and proof of a law of another shape.
 
+#include <debond/base/processes.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/input/bad_input.h>
 #include <debond/optimization/majorise/condensed_problem.h>
@@ -8,6 +9,7 @@
 
 #include <iostream>
 #include <limits>
+#include <utility>
 
 #include "../check.h"
 #include "../solved.h"
@@ -52,15 +54,17 @@ namespace
             ++refused;
           }
       }
-    std::cout << "a law of another shape is refused: "
-              << (refused == 2 ? "yes" : "NO")
-              << ", and by default noted: " << (noted == 1 ? "yes" : "NO")
-              << '\n';
+    if (is_first_rank())
+      std::cout << "a law of another shape is refused: "
+                << (refused == 2 ? "yes" : "NO")
+                << ", and by default noted: " << (noted == 1 ? "yes" : "NO")
+                << '\n';
   }
 
 
 
-  /// Without time a search says that it has ended, and claims nothing.
+  /// Without time a search says that it has ended, and claims nothing: on
+  /// several ranks on all of them if one has none.
   void
   test_limit_of_time()
   {
@@ -70,10 +74,12 @@ namespace
     const Scene<2>     scene(parameters);
     const Condensation condensed =
       condense_to_contact(scene.problem(), scene.adhesion());
-    for (const double seconds : {0., std::numeric_limits<double>::infinity()})
+    constexpr double any_time = std::numeric_limits<double>::infinity();
+    for (const auto &[of_first, of_others] :
+         {std::pair(0., 0.), {any_time, any_time}, {any_time, 0.}})
       {
         SolverParameters solver = parameters.solver;
-        solver.search_seconds   = seconds;
+        solver.search_seconds   = is_first_rank() ? of_first : of_others;
         // The intact state, which is a minimum far above the least one.
         Eigen::VectorXd  s = Eigen::VectorXd::Zero(condensed.load().size());
         CondensedProblem problem(condensed.schur_complement(),
@@ -84,10 +90,11 @@ namespace
         const Eigen::VectorXd start  = s;
         const WhichMinimum    result = find_better_minimum(
           solver, scene.adhesion(), condensed, []() { return true; }, s);
-        std::cout << (seconds > 0. ? "with" : "without")
-                  << " time: " << to_string(result.kind) << ", "
-                  << result.notes.size() << " notes"
-                  << (s == start ? ", nothing lower" : "") << '\n';
+        if (is_first_rank())
+          std::cout << "limits of " << of_first << " and " << of_others
+                    << " s: " << to_string(result.kind) << ", "
+                    << result.notes.size() << " notes"
+                    << (s == start ? ", nothing lower" : "") << '\n';
       }
   }
 } // namespace
@@ -97,6 +104,9 @@ namespace
 int
 main()
 {
+  if (n_started_ranks() > 1)
+    start_mpi();
   test_other_law();
   test_limit_of_time();
+  end_mpi();
 }
