@@ -129,10 +129,13 @@ namespace Debond
     ExitCode
     run_or_validate(const Parameters &parameters, const SceneOptions &options)
     {
+      // A launcher of ranks gives them a terminal even if it writes to a file.
+      const bool is_on_terminal =
+        n_started_ranks() == 1 && isatty(STDOUT_FILENO) == 1;
       if (!options.validate)
         return run<dim>(parameters,
                         std::cout,
-                        {isatty(STDOUT_FILENO) == 1, options.restart});
+                        {is_on_terminal, options.restart});
 
       MethodChoice     choice = choose_method(parameters, parameters.solver);
       const Scene<dim> scene(parameters,
