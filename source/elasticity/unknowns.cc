@@ -161,17 +161,16 @@ namespace Debond
     const dealii::IndexSet &own = dofs.locally_owned_dofs();
     for (const auto &cell : owned_cells(dofs))
       {
-        // As MappingFE does in many times the time: the mapping is affine.
+        // The mapping is affine, and MappingFE would evaluate all its shape
+        // functions at each point.
         const dealii::Point<dim> origin = cell->vertex(0);
-        dealii::Tensor<2, dim>   edges; // as columns
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int c = 0; c < dim; ++c)
-            edges[c][d] = cell->vertex(d + 1)[c] - origin[c];
         cell->get_dof_indices(cell_dofs);
         for (unsigned int i = 0; i < cell_dofs.size(); ++i)
           if (own.is_element(cell_dofs[i]))
             {
-              const dealii::Point<dim> point = origin + edges * points[i];
+              dealii::Point<dim> point = origin;
+              for (unsigned int d = 0; d < dim; ++d)
+                point += points[i][d] * (cell->vertex(d + 1) - origin);
               std::copy(point.begin_raw(),
                         point.end_raw(),
                         coordinates.begin() + std::size_t(dim) * cell_dofs[i]);

@@ -195,8 +195,8 @@ class Result:
         # s comes from Cartesian components, which are rounded.
         lengths = max(lengths, 8 * EPSILON * size)
         violation = law_violation(body, s, self.force, lengths, self.of_force)
-        # Where the bundle method stops a bond may be as near to its threshold as lengths.
-        tight = violation if self.is_rough else law_violation(
+        # Where the bundle method stops a bond may be within lengths of its threshold.
+        tight = ZERO if self.is_rough else law_violation(
             body, s, self.force, EXACT("1e-10") * size, self.of_force)
         # In Cartesian components beside gaps, which are rounded.
         of_gaps = 4 * EPSILON * max(map(abs, body.G))
@@ -205,7 +205,7 @@ class Result:
         for name, value, limit in (
                 ("equilibrium", inside / largest, PROMISE if self.is_rough else BETTER),
                 ("law", violation / self.scale, PROMISE),
-                ("tight law", tight / largest, PROMISE if self.is_rough else BETTER),
+                ("tight law", tight / largest, BETTER),
                 ("penetration", max(s) / size, EXACT("1e-12")),
                 ("supports", fixed / size, EXACT("1e-10"))):
             require(value <= limit, f"wrong success: {name}",
