@@ -462,6 +462,54 @@ namespace
 
 
 
+  /// A stiff strip that hangs over the foundation, farthest away from it at its
+  /// ends, on bonds that reach there only where they pull it together. The
+  /// search has to close some bonds at once; a move of edges by one node alone
+  /// misses 10 of these.
+  void
+  test_bonds_over_gap()
+  {
+    std::mt19937_64                        engine(3);
+    std::uniform_real_distribution<double> uniform(0., 1.);
+    constexpr double                       M      = 0.5;
+    unsigned int                           missed = 0;
+    for (unsigned int k = 0; k < 400; ++k)
+      {
+        const unsigned int n        = k < 200 ? 6 : 10;
+        Eigen::MatrixXd    S        = 0.02 * Eigen::MatrixXd::Identity(n, n);
+        const double       coupling = 5. * std::pow(10., uniform(engine));
+        for (unsigned int i = 1; i < n; ++i)
+          S.block<2, 2>(i - 1, i - 1) +=
+            coupling * (Eigen::Matrix2d() << 1., -1., -1., 1.).finished();
+        const double middle    = uniform(engine) * (n - 1);
+        const double curvature = uniform(engine) * 0.3;
+        const double height    = 1. + 2. * uniform(engine);
+        Vector       hanging(n), stiffness(n);
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            hanging(i)   = -M * (height + curvature * std::pow(i - middle, 2));
+            stiffness(i) = std::pow(10., 2. * uniform(engine) - 1.5);
+          }
+        const Problem          p = {S, S * hanging, bonds_of(stiffness, M)};
+        Vector                 s = hanging, minimiser;
+        const MajoriseMinimise method({});
+        CondensedProblem       problem(p.S, p.g, p.bonds, s);
+        method.minimize(problem);
+        BranchSearchParameters quick;
+        quick.maximum_shift = 1;
+        quick.flips         = false;
+        const double found =
+          search_branches({{p.S, p.g, p.bonds}, p.bonds, chain(n), method},
+                          quick,
+                          s)
+            .functional;
+        missed += found > enumerated_minimum(p, minimiser) + 1e-9;
+      }
+    check("bonds over a gap: the least state of 400 found", missed == 0);
+  }
+
+
+
   /// Bonds so stiff and short that in a double nothing else is left of a
   /// diagonal entry with one: as the energy they take to break is moderate,
   /// their state matters.
@@ -516,5 +564,6 @@ main(int argc, char *[])
   test_threads(engine);
   test_limits(engine);
   test_starts();
+  test_bonds_over_gap();
   test_brittle(engine);
 }

@@ -185,6 +185,10 @@ namespace Debond
     /// tolerance was not reached: rounding leaves 1e-8 on a body of 100 x 1.
     constexpr double trial = 1e-6;
 
+    /// Majorants of trials are minimised roughly down to this: below, the
+    /// majorant is nearly the last one.
+    constexpr double rough_majorant = 1e-9;
+
     /// Intervals, their ends being roots and inverses, are taken outwards by
     /// this: rounding must not leave out a point.
     constexpr double outwards = 1e-6;

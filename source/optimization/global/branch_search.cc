@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace Debond
 {
@@ -12,6 +14,21 @@ namespace Debond
   {
     /// States that are minimised, at most.
     constexpr unsigned int maximum_trials = 100000;
+
+    /// Of all nodes, in states on the ways of trials that are remembered.
+    constexpr std::size_t most_branches_on_ways = 20000000;
+
+    /// What a node of branch and bound takes, to the cube of the unknowns.
+    constexpr double operations_of_node = 10.;
+
+
+
+    enum class MoveKind
+    {
+      start, ///< goes on from wherever it leads to
+      patch,
+      stretch
+    };
 
 
 
@@ -32,6 +49,8 @@ namespace Debond
         : problem(problem)
         , parameters(parameters)
         , s(s)
+        , is_separable(
+            is_diagonal(problem.phi.curvature(Eigen::VectorXd::Zero(s.size()))))
       {
         const auto state  = condensed(problem, s).evaluate();
         result.functional = state.functional;
@@ -57,7 +76,7 @@ namespace Debond
           {
             Eigen::VectorXd point = given;
             if (parameters.starts && may_go_on() &&
-                attempt(start, /*is_start=*/true, point))
+                attempt(start, MoveKind::start, point))
               descend(point);
           }
         functional = given_functional;
@@ -69,11 +88,21 @@ namespace Debond
       const SearchProblem          &problem;
       const BranchSearchParameters &parameters;
       Eigen::VectorXd              &s;
+      const bool                    is_separable; ///< each node has its own law
       BranchSearchResult            result;
       double                        functional = 0.; ///< where moves start
       double                        rounding;
       unsigned int                  n_pieces = 0;
       std::set<BranchState>         tried;
+
+      /// A minimum that a trial has ended in.
+      struct End
+      {
+        double          functional;
+        Eigen::VectorXd s;
+      };
+      std::vector<End>                   ends;
+      std::map<BranchState, std::size_t> end_of_way; ///< by states on the way
 
       bool
       may_go_on()
@@ -87,31 +116,70 @@ namespace Debond
       void
       descend(Eigen::VectorXd point)
       {
-        bool fell = true;
-        while (fell)
+        while (move_patches(point) || move_by_stretch(point))
+          ;
+      }
+
+      /// The first move of a patch that pays; its edge then goes on, by twice
+      /// as many layers each time.
+      bool
+      move_patches(Eigen::VectorXd &point)
+      {
+        for (BranchMove move : moves_from(problem.lumped.state(point),
+                                          problem.neighbours,
+                                          n_pieces,
+                                          parameters.maximum_shift,
+                                          parameters.flips))
           {
-            fell = false;
-            for (const BranchMove &move :
-                 moves_from(problem.lumped.state(point),
-                            problem.neighbours,
-                            n_pieces,
-                            parameters.maximum_shift,
-                            parameters.flips))
+            if (!may_go_on())
+              return false;
+            if (!attempt(move, MoveKind::patch, point))
+              continue;
+            for (unsigned int n = 2; may_go_on(); n *= 2)
               {
-                if (!may_go_on())
-                  return;
-                fell = attempt(move, /*is_start=*/false, point);
-                if (fell)
+                move = beyond(move,
+                              problem.lumped.state(point),
+                              problem.neighbours,
+                              n);
+                if ((move.down.empty() && move.up.empty()) ||
+                    !attempt(move, MoveKind::patch, point))
                   break;
               }
+            return true;
           }
+        return false;
+      }
+
+      bool
+      move_by_stretch(Eigen::VectorXd &point)
+      {
+        if (parameters.maximum_shift == 0)
+          return false;
+        for (const BranchMove &move :
+             moves_by_stretch(problem.lumped.state(point), point, n_pieces))
+          if (!may_go_on())
+            return false;
+          else if (attempt(move, MoveKind::stretch, point))
+            return true;
+        return false;
+      }
+
+      static bool
+      is_diagonal(const Eigen::SparseMatrix<double> &E)
+      {
+        for (int j = 0; j < E.outerSize(); ++j)
+          for (Eigen::SparseMatrix<double>::InnerIterator entry(E, j); entry;
+               ++entry)
+            if (entry.row() != j)
+              return false;
+        return true;
       }
 
       /// Minimises from the changed state. Returns whether the functional is
       /// below that of @p point, which then moves.
       bool
       attempt(const BranchMove &move,
-              const bool        is_start,
+              const MoveKind    kind,
               Eigen::VectorXd  &point)
       {
         const std::vector<BranchMinimum> &f = problem.lumped.f;
@@ -122,20 +190,18 @@ namespace Debond
           if (move.piece < f[i].size())
             next(i) = std::min(next(i), f[i].point_inside(move.piece));
         for (const unsigned int i : move.up)
-          if (f[i].index(next(i)) >= move.piece)
-            next(i) = f[i].point_inside(move.piece - 1);
+          if (move.piece < f[i].size())
+            next(i) = std::max(next(i), f[i].point_inside(move.piece - 1));
         const BranchState start = problem.lumped.state(next);
-        if (!tried.insert(start).second)
+        // Where points between the nodes have laws, a node's state says little
+        // of them, and moves by stretch are tried from each minimum.
+        if (!tried.insert(start).second &&
+            (is_separable || kind != MoveKind::stretch))
           return false;
 
         ++result.trials;
-        CondensedProblem trial = condensed(problem, next);
-        if (is_start)
-          trial.guess_by(problem.guess);
         const MajoriseMinimiseResult minimum =
-          minimise_trial(problem.method, trial, [&](const auto &) {
-            return problem.may_go_on();
-          });
+          minimise(start, kind == MoveKind::start, next);
         if (minimum.status != SolverStatus::success)
           {
             result.complete =
@@ -146,9 +212,10 @@ namespace Debond
         // Starts go on from wherever they lead to, but not from a state that
         // was tried, unless it is lower: nodes do not tell on which branches
         // the quadrature points between them are.
-        const BranchState end    = problem.lumped.state(next);
-        const bool        is_new = end == start || tried.insert(end).second;
-        const double known_best  = is_start ? result.functional : functional;
+        const BranchState end      = problem.lumped.state(next);
+        const bool        is_new   = end == start || tried.insert(end).second;
+        const bool        is_start = kind == MoveKind::start;
+        const double known_best    = is_start ? result.functional : functional;
         if (minimum.functional >= known_best - rounding &&
             !(is_start && is_new))
           return false;
@@ -161,6 +228,51 @@ namespace Debond
             s                 = point;
           }
         return true;
+      }
+
+      /// From @p next, which is in the state @p start and becomes the minimum.
+      MajoriseMinimiseResult
+      minimise(const BranchState &start,
+               const bool         is_start,
+               Eigen::VectorXd   &next)
+      {
+        CondensedProblem trial = condensed(problem, next);
+        trial.minimise_roughly();
+        if (is_start)
+          trial.guess_by(problem.guess);
+        std::vector<BranchState> way = {start};
+        std::size_t              end = ends.size();
+        MajoriseMinimiseResult   minimum =
+          minimise_trial(problem.method, trial, [&](const auto &iteration) {
+            if (problem.operations != nullptr)
+              *problem.operations += iteration.operations;
+            if (is_separable)
+              {
+                way.push_back(problem.lumped.state(next));
+                const auto known = end_of_way.find(way.back());
+                if (known != end_of_way.end())
+                  {
+                    end = known->second;
+                    return false;
+                  }
+              }
+            return problem.may_go_on();
+          });
+        if (end < ends.size())
+          {
+            minimum.status     = SolverStatus::success;
+            minimum.functional = ends[end].functional;
+            next               = ends[end].s;
+          }
+        if (minimum.status == SolverStatus::success && is_separable &&
+            end_of_way.size() * next.size() < most_branches_on_ways)
+          {
+            if (end == ends.size())
+              ends.push_back({minimum.functional, next});
+            for (BranchState &state : way)
+              end_of_way.emplace(std::move(state), end);
+          }
+        return minimum;
       }
     };
   } // namespace
@@ -285,6 +397,9 @@ namespace Debond
           s);
         if (is_separable)
           result.proof = proof;
+        if (problem.operations != nullptr)
+          *problem.operations +=
+            operations_of_node * proof.nodes * std::pow(double(s.size()), 3.);
         Eigen::VectorXd  other         = proof.s;
         CondensedProblem other_problem = condensed(problem, other);
         if (!is_separable &&

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 
 namespace Debond
 {
@@ -93,6 +94,21 @@ namespace Debond
         }
       return result;
     }
+
+
+
+    /// @p others and the first 1, 2, 4, ... of the nodes.
+    std::vector<NodeSet>
+    growing(const std::vector<unsigned int> &nodes, const NodeSet &others)
+    {
+      std::vector<NodeSet> result;
+      for (std::size_t n = 1; n < nodes.size(); n *= 2)
+        {
+          result.push_back(others);
+          result.back().insert(nodes.begin(), nodes.begin() + n);
+        }
+      return result;
+    }
   } // namespace
 
 
@@ -135,6 +151,59 @@ namespace Debond
           moves.push_back({piece, middle(patch, graph), {}});
         for (const NodeSet &patch : lower)
           moves.push_back({piece, {}, middle(patch, graph)});
+      }
+    return moves;
+  }
+
+
+
+  BranchMove
+  beyond(const BranchMove     &move,
+         const BranchState    &state,
+         const NeighbourGraph &graph,
+         const unsigned int    n)
+  {
+    const bool     is_down = !move.down.empty();
+    const NodeSet &nodes   = is_down ? move.down : move.up;
+    NodeSet        others;
+    for (unsigned int i = 0; i < state.size(); ++i)
+      if ((state[i] < move.piece) == is_down)
+        others.insert(others.end(), i);
+    const std::vector<NodeSet> next =
+      layers(common(neighbours_of(nodes, graph), others), others, n, graph);
+    BranchMove result = {move.piece, {}, {}};
+    if (!next.empty())
+      (is_down ? result.down : result.up) = next.back();
+    return result;
+  }
+
+
+
+  std::vector<BranchMove>
+  moves_by_stretch(const BranchState &state,
+                   const VectorView  &s,
+                   const unsigned int n_pieces)
+  {
+    std::vector<unsigned int> by_stretch(state.size());
+    std::iota(by_stretch.begin(), by_stretch.end(), 0);
+    std::stable_sort(by_stretch.begin(),
+                     by_stretch.end(),
+                     [&](const unsigned int i, const unsigned int j) {
+                       return s(i) < s(j);
+                     });
+    std::vector<BranchMove> moves;
+    for (unsigned int piece = 1; piece < n_pieces; ++piece)
+      {
+        std::vector<unsigned int> below, above;
+        for (const unsigned int i : by_stretch)
+          (state[i] >= piece ? below : above).push_back(i);
+        const NodeSet lower(below.begin(), below.end());
+        const NodeSet upper(above.begin(), above.end());
+        std::reverse(below.begin(), below.end());
+        for (const NodeSet &nodes : growing(below, upper))
+          moves.push_back({piece, {}, nodes});
+        for (const NodeSet &nodes : growing(above, lower))
+          moves.push_back({piece, nodes, {}});
       }
     return moves;
   }

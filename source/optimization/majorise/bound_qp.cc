@@ -28,6 +28,10 @@ namespace Debond
 
     constexpr unsigned int largest_number_of_refinements = 5;
 
+    /// The time of an operation in extended precision, and of all that is done
+    /// with an entry of M beside the factorisation, in operations of that.
+    constexpr double extended_operation = 10., operations_per_entry = 30.;
+
     /// Of a step on the projected path.
     constexpr unsigned int maximum_halvings_of_step = 30;
 
@@ -56,8 +60,9 @@ namespace Debond
 
     /// Solves M_ff x_f = r_f on the given indices, where x is zero before, for
     /// the other entries of x given; refined by residuals in extended precision
-    /// if @p refined. Throws NotPositiveDefinite if M_ff is not.
-    void
+    /// if @p refined. Returns the number of operations. Throws
+    /// NotPositiveDefinite if M_ff is not.
+    double
     solve_on(const std::vector<unsigned int>         &free,
              const Eigen::Ref<const Eigen::MatrixXd> &M,
              const Eigen::VectorXd                   &r,
@@ -65,7 +70,7 @@ namespace Debond
              Eigen::VectorXd                         &x)
     {
       if (free.empty())
-        return;
+        return 0.;
       Eigen::MatrixXd M_free(free.size(), free.size());
       // The lower triangle is read.
       for (unsigned int l = 0; l < free.size(); ++l)
@@ -84,15 +89,19 @@ namespace Debond
           x(free[k]) += x_free(k);
       };
       correct(x.isZero(0.) ? r : Eigen::VectorXd(r - M * x));
+      const double n_free     = static_cast<double>(free.size());
+      double       operations = n_free * n_free * n_free / 3.;
       for (unsigned int k = 0; refined && k < largest_number_of_refinements;
            ++k)
         {
           correct(residual(M, r, x));
+          operations += extended_operation * n_free * double(r.size());
           if (x_free.lpNorm<Eigen::Infinity>() <=
               std::numeric_limits<double>::epsilon() *
                 x.lpNorm<Eigen::Infinity>())
             break;
         }
+      return operations;
     }
 
 
@@ -104,11 +113,13 @@ namespace Debond
       BoundQP(const Eigen::Ref<const Eigen::MatrixXd> &M,
               const Eigen::VectorXd                   &r,
               const Eigen::VectorXd                   &b,
-              ActiveSet                               &active)
+              ActiveSet                               &active,
+              const double                             tolerance)
         : M(M)
         , r(r)
         , b(b)
         , active(active)
+        , tolerance(tolerance)
         , n(static_cast<unsigned int>(r.size()))
       {}
 
@@ -140,7 +151,8 @@ namespace Debond
         Eigen::VectorXd x       = b;
         for (const unsigned int i : free)
           x(i) = 0.;
-        solve_on(free, M, r, refined, x);
+        result.operations += solve_on(free, M, r, refined, x) +
+                             operations_per_entry * double(n) * double(n);
         result.mu = refined ? residual(M, r, x) : r - M * x;
         for (const unsigned int i : free)
           result.mu(i) = 0.;
@@ -178,6 +190,18 @@ namespace Debond
           result.status = status;
       }
 
+      /// Whether the projection of x onto x <= b meets the optimality
+      /// conditions to the tolerance.
+      bool
+      is_near(const Eigen::VectorXd &x) const
+      {
+        const Eigen::VectorXd projected = x.cwiseMin(b);
+        const Eigen::VectorXd force     = r - M * projected;
+        return (projected.array() < b.array())
+                 .select(force.cwiseAbs(), -force)
+                 .maxCoeff() <= tolerance * r.lpNorm<Eigen::Infinity>();
+      }
+
       /// All wrong indices at once. Returns false if that does not lead to the
       /// minimum.
       bool
@@ -211,6 +235,11 @@ namespace Debond
               return false;
             for (const unsigned int i : wrong)
               active[i] = active[i] == 0;
+            if (tolerance > 0. && is_near(result.x))
+              {
+                end(SolverStatus::success);
+                return true;
+              }
           }
         return false;
       }
@@ -273,6 +302,7 @@ namespace Debond
       const Eigen::VectorXd                   &r;
       const Eigen::VectorXd                   &b;
       ActiveSet                               &active;
+      const double                             tolerance;
       const unsigned int                       n;
       BoundQPResult                            result;
     };
@@ -309,8 +339,9 @@ namespace Debond
   solve_bound_qp(const Eigen::Ref<const Eigen::MatrixXd> &M,
                  const Eigen::VectorXd                   &r,
                  const Eigen::VectorXd                   &b,
-                 ActiveSet                               &active)
+                 ActiveSet                               &active,
+                 const double                             tolerance)
   {
-    return BoundQP(M, r, b, active).run();
+    return BoundQP(M, r, b, active, tolerance).run();
   }
 } // namespace Debond

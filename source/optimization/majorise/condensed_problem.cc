@@ -156,7 +156,7 @@ namespace Debond
 
 
   MajorantProblem::Minimisation
-  CondensedProblem::minimise(const double)
+  CondensedProblem::minimise(const double tolerance)
   {
     if (N.cols() > 0)
       {
@@ -168,10 +168,16 @@ namespace Debond
     if (guess != nullptr && !guess->empty())
       active = guess->active_set(M, E, r);
     const BoundQPResult qp =
-      solve_bound_qp(M, r, Eigen::VectorXd::Zero(s.size()), active);
+      solve_bound_qp(M,
+                     r,
+                     Eigen::VectorXd::Zero(s.size()),
+                     active,
+                     is_trial && tolerance >= Tolerance::rough_majorant ?
+                       tolerance :
+                       0.);
     if (qp.status != SolverStatus::interrupted)
       s = qp.x;
-    return {qp.status, qp.steps, 0};
+    return {qp.status, qp.steps, 0, qp.operations};
   }
 
 

@@ -81,6 +81,7 @@ namespace Debond
               problem.minimise(inner_tolerance);
             iteration.active_set_steps += inner.active_set_steps;
             iteration.linear_iterations += inner.linear_iterations;
+            iteration.operations += inner.operations;
             if (inner.status == SolverStatus::interrupted)
               {
                 result.status  = SolverStatus::interrupted;

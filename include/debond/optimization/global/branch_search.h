@@ -25,6 +25,10 @@ namespace Debond
 
     /// For starts, which are far from the point that they are made from.
     const ActiveSetGuess *guess = nullptr;
+
+    /// Where search and proof add up what they have done
+    /// (BoundQPResult::operations), if it is not null.
+    double *operations = nullptr;
   };
 
 
@@ -34,7 +38,8 @@ namespace Debond
     /// Start from rest and from all unknowns on each further branch as well.
     bool starts = true;
 
-    /// Nodes by which the edge of a patch moves, 0 for no such moves.
+    /// Nodes by which the edge of a patch moves at first, and further if that
+    /// pays. 0: no such moves, and none by stretch.
     unsigned int maximum_shift = 4;
 
     /// Take whole patches, and the middle of each, to the other side.
@@ -70,9 +75,15 @@ namespace Debond
 
   /**
    * Improves a minimum by starts from rest and from all nodes on each further
-   * branch, and by the moves of moves_from(). Each new state goes through
-   * majorise-minimise and is taken if the functional falls; then the moves
-   * begin anew. @p s has to be <= 0.
+   * branch, and by the moves of moves_from() and moves_by_stretch(). Each new
+   * state goes through majorise-minimise and is taken if the functional falls;
+   * then the moves begin anew. @p s has to be <= 0.
+   *
+   * Most trials slide into a minimum that another trial has ended in. Where
+   * each unknown has a law of its own, the branches at a point say what its
+   * majorant is, so that a trial that comes to a state on the way of another
+   * one ends where that did. Majorants of trials are minimised roughly, so the
+   * way might have been another one: what is taken is a minimum all the same.
    */
   BranchSearchResult
   search_branches(const SearchProblem          &problem,

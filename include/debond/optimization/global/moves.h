@@ -2,6 +2,7 @@
 #ifndef debond_optimization_global_moves_h
 #define debond_optimization_global_moves_h
 
+#include <debond/base/views.h>
 #include <debond/optimization/global/separable_branches.h>
 
 #include <set>
@@ -36,6 +37,33 @@ namespace Debond
              const unsigned int    n_pieces,
              const unsigned int    maximum_shift,
              const bool            flips);
+
+
+
+  /// The move of an edge, once it has paid, taken @p n layers of nodes further:
+  /// those next to its nodes that are still on the other side in @p state.
+  /// Without nodes where there are none.
+  BranchMove
+  beyond(const BranchMove     &move,
+         const BranchState    &state,
+         const NeighbourGraph &graph,
+         const unsigned int    n);
+
+
+
+  /**
+   * Moves of nodes that need not be neighbours, for each kink: of the nodes
+   * below it the 1, 2, 4, ... nearest to the foundation at @p s go up, of those
+   * above it the 1, 2, 4, ... most stretched go down. Bonds that bridge a gap
+   * hold only together, which no move of an edge finds.
+   *
+   * The nodes that are there already are part of the move, so that all of them
+   * begin in the middle of their pieces.
+   */
+  std::vector<BranchMove>
+  moves_by_stretch(const BranchState &state,
+                   const VectorView  &s,
+                   const unsigned int n_pieces);
 } // namespace Debond
 
 #endif

@@ -50,8 +50,13 @@ namespace Debond
   {
     /// success, stagnated, interrupted, or quadratic_program if there is no
     /// minimum or it was not found.
-    SolverStatus    status = SolverStatus::quadratic_program;
-    unsigned int    steps  = 0; ///< factorisations
+    SolverStatus status = SolverStatus::quadratic_program;
+    unsigned int steps  = 0; ///< factorisations
+
+    /// What it took, in multiplications with an addition each: the same on
+    /// every machine.
+    double operations = 0.;
+
     Eigen::VectorXd x;
     Eigen::VectorXd mu; ///< multipliers, zero where inactive
   };
@@ -68,12 +73,17 @@ namespace Debond
    * the number of wrong indices does not fall any more, projected Newton steps
    * take over (Bertsekas, SIAM J. Control Optim. 20, 1982), with which the
    * functional falls until rounding hides it. Then the status is stagnated.
+   *
+   * With a @p tolerance above zero the exchanges end as soon as the projection
+   * onto x <= b meets the optimality conditions to this part of the largest
+   * |r_i|: on slender bodies the last exchanges are many and move little.
    */
   BoundQPResult
   solve_bound_qp(const Eigen::Ref<const Eigen::MatrixXd> &M,
                  const Eigen::VectorXd                   &r,
                  const Eigen::VectorXd                   &b,
-                 ActiveSet                               &active);
+                 ActiveSet                               &active,
+                 const double                             tolerance = 0.);
 } // namespace Debond
 
 #endif

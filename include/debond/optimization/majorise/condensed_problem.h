@@ -11,8 +11,9 @@ namespace Debond
 {
   /**
    * 1/2 s'S s - g's + Phi(s) subject to s <= 0 with a dense symmetric S that is
-   * positive definite but for given motions. Majorants are minimised exactly,
-   * whatever the tolerance, by active sets with a Cholesky factorisation each.
+   * positive definite but for given motions. Majorants are minimised by active
+   * sets with a Cholesky factorisation each, exactly whatever the tolerance
+   * unless minimise_roughly() was called.
    *
    * Where points of Phi move with s, the minimum of a majorant is only a step
    * towards the limit, and what the last of them say of it is tried.
@@ -46,6 +47,15 @@ namespace Debond
     guess_by(const ActiveSetGuess *other)
     {
       guess = other;
+    }
+
+    /// From now on a majorant is minimised only to the tolerance that is asked
+    /// for, as long as that is a loose one: many trials of a search end where
+    /// others have ended, and are not worth more.
+    void
+    minimise_roughly()
+    {
+      is_trial = true;
     }
 
     State
@@ -94,6 +104,7 @@ namespace Debond
 
     /// The majorant 1/2 s'M s - r's + const, M = S + E, once there is one.
     bool                        majorised = false;
+    bool                        is_trial  = false;
     Eigen::SparseMatrix<double> E;
     Eigen::MatrixXd             M;
     Eigen::VectorXd             r;

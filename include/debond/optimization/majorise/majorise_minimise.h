@@ -55,6 +55,9 @@ namespace Debond
 
       unsigned int active_set_steps;  ///< linear systems
       unsigned int linear_iterations; ///< for all of them, 0 if factorised
+
+      /// Of dense factorisations (BoundQPResult::operations).
+      double operations = 0.;
     };
 
     /// Moves the current point towards the minimum of the majorant until the
@@ -85,6 +88,7 @@ namespace Debond
     unsigned int active_set_steps;  ///< linear systems of the inner QP
     unsigned int linear_iterations; ///< for them, 0 if they were factorised
     unsigned int n_active;          ///< bounds that are active
+    double       operations = 0.;   ///< of dense factorisations
   };
 
 
