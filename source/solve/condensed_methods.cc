@@ -31,13 +31,9 @@ namespace Debond
 
 
 
-    /// A search that was not asked for may take as long, and a fifth of the
-    /// solve. Without optimisation all takes tens of times as long.
-#ifdef DEBUG
-    constexpr double least_search_seconds = 60.;
-#else
-    constexpr double least_search_seconds = 2.;
-#endif
+    /// A search that was not asked for may take as many operations, some three
+    /// seconds, and a fifth of what factorisations of S take.
+    constexpr double least_search_operations = 2e10;
 
 
 
@@ -254,7 +250,7 @@ namespace Debond
                   Watch                  &watch,
                   SolveResult            &result)
   {
-    dealii::Timer              timer, whole;
+    dealii::Timer              timer;
     const ElasticProblem<dim> &problem = scene.problem();
     watch.announce("factorisation", problem.unknowns().n_free_dofs());
     const Condensation condensed = condense(choice, scene);
@@ -309,8 +305,8 @@ namespace Debond
       {
         SolverParameters limited = parameters;
         if (parameters.search == BondSearchChoice::automatic)
-          limited.search_seconds =
-            least_search_seconds + 0.2 * whole.cpu_time();
+          limited.search_operations =
+            least_search_operations + 0.2 * std::pow(double(n_nodes), 3.);
         timer.restart();
         const Eigen::VectorXd followed = s;
         result.minimum                 = find_better_minimum(

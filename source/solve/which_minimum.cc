@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/memory.h>
-#include <debond/base/processes.h>
 #include <debond/base/run_watch.h>
 #include <debond/base/tolerances.h>
 #include <debond/contact/boundary_coarsening.h>
@@ -16,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ctime>
 #include <limits>
 
 namespace Debond
@@ -116,16 +114,17 @@ namespace Debond
         if (parameters.search == BondSearchChoice::full &&
             result.kind != MinimumKind::global)
           search_nodes({});
-        const bool is_cut = !has_time() && result.kind != MinimumKind::global;
+        const bool is_cut =
+          !has_work_left() && result.kind != MinimumKind::global;
         if (is_cut || (result.kind != MinimumKind::best_known &&
                        result.kind != MinimumKind::global))
           result.kind = kind_without_search(adhesion, s);
         if (!is_cut || !may_go_on())
           return;
         if (result.proof_status == ProofStatus::interrupted)
-          result.proof_status = ProofStatus::time_limit;
+          result.proof_status = ProofStatus::node_limit;
         result.notes.push_back(
-          "the search for a lower minimum has ended at its limit of time, "
+          "the search for a lower minimum has ended at its limit of work, "
           "after " +
           std::to_string(result.search_trials) +
           " states: there may be lower ones. Solver/Search = full has no "
@@ -167,26 +166,28 @@ namespace Debond
       const NeighbourGraph         graph;
       const SeparableBranches      lumped;
 
-      /// Processor time: what else the machine does changes no result.
-      const std::clock_t          first    = std::clock();
-      const std::function<bool()> has_time = [this]() {
-        const double seconds =
-          static_cast<double>(std::clock() - first) / CLOCKS_PER_SEC;
-        return may_go_on() && !any_rank(seconds > parameters.search_seconds);
+      /// Work is counted, not timed: the result is the same on a busy machine
+      /// and on each rank.
+      double                      operations    = 0.;
+      const std::function<bool()> has_work_left = [this]() {
+        return may_go_on() && operations < parameters.search_operations;
       };
 
       /// For starts on many nodes, else empty.
       ActiveSetGuess guess;
 
       SearchProblem
-      problem() const
+      problem()
       {
-        return {
-          {condensed.schur_complement(), condensed.load(), adhesion, has_time},
-          lumped,
-          graph,
-          method,
-          &guess};
+        return {{condensed.schur_complement(),
+                 condensed.load(),
+                 adhesion,
+                 has_work_left},
+                lumped,
+                graph,
+                method,
+                &guess,
+                &operations};
       }
 
       SeparableProblem
@@ -236,7 +237,7 @@ namespace Debond
         const GuidedSearchResult guided =
           guided_search(problem(), adhesion.is_separable(), proof_limits(), s);
         add_search(guided.search);
-        // What a limit of time has cut may not have come to any bound.
+        // What a limit of work has cut may not have come to any bound.
         if (guided.proof && std::isfinite(guided.proof->lower))
           add_proof(*guided.proof);
       }
@@ -299,12 +300,16 @@ namespace Debond
                             stretches(adhesion, prolongations));
           const NeighbourGraph coarse_graph =
             coarse_neighbours(prolongations.back());
-          add_search(
-            guided_search({coarse, coarse_lumped, coarse_graph, method},
-                          /*is_separable=*/false,
-                          proof_limits(),
-                          coarse_s)
-              .search);
+          add_search(guided_search({coarse,
+                                    coarse_lumped,
+                                    coarse_graph,
+                                    method,
+                                    nullptr,
+                                    &operations},
+                                   /*is_separable=*/false,
+                                   proof_limits(),
+                                   coarse_s)
+                       .search);
         };
         std::vector<std::string> failures;
         Eigen::VectorXd          point =
@@ -314,8 +319,9 @@ namespace Debond
 
         CondensedProblem             finest(S, g, adhesion, point);
         const MajoriseMinimiseResult minimum =
-          minimise_trial(method, finest, [&](const auto &) {
-            return has_time();
+          minimise_trial(method, finest, [&](const auto &iteration) {
+            operations += iteration.operations;
+            return has_work_left();
           });
         const auto given = CondensedProblem(S, g, adhesion, s).evaluate();
         if (minimum.status != SolverStatus::success)

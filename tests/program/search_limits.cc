@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A search that has no time, and search and proof of a law of another shape.
+// A search whose work is limited, and search and proof of a law of another
+// shape.
 
 #include <debond/base/processes.h>
 #include <debond/elasticity/contact_condensation.h>
@@ -9,7 +10,7 @@
 
 #include <iostream>
 #include <limits>
-#include <utility>
+#include <vector>
 
 #include "../check.h"
 #include "../solved.h"
@@ -63,10 +64,10 @@ namespace
 
 
 
-  /// Without time a search says that it has ended, and claims nothing: on
-  /// several ranks on all of them if one has none.
+  /// At its limit of work a search says that it has ended, and claims nothing.
+  /// Work is counted, so that each run and each rank does the same.
   void
-  test_limit_of_time()
+  test_limit_of_work()
   {
     const Parameters parameters =
       parameters_of({"Contact law/Bond stiffness=690",
@@ -74,12 +75,12 @@ namespace
     const Scene<2>     scene(parameters);
     const Condensation condensed =
       condense_to_contact(scene.problem(), scene.adhesion());
-    constexpr double any_time = std::numeric_limits<double>::infinity();
-    for (const auto &[of_first, of_others] :
-         {std::pair(0., 0.), {any_time, any_time}, {any_time, 0.}})
+    std::vector<unsigned int> trials;
+    for (const double limit :
+         {0., 1e6, 1e6, std::numeric_limits<double>::infinity()})
       {
-        SolverParameters solver = parameters.solver;
-        solver.search_seconds   = is_first_rank() ? of_first : of_others;
+        SolverParameters solver  = parameters.solver;
+        solver.search_operations = limit;
         // The intact state, which is a minimum far above the least one.
         Eigen::VectorXd  s = Eigen::VectorXd::Zero(condensed.load().size());
         CondensedProblem problem(condensed.schur_complement(),
@@ -91,11 +92,17 @@ namespace
         const WhichMinimum    result = find_better_minimum(
           solver, scene.adhesion(), condensed, []() { return true; }, s);
         if (is_first_rank())
-          std::cout << "limits of " << of_first << " and " << of_others
-                    << " s: " << to_string(result.kind) << ", "
+          std::cout << "limit of " << limit
+                    << " operations: " << to_string(result.kind) << ", "
                     << result.notes.size() << " notes"
                     << (s == start ? ", nothing lower" : "") << '\n';
+        trials.push_back(result.search_trials);
       }
+    if (is_first_rank())
+      std::cout << "the same limit twice: "
+                << verdict(trials[1] == trials[2] && trials[1] > trials[0] &&
+                           trials[3] > trials[2])
+                << '\n';
   }
 } // namespace
 
@@ -107,6 +114,6 @@ main()
   if (n_started_ranks() > 1)
     start_mpi();
   test_other_law();
-  test_limit_of_time();
+  test_limit_of_work();
   end_mpi();
 }

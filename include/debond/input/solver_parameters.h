@@ -67,8 +67,9 @@ namespace Debond
     MajoriseMinimiseParameters majorise_minimise;
     BondSearchChoice           search = BondSearchChoice::automatic;
 
-    /// What automatic may take beside a part of the solve.
-    double search_seconds = std::numeric_limits<double>::infinity();
+    /// Operations that a search that was not asked for may take
+    /// (BoundQPResult::operations).
+    double search_operations = std::numeric_limits<double>::infinity();
 
     bool                     prove = false;
     BranchAndBoundParameters proof = proof_defaults();
