@@ -483,7 +483,7 @@ namespace Debond
         certificate.lower -= certificate.reserve + own;
         certificate.reserve += 2. * own;
       }
-    catch (const std::exception &)
+    catch (const EquilibriumError &)
       {
         // Such as a body that only bonds hold.
         if (trace_constants.empty())
