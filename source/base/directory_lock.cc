@@ -32,13 +32,13 @@ namespace Debond
         open(file_name.c_str(),
              O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
              0666);
-      std::error_code error;
-      const bool      is_plain =
-        std::filesystem::is_regular_file(file_name, error) &&
-        std::filesystem::hard_link_count(file_name, error) == 1;
       const std::string reason = descriptor < 0 ? std::strerror(errno) :
                                                   "it is no plain file, or has "
                                                   "another name";
+      std::error_code   error;
+      const bool        is_plain =
+        std::filesystem::is_regular_file(file_name, error) &&
+        std::filesystem::hard_link_count(file_name, error) == 1;
       close(descriptor);
       if (descriptor < 0 || !is_plain)
         throw std::runtime_error("Cannot write " + file_name + ": " + reason);

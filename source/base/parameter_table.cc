@@ -291,6 +291,9 @@ namespace Debond
     });
     entry.set_at      = location;
     entry.is_rejected = !reason.empty();
+    for (auto &[unused, file] : read_files)
+      if (file.is_open)
+        file.values[path] = {{value, location}};
     if (entry.is_rejected)
       errors.push_back(location + ": " + path + " = " + shortened(value) +
                        ": " + reason);
@@ -301,8 +304,9 @@ namespace Debond
   void
   ParameterTable::read(std::istream &input, const std::string &file)
   {
-    file_name = file;
-    reading.push_back(file);
+    file_name     = file;
+    ReadFile &own = read_files[std::filesystem::weakly_canonical(file)];
+    own.is_open   = true;
     const std::vector<std::string> sections = known_sections();
     const auto                     is_known = [&](const std::string &section) {
       return section.empty() ||
@@ -374,7 +378,7 @@ namespace Debond
     for (std::size_t i = 1; i < open.size(); ++i)
       errors.push_back(open[i].second + ": subsection " + open[i].first +
                        " is not closed by 'end'");
-    reading.pop_back();
+    own.is_open = false;
   }
 
 
@@ -386,18 +390,25 @@ namespace Debond
   {
     const std::filesystem::path path =
       std::filesystem::path(file).parent_path() / name;
-    const auto is_this_file = [&path](const std::string &other) {
-      std::error_code unreadable;
-      return std::filesystem::equivalent(path, other, unreadable);
-    };
     std::ifstream     input = open_plain_file(path);
     const std::string error = location + ": include " + name + ": ";
     if (!input)
       errors.push_back(error + "there is no such file, or it cannot be read");
-    else if (std::any_of(reading.begin(), reading.end(), is_this_file))
+    else if (const auto known =
+               read_files.find(std::filesystem::weakly_canonical(path));
+             known == read_files.end())
+      read(input, path.string());
+    else if (known->second.is_open)
       errors.push_back(error + "the file includes itself");
     else
-      read(input, path.string());
+      {
+        // It is not read again, as files that include others twice would be
+        // 2^n times; its errors are known.
+        const std::size_t n_errors = errors.size();
+        for (const auto &[entry, value] : known->second.values)
+          set(entry, value[0], value[1]);
+        errors.resize(n_errors);
+      }
     file_name = file;
   }
 

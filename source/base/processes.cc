@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <memory>
 #include <thread>
@@ -47,8 +48,12 @@ namespace Debond
       return;
     static int    argc = 0;
     static char **argv = nullptr;
+    // A library that starts with MPI takes it from an InterruptGuard.
+    struct sigaction of_term;
+    sigaction(SIGTERM, nullptr, &of_term);
     session =
       std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(argc, argv, 1);
+    sigaction(SIGTERM, &of_term, nullptr);
     if (n_started_ranks() > 1)
       MPI_Comm_dup(MPI_COMM_WORLD, &for_the_end);
   }

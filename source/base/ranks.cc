@@ -37,8 +37,8 @@ namespace Debond
       }
     std::exception_ptr error;
     std::string        message;
-    bool               is_invalid_argument = false;
-    bool               is_own              = true;
+    bool               is_own = true;
+    int                kind   = 0; // see below
     try
       {
         work();
@@ -48,8 +48,10 @@ namespace Debond
         error   = std::current_exception();
         message = exception.what();
         is_own  = dynamic_cast<const ErrorElsewhere *>(&exception) == nullptr;
-        is_invalid_argument =
-          dynamic_cast<const std::invalid_argument *>(&exception) != nullptr;
+        if (dynamic_cast<const std::invalid_argument *>(&exception) != nullptr)
+          kind = 1;
+        if (dynamic_cast<const std::runtime_error *>(&exception) != nullptr)
+          kind = 2;
       }
     // Own errors first; n + 1 is none.
     const unsigned int first = dealii::Utilities::MPI::min(!error ? n + 1 :
@@ -62,12 +64,13 @@ namespace Debond
     if (first == n)
       std::rethrow_exception(error);
     message = dealii::Utilities::MPI::broadcast(ranks, message, first);
-    is_invalid_argument =
-      dealii::Utilities::MPI::broadcast(ranks, is_invalid_argument, first);
+    kind    = dealii::Utilities::MPI::broadcast(ranks, kind, first);
     if (first == rank)
       std::rethrow_exception(error);
-    if (is_invalid_argument)
+    if (kind == 1)
       throw Elsewhere<std::invalid_argument>(message);
-    throw Elsewhere<std::runtime_error>(message);
+    if (kind == 2)
+      throw Elsewhere<std::runtime_error>(message);
+    throw Elsewhere<std::logic_error>(message);
   }
 } // namespace Debond

@@ -431,17 +431,11 @@ namespace Debond
     laws = laws_of_sides<dim>(equilibrium.contact_sides(),
                               scene->law().branches(),
                               scene->adhesion());
-    if (!scene->conditions().tangential_exceptions.empty())
-      throw EquilibriumError(
-        "contact boundaries with different tangential displacements are not "
-        "done");
     if constexpr (dim == 2)
       if (minimum == CertifiedMinimum::global &&
           scene->law().branches().size() > 1)
         trace_constants =
-          side_constants(equilibrium,
-                         scene->materials(),
-                         scene->conditions().tangential_displacement_fixed);
+          side_constants(equilibrium, scene->materials(), scene->conditions());
   }
 
 
@@ -483,7 +477,7 @@ namespace Debond
         certificate.lower -= certificate.reserve + own;
         certificate.reserve += 2. * own;
       }
-    catch (const std::exception &)
+    catch (const EquilibriumError &)
       {
         // Such as a body that only bonds hold.
         if (trace_constants.empty())

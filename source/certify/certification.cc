@@ -18,16 +18,27 @@ namespace Debond
 {
   namespace
   {
-    /// Of a Certifier that threw @p error: rounding and memory set limits to
-    /// certificates that displacements do not have.
+    /// Why @p work has no certificate, empty if it has one: rounding, memory
+    /// and data at points that the displacements do not need set limits to it.
+    template <typename Work>
     std::string
-    no_certificate(const std::exception &error)
+    no_certificate(const Work &work)
     {
-      return std::string("There is no certificate: ") +
-             (dynamic_cast<const std::bad_alloc *>(&error) != nullptr ?
-                "there is not enough memory for the equilibrated stresses" :
-                error.what()) +
-             '.';
+      const std::string begin = "There is no certificate: ";
+      try
+        {
+          work();
+          return "";
+        }
+      catch (const std::invalid_argument &error)
+        {
+          return begin + error.what() + '.';
+        }
+      catch (const std::bad_alloc &)
+        {
+          return begin +
+                 "there is not enough memory for the equilibrated stresses.";
+        }
     }
 
 
@@ -218,18 +229,21 @@ namespace Debond
     };
     if (n_started_ranks() > 1)
       refuse("several ranks have no certificate; run the scene on one rank");
+    // What is no fault of the scene certify() will say.
     try
       {
         first = std::make_unique<const Certifier<dim>>(kind, scene);
       }
+    catch (const StressRoundingError &)
+      {}
     catch (const EquilibriumError &error)
       {
         refuse(error.what());
       }
-    catch (const std::exception &)
-      {
-        // It is no fault of the scene; certify() will say it.
-      }
+    catch (const std::invalid_argument &)
+      {}
+    catch (const std::bad_alloc &)
+      {}
   }
 
 
@@ -254,31 +268,30 @@ namespace Debond
     const auto is_global = [&]() {
       return certificate && certificate->minimum == CertifiedMinimum::global;
     };
-    try
-      {
-        if (!is_last)
-          {
-            certificate.reset();
-            // Such as a body that only bonds hold has none for their branches
-            // as they are.
-            if (kind == CertificateKind::global)
-              try
-                {
-                  certify(CertificateKind::fixed_state);
-                }
-              catch (const std::exception &)
-                {}
-          }
-        const bool is_wide = certificate && certificate->width() > target;
-        if (!certificate || (kind == CertificateKind::global && !is_global() &&
-                             (is_last || !is_wide)))
-          certify(kind);
-      }
-    catch (const std::exception &error)
+    const std::string failure = no_certificate([&]() {
+      if (!is_last)
+        {
+          certificate.reset();
+          // Such as a body that only bonds hold has none for their branches
+          // as they are.
+          if (kind == CertificateKind::global)
+            try
+              {
+                certify(CertificateKind::fixed_state);
+              }
+            catch (const EquilibriumError &)
+              {}
+        }
+      const bool is_wide = certificate && certificate->width() > target;
+      if (!certificate || (kind == CertificateKind::global && !is_global() &&
+                           (is_last || !is_wide)))
+        certify(kind);
+    });
+    if (!failure.empty())
       {
         certificate.reset();
         GoalOnMesh nothing;
-        nothing.failure = no_certificate(error);
+        nothing.failure = failure;
         return nothing;
       }
     return {certificate->width() <= target,
@@ -316,17 +329,14 @@ namespace Debond
           if (!may_go_on())
             result.solve.minimum.interrupted = true;
         };
-        try
-          {
-            if (first == nullptr || !result.levels.empty())
-              certify(Certifier<dim>(kind, scene));
-            else
-              certify(*first);
-          }
-        catch (const std::exception &error)
-          {
-            result.notes.push_back(no_certificate(error));
-          }
+        const std::string failure = no_certificate([&]() {
+          if (first == nullptr || !result.levels.empty())
+            certify(Certifier<dim>(kind, scene));
+          else
+            certify(*first);
+        });
+        if (!failure.empty())
+          result.notes.push_back(failure);
         result.times.emplace_back("certificate", timer.wall_time());
       }
     if (certificate)

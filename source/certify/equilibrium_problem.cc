@@ -246,10 +246,10 @@ namespace Debond
           constant,
           /*is_semidefinite=*/true);
       }
-    catch (const std::runtime_error &)
+    catch (const IndefiniteMatrix &)
       {
-        // It is semidefinite for any body. No fault of the scene's.
-        throw std::runtime_error(
+        // It is semidefinite for any body.
+        throw StressRoundingError(
           "to rounding the matrix of the equilibrated stresses is not positive "
           "definite; try cells that are less flat, a Poisson ratio farther from "
           "its limit, or parts that differ less in stiffness");

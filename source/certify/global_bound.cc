@@ -288,12 +288,13 @@ namespace Debond
   std::vector<double>
   side_constants(const EquilibriumProblem<2> &equilibrium,
                  const ByRegion<Material>    &materials,
-                 const bool                   tangential_fixed)
+                 const BoundaryConditions    &conditions)
   {
     struct Known
     {
       TriangleAboveSide shape;
       Material          material;
+      bool              is_tangential_fixed;
       double            constant;
     };
     std::vector<Known>  known;
@@ -302,18 +303,20 @@ namespace Debond
       {
         const TriangleAboveSide own      = triangle(side);
         const Material         &material = materials(side.cell->material_id());
+        const bool              is_fixed = conditions.fixes_tangential(side.id);
         auto                    same =
           std::find_if(known.begin(), known.end(), [&](const Known &other) {
             return std::abs(other.shape.height - own.height) +
                        std::abs(other.shape.apex - own.apex) <=
                      Tolerance::certificate * own.height &&
                    other.material.young_modulus == material.young_modulus &&
-                   other.material.poisson_ratio == material.poisson_ratio;
+                   other.material.poisson_ratio == material.poisson_ratio &&
+                   other.is_tangential_fixed == is_fixed;
           });
         if (same == known.end())
           same = known.insert(
             known.end(),
-            {own, material, trace_constant(own, material, tangential_fixed)});
+            {own, material, is_fixed, trace_constant(own, material, is_fixed)});
         constants.push_back((1. - 100. * Tolerance::certificate) *
                             same->constant / side.measure);
       }

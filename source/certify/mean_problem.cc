@@ -228,7 +228,7 @@ namespace Debond
       {
         condensed = equilibrium.condense(weights);
       }
-    catch (const std::runtime_error &)
+    catch (const StressRoundingError &)
       {
         return {};
       }

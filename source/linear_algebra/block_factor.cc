@@ -71,8 +71,8 @@ namespace Debond
       }
     info = dealii::Utilities::MPI::broadcast(ranks, info);
     if (info != 0)
-      throw not_positive_definite("kept unknown " + std::to_string(info) +
-                                  " of " + std::to_string(n_kept));
+      throw IndefiniteMatrix("kept unknown " + std::to_string(info) + " of " +
+                             std::to_string(n_kept));
     broadcast(L_ss);
   }
 

@@ -292,8 +292,8 @@ namespace Debond
           throw std::bad_alloc();
         cholmod_factorize(matrix.get(), L, &common);
         if (common.status == CHOLMOD_NOT_POSDEF)
-          throw not_positive_definite("row " + std::to_string(L->minor) +
-                                      " of " + std::to_string(n));
+          throw IndefiniteMatrix("row " + std::to_string(L->minor) + " of " +
+                                 std::to_string(n));
         if (common.status != CHOLMOD_OK)
           throw std::bad_alloc();
       }

@@ -66,11 +66,9 @@ namespace Debond
 
 
 
-  std::runtime_error
-  not_positive_definite(const std::string &where)
-  {
-    return std::runtime_error(
-      "Condensation: the elasticity matrix is not positive definite (" + where +
-      "). Check the supports and the material.");
-  }
+  IndefiniteMatrix::IndefiniteMatrix(const std::string &where)
+    : std::runtime_error(
+        "Condensation: the elasticity matrix is not positive definite (" +
+        where + "). Check the supports and the material.")
+  {}
 } // namespace Debond

@@ -67,8 +67,7 @@ namespace Debond
         const int  error       = infog[0];
         const bool is_definite = infog[11] == 0 && infog[24] == 0;
         if (error == -10 || (what == 2 && error >= 0 && !is_definite))
-          throw not_positive_definite("by MUMPS, of " + std::to_string(n) +
-                                      " rows");
+          throw IndefiniteMatrix("by MUMPS, of " + std::to_string(n) + " rows");
         if (no_memory.count(error) > 0)
           throw std::bad_alloc();
         if (error < 0)

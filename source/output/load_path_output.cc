@@ -4,6 +4,7 @@
 
 #include <debond/base/atomic_file.h>
 #include <debond/base/processes.h>
+#include <debond/base/ranks.h>
 #include <debond/output/csv_table.h>
 #include <debond/output/load_path_output.h>
 #include <debond/output/vtu.h>
@@ -186,7 +187,9 @@ namespace Debond
           write_load_path(so_far, path("load_path.csv"));
         if (!(output.path_body_vtu || output.path_contact_vtu))
           return;
-        std::filesystem::create_directories(path(directory_of_steps));
+        on_all_ranks(MPI_COMM_WORLD, [&]() {
+          std::filesystem::create_directories(path(directory_of_steps));
+        });
         // ParaView wants times that increase, which the factors need not do.
         if (output.path_body_vtu)
           {

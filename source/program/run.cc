@@ -52,15 +52,18 @@ namespace Debond
         , choice(choose_method(parameters, parameters.solver))
         , record(parameters.output.machine_details)
       {
-        const std::string described =
-          with_mesh_checksum(parameters.effective_scene);
         if (options.restart)
-          read_state_before(described);
-        state.scene  = described;
-        scene        = make_first_scene<dim>(parameters,
+          read_state_before();
+        state.scene              = parameters.effective_scene;
+        scene                    = make_first_scene<dim>(parameters,
                                       parameters.accuracy,
                                       parameters.solver.start,
                                       state.meshes.divisions);
+        const std::uint64_t mesh = mesh_checksum(*scene);
+        if (state.mesh != 0 && state.mesh != mesh)
+          throw BadInput({state_file() + " is of another mesh; run without "
+                                         "--restart"});
+        state.mesh   = mesh;
         begun        = state.meshes;
         begun.start  = on_these_ranks(state.meshes.start);
         begun_path   = state.path;
@@ -238,7 +241,7 @@ namespace Debond
       }
 
       void
-      read_state_before(const std::string &described)
+      read_state_before()
       {
         if (!std::filesystem::exists(state_file()))
           {
@@ -246,7 +249,7 @@ namespace Debond
                 << ": the run starts from the beginning.\n\n";
             return;
           }
-        state = read_state<dim>(state_file(), described);
+        state = read_state<dim>(state_file(), parameters.effective_scene);
         const LoadPathParameters &load_path = parameters.load_path;
         for (unsigned int k = 0; k < state.path.steps.size(); ++k)
           {
@@ -265,15 +268,9 @@ namespace Debond
       DofVector
       on_these_ranks(const DofVector &u) const
       {
-        const auto &unknowns = scene->problem().unknowns();
-        if (u.size() == 0)
-          return u;
-        if (u.size() != unknowns.n_dofs())
-          throw BadInput(
-            {state_file() + " is of a mesh with " + std::to_string(u.size()) +
-             " degrees of freedom, this one has " +
-             std::to_string(unknowns.n_dofs()) + "; run without --restart"});
-        return from_serial_order(unknowns, u);
+        return u.size() == 0 ?
+                 u :
+                 from_serial_order(scene->problem().unknowns(), u);
       }
 
       /// For --restart. A run whose state cannot be written goes on.
@@ -337,6 +334,7 @@ namespace Debond
         };
         observer.next_mesh_is_made = [this](const AdaptiveProgress &progress,
                                             const Scene<dim>       &next) {
+          state.mesh   = mesh_checksum(next);
           state.meshes = progress;
           state.meshes.start =
             in_serial_order(next.problem().unknowns(), progress.start);

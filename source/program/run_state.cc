@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/atomic_file.h>
+#include <debond/base/owned_cells.h>
 #include <debond/input/bad_input.h>
 #include <debond/program/run_state.h>
 
-#include <boost/archive/archive_exception.hpp>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
 #include <boost/crc.hpp>
@@ -21,8 +21,24 @@ namespace Debond
 {
   namespace
   {
-    /// Of the file. A change of what follows needs another number.
-    const std::string format = "Debond run state 1";
+    std::uint32_t
+    checksum_of(const void *const data, const std::size_t n_bytes)
+    {
+      boost::crc_32_type checksum;
+      checksum.process_bytes(data, n_bytes);
+      return checksum.checksum();
+    }
+
+
+
+    /// The line before @p content in the file. A change of what that is needs
+    /// another number.
+    std::string
+    title_of(const std::string &content)
+    {
+      return "Debond run state 2, checksum " +
+             std::to_string(checksum_of(content.data(), content.size()));
+    }
 
 
 
@@ -109,9 +125,10 @@ namespace Debond
     void
     exchange(Archive &archive, RunState<dim> &state)
     {
-      archive &state.scene &state.meshes.divisions &state.has_last_mesh &state
-        .shortfall &state.path.kinds &state.path.memory.nodes &state.path.memory
-        .held &state.path.memory.points &state.meshes.start &state.path.u;
+      archive &state.scene &state.mesh &state.meshes.divisions &state
+        .has_last_mesh &state.shortfall &state.path.kinds &state.path.memory
+        .nodes &state.path.memory.held &state.path.memory.points &state.meshes
+        .start                                                   &state.path.u;
       exchange(archive, state.meshes.levels);
       exchange(archive, state.path.steps);
       exchange(archive, state.path.points);
@@ -164,21 +181,25 @@ namespace Debond
 
 
 
-  std::string
-  with_mesh_checksum(const std::string &scene)
+  template <int dim>
+  std::uint64_t
+  mesh_checksum(const Scene<dim> &scene)
   {
-    const auto entries = entries_of(scene);
-    const auto name    = entries.find("Mesh/File");
-    if (name == entries.end())
-      return scene;
-    std::string file_name = name->second;
-    file_name.erase(0, file_name.find_first_not_of(' '));
-    std::ifstream      file(file_name, std::ios::binary);
-    boost::crc_32_type checksum;
-    for (std::istreambuf_iterator<char> c(file), end; c != end; ++c)
-      checksum.process_byte(static_cast<unsigned char>(*c));
-    return scene + "set Checksum of Mesh/File = " +
-           std::to_string(checksum.checksum()) + '\n';
+    const auto   &dofs = scene.problem().unknowns().dof_handler();
+    std::uint64_t sum  = 0; // on any number of ranks the same
+    for (const auto &cell : owned_cells(dofs))
+      {
+        std::vector<double> numbers = {
+          static_cast<double>(cell->id().get_coarse_cell_id()),
+          static_cast<double>(cell->material_id())};
+        for (const unsigned int v : cell->vertex_indices())
+          for (unsigned int d = 0; d < dim; ++d)
+            numbers.push_back(cell->vertex(v)[d]);
+        for (const auto &face : cell->face_iterators())
+          numbers.push_back(face->boundary_id());
+        sum += checksum_of(numbers.data(), numbers.size() * sizeof(double));
+      }
+    return dealii::Utilities::MPI::sum(sum, scene.ranks());
   }
 
 
@@ -188,10 +209,14 @@ namespace Debond
   write_state(const RunState<dim> &state, const std::string &file_name)
   {
     write_atomically(file_name, [&state](std::ostream &out) {
-      boost::archive::binary_oarchive archive(out);
-      archive                        &format;
-      RunState<dim>                   copy = state;
-      exchange(archive, copy);
+      // Boost would write past the stream, which would not know what fails.
+      std::ostringstream content;
+      {
+        boost::archive::binary_oarchive archive(content);
+        RunState<dim>                   copy = state;
+        exchange(archive, copy);
+      }
+      out << title_of(content.str()) << '\n' << content.str();
     });
   }
 
@@ -201,23 +226,18 @@ namespace Debond
   RunState<dim>
   read_state(const std::string &file_name, const std::string &scene)
   {
-    RunState<dim> state;
     std::ifstream file = open_plain_file(file_name);
-    std::string   found;
-    try
-      {
-        boost::archive::binary_iarchive archive(file);
-        archive                        &found;
-        if (found == format)
-          exchange(archive, state);
-      }
-    catch (const std::exception &)
-      {
-        found.clear();
-      }
-    if (found != format)
+    std::string   title;
+    std::getline(file, title);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    if (title != title_of(bytes))
       throw BadInput({file_name + " is not the state of a run of this version "
-                                  "of Debond; run without --restart"});
+                                  "of Debond, or it is damaged; run without "
+                                  "--restart"});
+    RunState<dim>                   state;
+    std::istringstream              content(bytes);
+    boost::archive::binary_iarchive archive(content);
+    exchange(archive, state);
 
     const auto before = entries_of(state.scene), now = entries_of(scene);
     for (const auto *const entries : {&before, &now})
@@ -239,8 +259,10 @@ namespace Debond
 
 
 
-  template decltype(write_state<2>) write_state<2>;
-  template decltype(write_state<3>) write_state<3>;
-  template decltype(read_state<2>)  read_state<2>;
-  template decltype(read_state<3>)  read_state<3>;
+  template decltype(mesh_checksum<2>) mesh_checksum<2>;
+  template decltype(mesh_checksum<3>) mesh_checksum<3>;
+  template decltype(write_state<2>)   write_state<2>;
+  template decltype(write_state<3>)   write_state<3>;
+  template decltype(read_state<2>)    read_state<2>;
+  template decltype(read_state<3>)    read_state<3>;
 } // namespace Debond

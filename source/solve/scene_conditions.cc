@@ -7,6 +7,7 @@
 #include <debond/input/expression.h>
 #include <debond/solve/scene_conditions.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -227,13 +228,20 @@ namespace Debond
   check_held_vertices(const ElasticUnknowns<dim> &unknowns,
                       const std::vector<double>  &load_factors)
   {
-    for (const auto &vertex : unknowns.contact().boundary().held_vertices)
+    // Values that are zero by cancellation are as wrong as others are.
+    const ContactBoundary<dim> &boundary = unknowns.contact().boundary();
+    double                      largest  = 0.;
+    for (const auto &node : boundary.nodes)
+      largest = std::max(largest, std::abs(node.gap));
+    for (const auto &vertex : boundary.held_vertices)
+      largest = std::max(
+        {largest, std::abs(vertex.gap), std::abs(vertex.normal_displacement)});
+    for (const auto &vertex : boundary.held_vertices)
       for (const double factor : load_factors)
         {
           const double normal = factor * vertex.normal_displacement;
           if (normal - vertex.gap <=
-              Tolerance::rounding_of_data *
-                (std::abs(normal) + std::abs(vertex.gap)))
+              Tolerance::rounding_of_data * (1. + std::abs(factor)) * largest)
             continue;
           if (vertex.normal_displacement == 0.)
             throw SupportError(SupportError::Subject::gap,

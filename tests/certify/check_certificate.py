@@ -232,6 +232,13 @@ def check_temperature(dim, kind, cold, cells, fine_cells):
           and two["upper"] - two["lower"] <= -0.1 * two["upper"], intervals)
 
 
+def check_named():
+    """The condition of one boundary is that of all, where it is the only one."""
+    own, all_of_them = (interval(GLOBAL, f"Contact law/Tangential displacement{name}=free")
+                        for name in (" bottom", ""))
+    check("named", own == all_of_them, (own, all_of_them))
+
+
 HALF = ["Parts/cold=x > 0.5", "Material/Thermal expansion cold=0"]
 SHRUNK = ["Parts/cold=y > 0.25", "Material/Thermal expansion cold=-1e-3"]
 scenes.together(
@@ -241,7 +248,9 @@ scenes.together(
     ("free pad", check_two_meshes, "Mesh/Lengths=0.4, 0.1", "Loads/Body force=0; 1",
      "Boundary conditions/Clamped boundaries=top", "Contact law/Tangential displacement=free",
      "Loads/Traction right=0; 5*y"),
-    ("kinds", check_kinds), ("flat cells", check_flat_cells), ("flap", check_flap),
+    ("in part free", check_two_meshes, "Loads/Traction top=0; if(x<0.2,0.69,-0.345)",
+     "Parts/loose=bottom: if(x>0.2,1,0)", "Contact law/Tangential displacement loose=free"),
+    ("named", check_named), ("kinds", check_kinds), ("flat cells", check_flat_cells), ("flap", check_flap),
     ("solid", check_solid), ("refused", check_refused),
     *((f"target {target}, degree {degree}", check_target, degree, target)
       for degree in (1, 2) for target in (2e-2, 1e-4)),

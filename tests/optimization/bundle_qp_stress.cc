@@ -184,6 +184,7 @@ namespace
     double                               tolerance;
     unsigned int                         share; // of 1000 problems
     std::function<Problem(Generator &g)> make;
+    bool has_one_working_set = true; // of the solution
   };
 
 
@@ -280,6 +281,28 @@ namespace
                s.cuts        = s.active_cuts + g.integer(0, 30);
                return g.problem(s, 1., 1., 0.);
              }},
+            // The weights are not unique, and many working sets have the same
+            // point.
+            {"more active cuts than components",
+             1e-9,
+             200,
+             [](auto &g) {
+               Shape s;
+               s.n             = g.integer(1, 8);
+               s.n_bounded     = g.integer(0, 1) * s.n;
+               s.active_bounds = g.integer(0, s.n_bounded);
+               s.active_cuts   = s.n + g.integer(1, 30);
+               s.cuts          = s.active_cuts + g.integer(0, 10);
+               return g.problem(s, 1., 1., g.integer(0, 1));
+             },
+             false},
+            {"forces and lengths of 1e-120 to 1e-80",
+             1e-9,
+             50,
+             [](auto &g) {
+               const double scale = g.power_of_ten(-120., -80.);
+               return g.problem(g.shape(), 1., scale, scale);
+             }},
             {"1 to 300 cuts, 1 to 2000 bounds",
              1e-9,
              5,
@@ -373,8 +396,9 @@ main(int argc, char *argv[])
       ::check("residuals", record.residual, residual_tolerance);
       ::check("known solution", record.error, record.tolerance);
       ::check("warm start takes no step in 99 of 100",
-              100 * record.moved <= record.problems);
-      ::check("the next takes none", record.moved_again == 0);
+              100 * record.moved <= record.problems || !c.has_one_working_set);
+      ::check("the next takes none",
+              record.moved_again == 0 || !c.has_one_working_set);
       ::check("the same permuted", record.permutation, record.tolerance);
       if (argc > 1)
         std::cout << std::setprecision(2) << "  " << record.problems

@@ -620,12 +620,30 @@ def check_far_foundation():
         check("path to rest", path["status"] == "success" and len(path["path"]) == 5)
 
 
+def check_gap_at_clamp(gap):
+    """A press fit that is zero at the clamp, also if its expression is so to rounding alone;
+    where the displacement there is prescribed, it may be zero as well."""
+    wedge = ["Mesh/Lengths=0.3, 0.02", "Mesh/Cells=15, 1",
+             "Contact law/Tangential displacement=free"]
+    clamped = ["Boundary conditions/Clamped boundaries=right"]
+    moved = ["Boundary conditions/Clamped boundaries=",
+             "Boundary conditions/Displacement right=0; 1e-4*(x/3-0.1)"]
+    exact = solve(*wedge, *clamped, "Contact law/Initial gap=1e-3*(x-0.3)")
+    for support in clamped, moved:
+        result = solve(*wedge, *support, "Contact law/Initial gap=" + gap)
+        close(gap, result["functional"], exact["functional"], 1e-9)
+    result = solve(*wedge, *clamped, f"Contact law/Initial gap={gap} - 1e-12")
+    check("more than rounding", "negative where the body is held" in result["errors"])
+
+
 scenes.together(
     *((f"{test.__name__}, {dim}D, {name}", test, dim, length, modulus)
       for dim, name, length, modulus in SYSTEMS
       for test in (check_stretched, check_column_on_bonds, check_pad, check_coming_off)),
     *(("pads in " + name, check_plane_pads, length, modulus)
       for dim, name, length, modulus in SYSTEMS if dim == 2),
+    *(("gap at a clamp", check_gap_at_clamp, f"1e-3*(x*{a!r} - {0.3 * a!r})/{a!r}")
+      for a in (k * math.pi for k in range(1, 52, 5))),
     *((test.__name__, test, *arguments) for test, *arguments in (
         [check_half_of_symmetric_body], [check_bonds], [check_hard_laws], [check_corner, 2],
         [check_corner, 3], [check_resultants], [check_far_foundation], [check_loads],

@@ -51,6 +51,21 @@ for line in 'set Dimension += 3' 'set Young modulus += 7' \
   'set Poisson ratio += 0\.2'; do
   grep -qE "^ *$line( |$)" included.prm || fail "include: no $line"
 done
+# Files that include another twice are not read 2^n times; the last reading holds.
+cp parts/middle.prm twice0.prm
+for k in $(seq 28); do
+  printf 'include twice%d.prm\nset Dimension = 2\ninclude twice%d.prm\n' \
+    $((k - 1)) $((k - 1)) >twice$k.prm
+done
+sed -i 's,base.prm,parts/base.prm,' twice0.prm
+timeout 20 "$debond" twice28.prm --print-parameters >twice.prm ||
+  fail "include twice: exit code $?"
+diff included.prm twice.prm || fail "include twice"
+sed -i 's/0\.2/0.7/' twice0.prm
+expect_code 2 "$debond" twice28.prm
+[ "$(grep -c 'Poisson ratio' errors)" -eq 1 ] ||
+  fail "an error in a file that is included often: $(head -c 1000 errors)"
+rm twice*.prm
 echo 'set Colour = red' >>parts/base.prm
 expect_code 2 "$debond" including.prm
 grep -qE '^debond: parts/base.prm:6: unknown parameter Colour' errors ||

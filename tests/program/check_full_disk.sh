@@ -32,3 +32,17 @@ done
 grep -q "Cannot write limited/body.vtu: File too large" errors ||
   fail "limit: not named: $(cat errors)"
 [ "$(ls limited)" = parameters.prm ] || fail "limit: $(ls limited)"
+
+# The state for --restart likewise, by one rank for all; ranks that share memory
+# would need files for it.
+for launcher in "" "mpirun --allow-run-as-root --oversubscribe --mca btl self,tcp -n 2"; do
+  rm -rf state
+  expect_code 5 timeout 120 $launcher bash -c 'ulimit -f 40; exec "$@"' bash \
+    "$debond" bar.prm --set "Mesh/Cells=160, 16" --set "Output/Directory=state" \
+    --set "Output/Body VTU=false" --set "Output/Contact VTU=false" \
+    --set "Output/Displacement=false" --set "Load path/Factors=0.5, 1"
+  [ "$(grep -c "Cannot write state/restart.state: File too large" errors)" -eq 1 ] ||
+    fail "state, $launcher: not named: $(cat errors)"
+  [ -s state/load_path.csv ] && [ ! -e state/restart.state ] ||
+    fail "state, $launcher: $(ls state)"
+done

@@ -49,13 +49,19 @@ expect_code 0 "$debond" "$scene" --set "Output/Directory=out"
 
 # What is no plain file of its own is no lock: nothing else is written.
 echo precious >victim
-for plant in "ln -s ../victim" "ln -s ../missing" "ln ../victim" mkfifo mkdir; do
+while IFS=: read -r plant reason; do
   rm -rf planted
   mkdir planted
   (cd planted && $plant .lock)
   expect_code 5 timeout 120 "$debond" "$scene" --set "Output/Directory=planted"
-  grep -q "^debond: Cannot write planted/.lock: " errors ||
+  grep -q "^debond: Cannot write planted/.lock: $reason" errors ||
     fail "$plant: $(cat errors)"
   [ "$(cat victim)" = precious ] && [ ! -e missing ] || fail "$plant: followed"
   [ "$(ls -A planted)" = .lock ] || fail "$plant: $(ls -A planted)"
-done
+done <<'PLANTS'
+ln -s ../victim:Too many levels of symbolic links
+ln -s ../missing:Too many levels of symbolic links
+ln ../victim:it is no plain file
+mkfifo:it is no plain file
+mkdir:Is a directory
+PLANTS

@@ -208,28 +208,32 @@ def check_ends(directory):
     found, out, errors = run(2, [scene], MM, os.path.join(blocked, "results"))
     if found != 5 or errors.count("debond:") != 1:
         fail("a folder that cannot be made ends with", found, errors)
-    # A signal to the last rank alone; before there is a result nothing is written.
-    folder = os.path.join(directory, "signalled")
-    for wait in (0.5, 5, 20):
-        process = launch(2, [scene], ["Mesh/Cells=160, 16"], folder)
-        for k in range(600):
-            time.sleep(0.1)
-            ranks = subprocess.run(["pgrep", "-f", "--", "^" + re.escape(DEBOND) + " .*signalled"],
-                                   capture_output=True, text=True).stdout.split()
-            if len(ranks) == 2 and os.path.exists(folder + "/parameters.prm"):
+    # A signal to the last rank alone, or to mpirun, which kills ranks a second after it has told
+    # them to end, and has an exit code of its own; before there is a result nothing is written.
+    for number, to_launcher in ((signal.SIGINT, False), (signal.SIGTERM, False),
+                                (signal.SIGTERM, True), (signal.SIGINT, True)):
+        folder = os.path.join(directory, f"signalled-{int(number)}-{to_launcher}")
+        for wait in (0.5, 5, 20):
+            process = launch(2, [scene], MM + ["Load path/Factors=0:0.001:2"], folder)
+            for k in range(600):
+                time.sleep(0.1)
+                ranks = subprocess.run(
+                    ["pgrep", "-f", "--", "^" + re.escape(DEBOND) + " .*" + folder],
+                    capture_output=True, text=True).stdout.split()
+                if len(ranks) == 2 and os.path.exists(folder + "/parameters.prm"):
+                    break
+            time.sleep(wait)
+            os.kill(process.pid if to_launcher else int(ranks[-1]), number)
+            out, errors = process.communicate(timeout=60)
+            if process.returncode != (1 if to_launcher else 4):
+                fail("a signal ends with", process.returncode, errors)
+            if "before there was a result" not in errors:
                 break
-        time.sleep(wait)
-        os.kill(int(ranks[-1]), signal.SIGINT)
-        out, errors = process.communicate(timeout=60)
-        if process.returncode != 4:
-            fail("a signal ends with", process.returncode, errors)
-        if "before there was a result" not in errors:
-            break
-    status = json.load(open(folder + "/summary.json"))["status"]
-    if status != "interrupted":
-        fail("a signal ends with the status", status, errors)
-    if [file for file in os.listdir(folder) if file.endswith(".partial")]:
-        fail("half-written files", os.listdir(folder))
+        status = json.load(open(folder + "/summary.json"))["status"]
+        if status != "interrupted" or not os.path.exists(folder + "/load_path.csv"):
+            fail("a signal ends with the status", status, errors)
+        if [file for file in os.listdir(folder) if file.endswith(".partial")]:
+            fail("half-written files", os.listdir(folder))
     print("ends")
 
 

@@ -6,6 +6,7 @@
 
 #include <debond/base/text.h>
 
+#include <array>
 #include <functional>
 #include <istream>
 #include <map>
@@ -259,7 +260,15 @@ namespace Debond
     std::map<std::string, Entry>  entries;  ///< by path
     std::map<std::string, Family> families; ///< by path
     std::string                   file_name;
-    std::vector<std::string>      reading; ///< files that include others
+
+    /// What a file and those that it includes set: values and their locations
+    /// by path.
+    struct ReadFile
+    {
+      std::map<std::string, std::array<std::string, 2>> values;
+      bool                                              is_open = true;
+    };
+    std::map<std::string, ReadFile> read_files; ///< by canonical name
   };
 
 

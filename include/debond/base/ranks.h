@@ -39,10 +39,10 @@ namespace Debond
 
   /// Calls @p work on each rank, and returns if it did on all of them. Else the
   /// first one on which it threw throws its exception again, and all others
-  /// the same message as std::invalid_argument, if it was one, or as
-  /// std::runtime_error, marked as an ErrorElsewhere. To be called by all
-  /// ranks; where they wait for each other in @p work, nothing but this may
-  /// throw on some of them only.
+  /// std::invalid_argument, runtime_error or logic_error, as it is or is not,
+  /// with its message, as an ErrorElsewhere: all ranks catch it or none. To be
+  /// called by all ranks; where they wait for each other in @p work, nothing
+  /// but this may throw on some of them only.
   void
   on_all_ranks(const MPI_Comm ranks, const std::function<void()> &work);
 

@@ -25,6 +25,15 @@ namespace Debond
 
 
 
+  /// Stresses that rounding keeps from being found: no fault of the scene.
+  class StressRoundingError : public EquilibriumError
+  {
+  public:
+    using EquilibriumError::EquilibriumError;
+  };
+
+
+
   /**
    * What EquilibriumProblem is of a body: its active cells, which are the
    * elements, the sides between them with their unknowns, which of these are

@@ -76,7 +76,7 @@ namespace Debond
     /// p + gap the linear normal displacement, s the unknowns of p. Each cell
     /// is @p weights times as stiff (all as they are if empty).
     ///
-    /// Throws std::runtime_error if the matrix of the other unknowns is not
+    /// Throws StressRoundingError if the matrix of the other unknowns is not
     /// positive definite.
     std::unique_ptr<Condensation>
     condense(const std::vector<double> &weights = {}) const;

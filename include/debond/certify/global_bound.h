@@ -38,7 +38,7 @@ namespace Debond
   std::vector<double>
   side_constants(const EquilibriumProblem<2> &equilibrium,
                  const ByRegion<Material>    &materials,
-                 const bool                   tangential_fixed);
+                 const BoundaryConditions    &conditions);
 
   /**
    * A lower bound of the least J of the continuous problem, and where its

@@ -112,10 +112,13 @@ namespace Debond
 
 
 
-  /// What is thrown if A is not positive definite. @p where: what the
-  /// factorisation knows about it.
-  std::runtime_error
-  not_positive_definite(const std::string &where);
+  /// A is not positive definite. @p where: what the factorisation knows about
+  /// it.
+  class IndefiniteMatrix : public std::runtime_error
+  {
+  public:
+    explicit IndefiniteMatrix(const std::string &where);
+  };
 } // namespace Debond
 
 #endif

@@ -6,6 +6,7 @@
 #include <debond/solve/adaptive_loop.h>
 #include <debond/solve/load_path.h>
 
+#include <cstdint>
 #include <string>
 
 namespace Debond
@@ -15,9 +16,11 @@ namespace Debond
   template <int dim>
   struct RunState
   {
-    /// Its scene with all entries, as Parameters::effective_scene,
-    /// with_mesh_checksum().
+    /// Its scene with all entries, as Parameters::effective_scene.
     std::string scene;
+
+    /// mesh_checksum() of the mesh that displacements are on.
+    std::uint64_t mesh = 0;
 
     /// The mesh, those before it and where to start on it.
     AdaptiveProgress meshes;
@@ -31,10 +34,11 @@ namespace Debond
     PathProgress<dim> path;
   };
 
-  /// @p scene with one more entry if it names a mesh file, by which that is
-  /// known again.
-  std::string
-  with_mesh_checksum(const std::string &scene);
+  /// Of vertices, cells, boundary and material ids, by which a mesh is known
+  /// again on any number of ranks. To be called by all of them.
+  template <int dim>
+  std::uint64_t
+  mesh_checksum(const Scene<dim> &scene);
 
   /// Displacements in the state, and in the file, are in_serial_order(). To be
   /// called by all ranks. Throws std::runtime_error if the file cannot be

@@ -145,15 +145,20 @@ namespace Debond
     run_active_set();
 
     // Errors that the factor has gathered over many updates go with it.
-    if (solution.status != Status::optimal ||
-        !(solution.residual() < QPTolerance::repair))
+    const auto is_solved = [this]() {
+      return solution.residual() < QPTolerance::repair;
+    };
+    if (!is_solved())
       {
         factor_valid = false;
         run_active_set();
-        if (solution.status == Status::optimal &&
-            !(solution.residual() < QPTolerance::repair))
-          solution.status = Status::inaccurate;
       }
+    // Among cuts that depend on each other, working sets with one solution can
+    // follow each other without an end.
+    if (is_solved())
+      solution.status = Status::optimal;
+    else if (solution.status == Status::optimal)
+      solution.status = Status::inaccurate;
     return solution;
   }
 
@@ -211,7 +216,7 @@ namespace Debond
                                      bounded.col(j).norm() * d_norm + beta(j));
           if (excess > QPTolerance::cut * std::abs(v) + rounding)
             {
-              const double gain = excess * excess / (h(j, j) + kappa);
+              const double gain = excess / std::sqrt(h(j, j) + kappa);
               if (gain > largest_gain)
                 {
                   largest_gain = gain;
@@ -232,7 +237,7 @@ namespace Debond
           rounding *= QPTolerance::rounding / u;
           if (excess > QPTolerance::bound * d_largest + rounding)
             {
-              const double gain = excess * excess * u;
+              const double gain = excess * std::sqrt(u);
               if (gain > largest_gain)
                 {
                   largest_gain = gain;
@@ -283,15 +288,15 @@ namespace Debond
       gap += x(j) * (solution.v + beta(j) - solution.slopes(j));
     for (unsigned int i = 0; i < mu.size(); ++i)
       gap += mu(i) * std::abs(b(i) - solution.d(i));
-    double magnitude = std::abs(solution.v);
+    // Where cuts cancel, d and products of cuts are less than their terms.
+    const Eigen::VectorXd d_terms =
+      solution.d.cwiseAbs().cwiseMax(cut_force_terms / u);
+    double length_terms = 0.;
+    for (const unsigned int k : cuts)
+      length_terms += x(k) * std::sqrt(std::abs(gram(k, k)));
+    double magnitude = std::abs(solution.v) + length_terms * length_terms / u;
     for (const unsigned int j : cuts)
-      {
-        double slope_terms =
-          bounded.col(j).cwiseAbs().dot(solution.d.cwiseAbs());
-        for (const unsigned int k : cuts)
-          slope_terms += x(k) * std::abs(gram(k, j)) / u;
-        magnitude += x(j) * (beta(j) + slope_terms);
-      }
+      magnitude += x(j) * (beta(j) + bounded.col(j).cwiseAbs().dot(d_terms));
     solution.duality_gap = gap;
     solution.complementarity =
       std::abs(gap) / std::max(magnitude, std::numeric_limits<double>::min());
