@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/memory.h>
 #include <debond/base/run_watch.h>
 #include <debond/base/text.h>
 #include <debond/input/material_parameters.h>
@@ -345,6 +346,7 @@ namespace Debond
     p.scene = scene;
     complete_loads(p.dimension, p.materials.everywhere, p.loads, *this);
     complete_load_path(p.loads, p.supports, p.load_path, *this);
+    body.memory = memory_left(p.solver.memory_limit);
     if (const auto made = make_body(scene, p.dimension, body, *this))
       {
         add_parts(*made, parts, p.dimension, p.loads.constants, *this);
