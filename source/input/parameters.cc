@@ -30,7 +30,7 @@ namespace Debond
       table.bind(
         "Boundary conditions/Clamped boundaries",
         p.clamped_boundaries,
-        "Boundaries that form Gamma_D, where the displacement is zero. Of a box: left and right have the smallest and largest x, bottom and top y, back and front z (3D only)");
+        "Boundaries that form Gamma_D, where the displacement is zero. Of a box: left and right have the smallest and largest x, bottom and top y, back and front z (3D only). Commas separate names; a boundary's name that has commas itself is taken as a whole");
       table.bind(
         "Boundary conditions/Contact boundary",
         p.contact_boundaries,
@@ -115,13 +115,19 @@ namespace Debond
   namespace
   {
     void
-    check_boundaries(const Parameters &p, ParameterTable &table)
+    check_boundaries(Parameters &p, ParameterTable &table)
     {
       const std::string clamped = "Boundary conditions/Clamped boundaries";
       const std::string contact = "Boundary conditions/Contact boundary";
       // Without a body there is an error already.
       if (p.body)
         {
+          const std::set<std::string> known = p.body->boundaries();
+          join_names(table.get(clamped), known, p.clamped_boundaries);
+          join_names(table.get(contact), known, p.contact_boundaries);
+          join_names(table.get("Boundary conditions/Roller boundaries"),
+                     known,
+                     p.supports.rollers);
           check_names(clamped, p.clamped_boundaries, *p.body, table);
           check_names(contact, p.contact_boundaries, *p.body, table);
           for (const SurfaceLoad &load : p.loads.on_boundaries())
