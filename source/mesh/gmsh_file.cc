@@ -133,7 +133,8 @@ namespace Debond
         throw std::invalid_argument(words("cells of Mesh/Size take about ",
                                           in_gib(needed),
                                           ", and there are ",
-                                          in_gib(memory)));
+                                          in_gib(memory),
+                                          ": make it larger"));
     }
 
 
