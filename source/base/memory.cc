@@ -76,6 +76,20 @@ namespace Debond
 
 
 
+  void
+  limit_memory(const double bytes)
+  {
+    const auto most = static_cast<rlim_t>(std::min(bytes, 1e18));
+    rlimit     limit;
+    if (getrlimit(RLIMIT_AS, &limit) != 0)
+      return;
+    limit.rlim_cur =
+      std::min(limit.rlim_max, 1024 * memory_of_process().VmSize + most);
+    setrlimit(RLIMIT_AS, &limit);
+  }
+
+
+
   std::string
   in_gib(const double bytes)
   {

@@ -158,6 +158,28 @@ namespace Debond
 
 
   void
+  join_names(const std::string           &list,
+             const std::set<std::string> &known,
+             std::set<std::string>       &names)
+  {
+    const auto spaced = [](const std::string &text) {
+      return ", " +
+             join(dealii::Utilities::split_string_list(text, ','), ", ") + ",";
+    };
+    for (const std::string &name : known)
+      if (name.find(',') != std::string::npos &&
+          spaced(list).find(spaced(name)) != std::string::npos)
+        {
+          for (const std::string &piece :
+               dealii::Utilities::split_string_list(name, ','))
+            names.erase(piece);
+          names.insert(name);
+        }
+  }
+
+
+
+  void
   check_names(const std::string           &path,
               const std::set<std::string> &names,
               const BodyDescription       &body,
@@ -174,7 +196,7 @@ namespace Debond
                "; physical groups of curves, in 3D of surfaces, are the boundaries, and its file has none: make them in Gmsh, such as Physical Curve(\"left\") = {4}, or name faces here by Parts, such as boundary: y < 1e-6" :
                ", but " + join(known, ", ")) +
             (body.inner_groups.count(name) > 0 ?
-               "; the group of this name lies inside the body" :
+               "; the group of this name lies inside the body or away from it" :
              body.regions().count(name) > 0 ?
                "; the region of this name is a piece of the body, where Parts has pieces of a boundary, such as bottom: x < 1" :
                ""));

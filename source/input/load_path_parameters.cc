@@ -192,10 +192,12 @@ namespace Debond
     std::set<std::string> loaded;
     for (const SurfaceLoad &load : loads.on_boundaries())
       loaded.insert(load.boundary);
+    const std::string dead_loads = "Load path/Dead loads";
+    join_names(table.get(dead_loads), loaded, load_path.dead_loads);
     for (const std::string &name : load_path.dead_loads)
       if (name == "body force" ? loads.body_force.empty() :
                                  loaded.count(name) == 0)
-        table.reject("Load path/Dead loads",
+        table.reject(dead_loads,
                      "the scene has no " +
                        (name == "body force" ? name : "traction " + name));
   }

@@ -112,16 +112,17 @@ namespace Debond
       body.file,
       Pattern("a text"),
       "A mesh, or a geometry to be meshed, in any format that Gmsh reads: .msh, .unv, .bdf, .geo, .step, .brep and others; its path is relative to the scene's folder. Physical groups of curves (in 3D: of surfaces) are the boundaries and those of surfaces (volumes) the regions that the scene can name, by their names or else their numbers; Parts name boundaries without a group");
-    table.bind("Mesh/Scale",
-               body.scale,
-               quantity(),
-               "What the lengths of the file are multiplied by",
-               "length per the file's");
+    table.bind(
+      "Mesh/Scale",
+      body.scale,
+      quantity(),
+      "What the lengths of the file are multiplied by. Those of .step files come in mm, whatever they are in there",
+      "length per the file's");
     table.bind(
       "Mesh/Size",
       body.size,
       quantity(true),
-      "How long the edges of cells are if the File is a geometry. 0 leaves it to the file, or to Gmsh",
+      "How long the edges of cells are if the File is a geometry. 0 leaves it to the file, or to Gmsh. What makes more cells than there is memory for is refused",
       "length");
     table.bind(
       "Mesh/Generator",

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/memory.h>
 #include <debond/base/run_watch.h>
 #include <debond/base/text.h>
 #include <debond/input/material_parameters.h>
@@ -29,7 +30,7 @@ namespace Debond
       table.bind(
         "Boundary conditions/Clamped boundaries",
         p.clamped_boundaries,
-        "Boundaries that form Gamma_D, where the displacement is zero. Of a box: left and right have the smallest and largest x, bottom and top y, back and front z (3D only)");
+        "Boundaries that form Gamma_D, where the displacement is zero. Of a box: left and right have the smallest and largest x, bottom and top y, back and front z (3D only). Commas separate names; a boundary's name that has commas itself is taken as a whole");
       table.bind(
         "Boundary conditions/Contact boundary",
         p.contact_boundaries,
@@ -114,13 +115,19 @@ namespace Debond
   namespace
   {
     void
-    check_boundaries(const Parameters &p, ParameterTable &table)
+    check_boundaries(Parameters &p, ParameterTable &table)
     {
       const std::string clamped = "Boundary conditions/Clamped boundaries";
       const std::string contact = "Boundary conditions/Contact boundary";
       // Without a body there is an error already.
       if (p.body)
         {
+          const std::set<std::string> known = p.body->boundaries();
+          join_names(table.get(clamped), known, p.clamped_boundaries);
+          join_names(table.get(contact), known, p.contact_boundaries);
+          join_names(table.get("Boundary conditions/Roller boundaries"),
+                     known,
+                     p.supports.rollers);
           check_names(clamped, p.clamped_boundaries, *p.body, table);
           check_names(contact, p.contact_boundaries, *p.body, table);
           for (const SurfaceLoad &load : p.loads.on_boundaries())
@@ -345,6 +352,7 @@ namespace Debond
     p.scene = scene;
     complete_loads(p.dimension, p.materials.everywhere, p.loads, *this);
     complete_load_path(p.loads, p.supports, p.load_path, *this);
+    body.memory = memory_left(p.solver.memory_limit);
     if (const auto made = make_body(scene, p.dimension, body, *this))
       {
         add_parts(*made, parts, p.dimension, p.loads.constants, *this);

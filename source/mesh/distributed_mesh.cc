@@ -256,8 +256,10 @@ namespace Debond
         const unsigned int n_cells =
           dealii::Utilities::MPI::broadcast(ranks, whole.n_active_cells());
         if (n_cells < n_ranks)
-          throw std::invalid_argument(
-            words(n_cells, " cells cannot be shared by ", n_ranks, " ranks"));
+          throw std::invalid_argument(words(n_cells,
+                                            " cells cannot be shared by ",
+                                            n_ranks,
+                                            " ranks; start fewer"));
         mesh->create_triangulation(part_of_mesh(whole, ranks));
       }
     result.triangulation = std::move(mesh);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/atomic_file.h>
+#include <debond/base/memory.h>
 #include <debond/base/text.h>
 #include <debond/mesh/gmsh_file.h>
 
+#include <boost/algorithm/string.hpp>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
 #include <boost/serialization/map.hpp>
@@ -11,9 +13,11 @@
 
 #include <fcntl.h>
 #include <gmsh.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -29,15 +33,16 @@ namespace boost::serialization
             Debond::GmshFile::Elements &elements,
             unsigned int /*version*/)
   {
-    archive &elements.dimension &elements.order &elements.n_corners &elements
-      .tags &elements.corners &elements.groups;
+    archive &elements.dimension &elements.entity &elements.order &elements
+      .n_corners &elements.tags &elements.corners &elements.groups;
   }
 
   template <typename Archive>
   void
   serialize(Archive &archive, Debond::GmshFile &file, unsigned int /*version*/)
   {
-    archive &file.is_geometry &file.nodes &file.coordinates &file.elements;
+    archive &file.is_geometry &file.n_ghosts &file.nodes &file.coordinates &file
+      .elements;
   }
 } // namespace boost::serialization
 
@@ -45,17 +50,27 @@ namespace Debond
 {
   namespace
   {
-    /// Whether this is a .msh file of a version before 4.
+    /// Whether this is a .msh file of a version before 4. Throws
+    /// std::invalid_argument if it is a .unv file with groups that Gmsh drops.
     bool
     is_old_msh(const std::string &file_name)
     {
       std::ifstream input = open_plain_file(file_name);
       if (!input)
         throw std::invalid_argument(file_name + " cannot be read");
-      if (input.peek() != '$')
+      if (input.peek() == 0xef)
+        throw std::invalid_argument(
+          file_name +
+          " begins with a byte order mark, which Gmsh does not read; save it without");
+      const bool is_unv = boost::iends_with(file_name, ".unv");
+      if (input.peek() != '$' && !is_unv)
         return false;
       for (std::string line; std::getline(input, line);)
-        if (line.rfind("$MeshFormat", 0) == 0)
+        if (is_unv && line.rfind("  2467", 0) == 0) // numbers have 10 columns
+          throw std::invalid_argument(
+            file_name +
+            ": Gmsh does not read the groups of dataset 2467; remove them from the file, and name sides by Parts");
+        else if (line.rfind("$MeshFormat", 0) == 0)
           {
             double version = 0.;
             input >> version;
@@ -68,16 +83,58 @@ namespace Debond
 
 
 
-    /// What Gmsh has had to say, as an "Error" or a "Warning".
+    /// What Gmsh has had to say of errors.
     std::string
-    messages_of_gmsh(const std::string &kind)
+    errors_of_gmsh()
     {
       std::vector<std::string> log, found;
       gmsh::logger::get(log);
       for (const std::string &line : log)
-        if (line.rfind(kind + ": ", 0) == 0)
-          found.push_back(printable(line.substr(kind.size() + 2)));
+        if (line.rfind("Error: ", 0) == 0)
+          found.push_back(printable(line.substr(7)));
       return join(found, "; ");
+    }
+
+
+
+    void
+    set_size(const double size)
+    {
+      for (const char *option : {"Mesh.MeshSizeMin", "Mesh.MeshSizeMax"})
+        gmsh::option::setNumber(option, size);
+    }
+
+
+
+    /// Throws std::invalid_argument if edges of this length make more cells
+    /// than there is memory for. A coarse mesh says how large the geometry is.
+    void
+    check_size(const int dim, const double size, const double memory)
+    {
+      double x, y, z, end_x, end_y, end_z;
+      gmsh::model::getBoundingBox(-1, -1, x, y, z, end_x, end_y, end_z);
+      const double length = end_x - x + end_y - y + end_z - z;
+      if (size > length / 300.)
+        return;
+      set_size(length / 20.);
+      gmsh::model::mesh::generate(dim);
+      std::vector<double> matrices, determinants, points;
+      gmsh::model::mesh::getJacobians(
+        dim == 2 ? 2 : 4, {0., 0., 0.}, matrices, determinants, points);
+      gmsh::model::mesh::clear();
+      // Of equilateral triangles and regular tetrahedra, each of which takes
+      // 1000 bytes and more with its part of the matrix.
+      const double bytes =
+        1000. / (dim == 2 ? 0.433 : 0.118) / std::pow(size, dim);
+      double needed = 0.;
+      for (const double determinant : determinants)
+        needed += bytes * std::abs(determinant) / (dim == 2 ? 2. : 6.);
+      if (needed > memory)
+        throw std::invalid_argument(words("cells of Mesh/Size take about ",
+                                          in_gib(needed),
+                                          ", and there are ",
+                                          in_gib(memory),
+                                          ": make it larger"));
     }
 
 
@@ -88,7 +145,8 @@ namespace Debond
     read_by_gmsh(const std::string &file_name,
                  const bool         is_old,
                  const int          dim,
-                 const double       size)
+                 const double       size,
+                 const double       memory)
     {
       gmsh::initialize(0, nullptr, false);
       gmsh::option::setNumber("General.Terminal", 0);
@@ -96,42 +154,64 @@ namespace Debond
       // Gmsh knows groups of entities. In old files elements of one entity may
       // be in several groups: Gmsh is to take the groups for entities.
       gmsh::option::setNumber("Mesh.SwitchElementTags", is_old ? 1 : 0);
+      // Their partitions are numbers of elements, which it would sort by them.
+      gmsh::option::setNumber("Mesh.PartitionConvertMsh2", 0);
       gmsh::open(file_name);
-      // It loses groups then, and goes on.
-      const std::string warnings = messages_of_gmsh("Warning");
-      if (warnings.find("not found in the Brep") != std::string::npos)
+      gmsh::vectorpair entities;
+      gmsh::model::getEntities(entities);
+      // It goes on, with points of no number and without groups.
+      if (!is_old && !entities.empty() && entities[0] == std::make_pair(0, 0))
         throw std::invalid_argument(
-          "Gmsh does not understand the file's entities, each of which has to "
-          "be a line: " +
-          warnings);
+          "Gmsh does not understand the file's entities, each of which has to be a line");
       if (gmsh::model::getDimension() > dim)
         throw std::invalid_argument(
           "a body in 3D, but the scene has Dimension = 2");
       GmshFile            file;
       std::vector<double> unused;
       gmsh::model::mesh::getNodes(file.nodes, file.coordinates, unused);
-      file.is_geometry = file.nodes.empty();
+      // The surface of a geometry may be a mesh, from an STL file.
+      std::vector<int> kinds;
+      gmsh::model::mesh::getElementTypes(kinds, dim);
+      file.is_geometry =
+        file.nodes.empty() ||
+        (kinds.empty() && boost::iends_with(file_name, ".geo") &&
+         gmsh::model::getDimension() == dim);
       if (!file.is_geometry && size > 0.)
         throw std::invalid_argument(
           "the file has a mesh, where Size is for geometries");
       if (file.is_geometry && size > 0.)
-        for (const char *option : {"Mesh.MeshSizeMin", "Mesh.MeshSizeMax"})
-          gmsh::option::setNumber(option, size);
+        {
+          if (file.nodes.empty())
+            check_size(dim, size, memory);
+          set_size(size);
+        }
       if (file.is_geometry)
         gmsh::model::mesh::generate(dim);
-      else
-        gmsh::model::mesh::unpartition();
       gmsh::model::mesh::getNodes(file.nodes, file.coordinates, unused);
 
-      gmsh::vectorpair entities;
       gmsh::model::getEntities(entities);
       for (const auto &[dimension, entity] : entities)
         {
           if (dimension < dim - 1)
             continue;
-          std::vector<int> numbers = {entity};
+          std::vector<std::size_t> ghosts;
+          std::vector<int>         numbers;
+          gmsh::model::mesh::getGhostElements(dimension,
+                                              entity,
+                                              ghosts,
+                                              numbers);
+          file.n_ghosts += ghosts.size();
+          // A piece of a partition has the groups of what it is a piece of,
+          // and faces between pieces are none of the file's.
+          int of_dimension, whole;
+          gmsh::model::getParent(dimension, entity, of_dimension, whole);
+          if (whole < 0)
+            std::tie(of_dimension, whole) = std::tie(dimension, entity);
+          if (!ghosts.empty() || of_dimension != dimension)
+            continue;
+          numbers = {entity};
           if (!is_old)
-            gmsh::model::getPhysicalGroupsForEntity(dimension, entity, numbers);
+            gmsh::model::getPhysicalGroupsForEntity(dimension, whole, numbers);
           std::map<int, std::string> groups;
           for (const int number : numbers)
             if (const int group = std::abs(number); group != 0)
@@ -143,7 +223,7 @@ namespace Debond
           for (std::size_t k = 0; k < types.size(); ++k)
             {
               GmshFile::Elements elements = {
-                dimension, 1, 0, tags[k], {}, groups};
+                dimension, entity, 1, 0, tags[k], {}, groups};
               std::string name;
               int         same_dimension, n_nodes;
               gmsh::model::mesh::getElementProperties(types[k],
@@ -153,6 +233,12 @@ namespace Debond
                                                       n_nodes,
                                                       unused,
                                                       elements.n_corners);
+              if (elements.n_corners <= dimension)
+                throw std::invalid_argument(
+                  words("element ",
+                        tags[k][0],
+                        " is of a kind that is not read, ",
+                        name));
               for (std::size_t e = 0; e < tags[k].size(); ++e)
                 elements.corners.insert(elements.corners.end(),
                                         nodes[k].begin() + e * n_nodes,
@@ -172,13 +258,14 @@ namespace Debond
                          const std::string &file_name,
                          const bool         is_old,
                          const int          dim,
-                         const double       size)
+                         const double       size,
+                         const double       memory)
     {
       GmshFile    file;
       std::string error;
       try
         {
-          file = read_by_gmsh(file_name, is_old, dim, size);
+          file = read_by_gmsh(file_name, is_old, dim, size, memory);
         }
       catch (const std::invalid_argument &exception)
         {
@@ -186,8 +273,15 @@ namespace Debond
         }
       catch (...)
         {
-          const std::string said = messages_of_gmsh("Error");
-          error = "Gmsh does not read this" + (said.empty() ? "" : ": " + said);
+          const std::string said = errors_of_gmsh();
+          error                  = "Gmsh does not read this" +
+                  (said.empty() ?
+                     ", or a memory of " + in_gib(memory) + " is not enough" :
+                     ": " + said);
+          if (!boost::iends_with(file_name, ".geo") &&
+              !boost::iends_with(file_name, ".msh"))
+            error +=
+              "; it knows .msh, .unv, .bdf, .nas, .mesh, .vtk, .step, .stp, .brep, .iges, .igs and .stl, and takes files of other endings for .geo";
         }
       std::ostringstream              text;
       boost::archive::binary_oarchive archive(text);
@@ -201,13 +295,17 @@ namespace Debond
 
 
   GmshFile
-  read_gmsh_file(const std::string &file_name, const int dim, const double size)
+  read_gmsh_file(const std::string &file_name,
+                 const int          dim,
+                 const double       size,
+                 const double       memory)
   {
     const bool is_old = is_old_msh(file_name);
     // Gmsh crashes on some broken files, and it changes the locale, the
     // environment and the number of threads: it gets a process of its own.
     int         ends[2];
-    const pid_t child = pipe(ends) == 0 ? fork() : -1;
+    const pid_t parent = getpid();
+    const pid_t child  = pipe(ends) == 0 ? fork() : -1;
     if (child < 0)
       throw std::runtime_error("there is no process for Gmsh");
     if (child == 0)
@@ -215,12 +313,20 @@ namespace Debond
         for (const int number :
              {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGINT, SIGTERM})
           std::signal(number, SIG_DFL);
+        // It must not go on alone, not even if the parent has ended before.
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (getppid() != parent)
+          _exit(1);
+        limit_memory(memory);
+        // Exit in a .geo file calls exit(), where handlers of the parent would
+        // wait for its threads for ever.
+        std::atexit([]() { _exit(0); });
         // It prints in spite of what it was told.
         const int nowhere = open("/dev/null", O_WRONLY);
         dup2(nowhere, STDOUT_FILENO);
         dup2(nowhere, STDERR_FILENO);
         send_what_gmsh_reads(
-          fdopen(ends[1], "wb"), file_name, is_old, dim, size);
+          fdopen(ends[1], "wb"), file_name, is_old, dim, size, memory);
         _exit(0);
       }
     close(ends[1]);
@@ -234,7 +340,12 @@ namespace Debond
     int status = 1;
     waitpid(child, &status, 0);
     if (status != 0)
-      throw std::invalid_argument(file_name + ": Gmsh crashes on this file");
+      throw std::invalid_argument(
+        file_name + ": Gmsh crashes on this file, or a memory of " +
+        in_gib(memory) + " is not enough for its mesh");
+    if (bytes.empty())
+      throw std::invalid_argument(
+        file_name + ": it ends Gmsh before there is a mesh; leave out Exit");
 
     std::istringstream              received(bytes);
     boost::archive::binary_iarchive archive(received);

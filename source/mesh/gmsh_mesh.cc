@@ -8,6 +8,8 @@
 #include <debond/mesh/gmsh_file.h>
 #include <debond/mesh/source_mesh.h>
 
+#include <boost/algorithm/string.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -51,10 +53,11 @@ namespace Debond
     public:
       GmshMesh(const std::string &file_name,
                const double       scale,
-               const double       size)
+               const double       size,
+               const double       memory)
         : file_name(file_name)
       {
-        read(scale, size);
+        read(scale, read_gmsh_file(file_name, dim, size / scale, memory));
         check_cells();
         cut_cells();
         take_faces();
@@ -96,15 +99,14 @@ namespace Debond
 
         take_names(boundary_ids, dim - 1, source->names.boundaries);
         take_names(region_ids, dim, source->names.regions);
-        for (const int group : inner_groups)
-          source->inner_groups.insert(names.at({dim - 1, group}));
+        source->inner_groups = inner_groups;
         if (n_twins > 0)
-          source->names.notes.push_back(
-            words("there are ", n_twins, " nodes", on_one_place));
+          notes.push_back(words("there are ", n_twins, " nodes", on_one_place));
         if (is_of_higher_order)
-          source->names.notes.push_back(
+          notes.push_back(
             "the file's elements are of higher order, of which the corners are "
             "taken: sides are straight between them");
+        source->names.notes = notes;
 
         dealii::GridTools::delete_unused_vertices(vertices,
                                                   cell_data,
@@ -162,10 +164,10 @@ namespace Debond
       }
 
       void
-      read(const double scale, const double size)
+      read(const double scale, const GmshFile &file)
       {
-        const GmshFile file = read_gmsh_file(file_name, dim, size / scale);
         std::unordered_map<std::size_t, unsigned int> vertex_of; // by tag
+        std::set<int> ungrouped; // entities of cells
         for (std::size_t i = 0; i < file.nodes.size(); ++i)
           {
             dealii::Point<dim> vertex;
@@ -185,8 +187,11 @@ namespace Debond
               {
                 groups.insert(group);
                 names[{elements.dimension, group}] =
-                  name.empty() ? std::to_string(group) : printable(name);
+                  name.empty() ? std::to_string(group) :
+                                 boost::trim_copy(printable(name));
               }
+            if (is_cell && groups.empty())
+              ungrouped.insert(elements.entity);
             is_of_higher_order =
               is_of_higher_order || (is_cell && elements.order > 1);
             for (std::size_t e = 0; e < elements.tags.size(); ++e)
@@ -203,7 +208,8 @@ namespace Debond
               }
           }
         // As Gmsh does when it saves a mesh.
-        const auto is_grouped = [](const Element &cell) {
+        const std::size_t n          = cells.size();
+        const auto        is_grouped = [](const Element &cell) {
           return !cell.groups.empty();
         };
         if (file.is_geometry &&
@@ -212,6 +218,20 @@ namespace Debond
                                             cells.end(),
                                             is_grouped),
                       cells.end());
+        if (cells.size() < n)
+          notes.push_back(words("cells left out: ",
+                                n - cells.size(),
+                                dim == 2 ? "; surfaces" : "; volumes",
+                                " in no group of the file: ",
+                                ungrouped.size()));
+        if (file.n_ghosts > 0)
+          notes.push_back(
+            words("ghost cells of pieces of a partition are left out: ",
+                  file.n_ghosts));
+        if (scale == 1. && (boost::iends_with(file_name, ".step") ||
+                            boost::iends_with(file_name, ".stp")))
+          notes.push_back(
+            "lengths of STEP files come in mm, whatever they are in there; Mesh/Scale multiplies them");
       }
 
       /// Checks the cells one by one, and joins those that stand in the file
@@ -219,6 +239,10 @@ namespace Debond
       void
       check_cells()
       {
+        if (cells.empty() && boost::iends_with(file_name, ".stl"))
+          fail("an STL file has a surface alone; fill it in a .geo file, by "
+               "Merge \"name.stl\"; Surface Loop(1) = Surface{:}; "
+               "Volume(1) = {1};");
         if (cells.empty())
           fail(
             std::string("the mesh has no ") +
@@ -263,10 +287,11 @@ namespace Debond
         is_hypercube = kinds == std::set<std::size_t>{1u << dim};
         is_cut       = !is_hypercube && kinds != std::set<std::size_t>{dim + 1};
         if (dim == 2 && !(most_z - least_z <= Tolerance::same_node * size))
-          fail("z must be the same at all nodes of a plane mesh, but it goes "
-               "from " +
-               std::to_string(least_z) + " to " + std::to_string(most_z) +
-               "; a body in 3D has cells in 3D, and needs Dimension = 3");
+          fail(
+            "z must be the same at all nodes of a plane mesh, but it goes "
+            "from " +
+            std::to_string(least_z) + " to " + std::to_string(most_z) +
+            "; turn a body in the plane x-z in Gmsh, by Rotate {{1, 0, 0}, {0, 0, 0}, -Pi/2} { Surface{:}; }; one in 3D has cells in 3D, and Dimension = 3");
       }
 
       unsigned int
@@ -306,8 +331,6 @@ namespace Debond
                 add_simplex(corners, c);
                 continue;
               }
-            if (corners.size() > 8 || corners.size() == 7)
-              fail(element(c) + " is of a kind that is not read");
             const auto kind = dealii::ReferenceCell::n_vertices_to_type(
               dim, static_cast<unsigned int>(corners.size()));
             const unsigned int centre = add_centre(corners);
@@ -350,7 +373,7 @@ namespace Debond
         simplices.push_back(simplex);
       }
 
-      /// Finds the faces of simplices outside and inside of the body.
+      /// Finds the faces of simplices on the boundary, and neighbours.
       void
       take_faces()
       {
@@ -394,16 +417,17 @@ namespace Debond
                      element(sides[s].cell));
           else
             {
-              inside.push_back(sides[s].face);
               neighbours.push_back({sides[s].cell, sides[s + 1].cell});
               ++s;
             }
       }
 
-      /// Finds the groups of the boundary's faces, and those inside.
+      /// Finds the groups of the boundary's faces, and what these have inside
+      /// or away from the body, as along a region that is left out.
       void
       take_groups()
       {
+        std::map<int, std::array<std::size_t, 2>> counts; // on it or not
         for (Element &face : faces)
           {
             if (face.groups.empty())
@@ -412,26 +436,17 @@ namespace Debond
             std::vector<Corners> pieces           = {face.corners};
             if (is_quadrilateral && centres.count(key(face.corners)) > 0)
               pieces = parts(face.corners);
-            bool is_outside = true;
-            for (const Corners &piece : pieces)
-              {
+            const bool is_outside = std::all_of(
+              pieces.begin(), pieces.end(), [&](const Corners &piece) {
                 const auto outer =
                   std::lower_bound(outside.begin(),
                                    outside.end(),
                                    std::make_pair(key(piece), std::size_t(0)));
-                if (outer != outside.end() && outer->first == key(piece))
-                  continue;
-                is_outside = false;
-                if (!std::binary_search(inside.begin(),
-                                        inside.end(),
-                                        key(piece)))
-                  fail(words("element ",
-                             face.tag,
-                             ", which is in a group, is the face of no cell"));
-              }
-            if (!is_outside)
-              inner_groups.insert(face.groups.begin(), face.groups.end());
-            else
+                return outer != outside.end() && outer->first == key(piece);
+              });
+            for (const int group : face.groups)
+              ++counts[group][is_outside ? 0 : 1];
+            if (is_outside)
               for (const Corners &piece :
                    is_cut ? pieces : std::vector<Corners>{face.corners})
                 {
@@ -440,6 +455,19 @@ namespace Debond
                   outer.groups.insert(face.groups.begin(), face.groups.end());
                 }
           }
+        for (const auto &[group, n] : counts)
+          if (n[1] > 0)
+            {
+              const std::string &name = names.at({dim - 1, group});
+              inner_groups.insert(name);
+              notes.push_back(words(
+                n[1],
+                " of ",
+                n[0] + n[1],
+                " faces of the group ",
+                name,
+                " lie inside the body or away from it, and are left out"));
+            }
       }
 
       /// Checks that one comes from every cell to every other through faces.
@@ -562,10 +590,10 @@ namespace Debond
       std::vector<Simplex>            simplices;
       std::map<FaceKey, unsigned int> centres;
       std::vector<std::pair<FaceKey, std::size_t>>     outside; ///< with cells
-      std::vector<FaceKey>                             inside;
       std::vector<std::pair<std::size_t, std::size_t>> neighbours; ///< cells
       std::map<FaceKey, Element> outer_faces; ///< in groups, of the mesh
-      Groups                     inner_groups;
+      std::set<std::string>      inner_groups;
+      std::vector<std::string>   notes;
       std::size_t                n_twins = 0;
     };
   } // namespace
@@ -576,9 +604,10 @@ namespace Debond
   std::unique_ptr<SourceMesh<dim>>
   read_gmsh_mesh(const std::string &file_name,
                  const double       scale,
-                 const double       size)
+                 const double       size,
+                 const double       memory)
   {
-    return GmshMesh<dim>(file_name, scale, size).make();
+    return GmshMesh<dim>(file_name, scale, size, memory).make();
   }
 
 

@@ -35,7 +35,8 @@ namespace Debond
               const std::shared_ptr<const SourceMesh<dim>> coarse =
                 read_gmsh_mesh<dim>(parameters.file,
                                     parameters.scale,
-                                    parameters.size);
+                                    parameters.size,
+                                    parameters.memory);
               return std::make_shared<MeshBody<dim>>(
                 [coarse, degrees = parameters.box.rotation](
                   const unsigned int n_refinements) {

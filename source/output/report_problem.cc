@@ -111,9 +111,14 @@ namespace Debond
     record.add("/dimension", dim);
     record.add("/cells", scene.n_cells());
     record.add("/degree", problem.degree);
+    const auto lengths = problem.body->extents();
     record.line("mesh",
                 words(scene.n_cells(),
-                      dim == 2 ? " triangles" : " tetrahedra",
+                      dim == 2 ? " triangles, " : " tetrahedra, ",
+                      lengths[0],
+                      " x ",
+                      lengths[1],
+                      dim == 2 ? "" : words(" x ", lengths[2]),
                       problem.degree == 2 ? ", quadratic displacements" : ""));
 
     const unsigned int n_dofs = scene.n_unknowns();

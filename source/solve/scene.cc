@@ -71,7 +71,7 @@ namespace Debond
     , body_materials(given.materials.everywhere)
   {
     dealii::Timer timer;
-    std::string   entry    = "Mesh/Lengths"; // that errors belong to
+    std::string   entry    = "Mesh/Source"; // that errors belong to
     const auto    describe = [&](const std::invalid_argument &error) {
       if (const auto *load = dynamic_cast<const LoadError *>(&error))
         entry = load->entry;

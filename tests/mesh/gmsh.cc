@@ -18,9 +18,8 @@ using namespace dealii;
 using namespace Debond;
 
 std::string
-write(const std::string &text)
+write(const std::string &text, const std::string &name = "test.msh")
 {
-  const std::string name = "test.msh";
   std::ofstream(name) << text;
   return name;
 }
@@ -41,12 +40,31 @@ measure_of(const Triangulation<dim> &mesh)
 
 template <int dim>
 std::shared_ptr<const Body<dim>>
-read(const std::string &text)
+read(const std::string &text,
+     const std::string &name   = "test.msh",
+     const double       size   = 0.,
+     const double       memory = 1e12)
 {
   BodyParameters parameters;
   parameters.source = BodyParameters::Source::file;
-  parameters.file   = write(text);
+  parameters.file   = write(text, name);
+  parameters.size   = size;
+  parameters.memory = memory;
   return std::dynamic_pointer_cast<const Body<dim>>(make_body(dim, parameters));
+}
+
+
+
+/// What the user is told of a body that there is.
+template <int dim>
+std::string
+notes(const Body<dim> &body)
+{
+  Triangulation<dim> mesh;
+  std::string        text;
+  for (const std::string &note : body.make_mesh(mesh).notes)
+    text += note + "\n";
+  return text;
 }
 
 
@@ -106,9 +124,8 @@ test_errors()
   check("no such node", words.find("test.msh: Gmsh ") == 0);
   error(with("1 3 4", "1 3 3"));
   error(with("3 2 2 1 1 1 3 4", "3 4 2 1 1 1 2 3 4"));
-  error(with("1 3 4", "1 2 4"));                 // overlaps
-  error(with("1 1 2 1 1 1 2", "1 1 2 1 1 2 4")); // an edge of nothing
-  error(with("4 0 1 0", "4 2 2 0"));             // flat
+  error(with("1 3 4", "1 2 4"));     // overlaps
+  error(with("4 0 1 0", "4 2 2 0")); // flat
   // A triangle below two whose common node is on its edge.
   error(with("3\n1 1 2 1 1 1 2\n2 2 2 1 1 1 2 3\n3 2 2 1 1 1 3 4",
              "4\n2 2 2 1 1 1 5 4\n3 2 2 1 1 5 2 3\n4 2 2 1 1 5 3 4\n"
@@ -120,6 +137,11 @@ test_errors()
   error(with("3\n1 1 2 1 1 1 2\n2 2 2 1 1 1 2 3\n3 2 2 1 1 1 3 4",
              "1\n2 3 2 1 1 1 2 3 4",
              with("3 1 1 0", "3 0.2 0.2 0")));
+  // A triangle of a kind that Gmsh has for itself.
+  error("$MeshFormat\n3 0 8\n$EndMeshFormat\n"
+        "$Entities\n0 0 1 0\n1 0 0\n$EndEntities\n"
+        "$Nodes\n3\n1 0 0 0 0\n2 1 0 0 0\n3 1 1 0 0\n$EndNodes\n"
+        "$Elements\n1\n1 135 1 4 1 2 3 1\n$EndElements\n");
   // Counts that do not fit.
   error(with("3\n1 1 2 1 1 1 2\n2 2 2 1 1 1 2 3\n3 2 2 1 1 1 3 4",
              "1\n1 1 2 1 1 1 2"));
@@ -141,16 +163,31 @@ test_odd_files()
   check("a group inside is none of the boundary",
         body->boundaries() == std::set<std::string>{"1"} &&
           body->inner_groups == std::set<std::string>{"4"});
+  check("one that is partly inside is noted",
+        notes(*read<2>(with("9 1 2 4", "9 1 2 1", crossed)))
+            .find("1 of 2 faces of the group 1 lie inside the body") == 0);
+  const auto apart = read<2>(with("9 1 2 4 1 3 1", "9 1 2 4 4 4 2", crossed));
+  check("an edge of nothing is noted",
+        apart->boundaries() == std::set<std::string>{"1"} &&
+          apart->inner_groups == std::set<std::string>{"4"} &&
+          notes(*apart).find("1 of 1 faces of the group 4 lie inside the body "
+                             "or away from it") == 0);
   check("names have no control characters",
         read<2>(with("$Nodes",
                      "$PhysicalNames\n1\n1 1 \"a\x1b[31mb\"\n"
                      "$EndPhysicalNames\n$Nodes"))
             ->boundaries() == std::set<std::string>{"a\\x1b[31mb"});
+  check("names with underscores and blanks",
+        read<2>(with("$Nodes",
+                     "$PhysicalNames\n2\n1 1 \" glued_side \"\n2 1 \"b_1\"\n"
+                     "$EndPhysicalNames\n$Nodes"))
+            ->boundaries() == std::set<std::string>{"glued_side"});
+  // All in partition 2 of a file that has no other.
+  const std::string piece =
+    with("3\n1 1 2 1 1 1 2\n2 2 2 1 1 1 2 3\n3 2 2 1 1 1 3 4",
+         "3\n1 1 4 1 1 1 2 1 2\n2 2 4 1 1 1 2 1 2 3\n3 2 4 1 1 1 2 1 3 4");
+  check("a piece of a partition", read<2>(piece)->n_cells() == 2);
   // A square cut from its corner to its centre, where two nodes lie.
-  const auto notes = [](const std::string &text) {
-    Triangulation<2> mesh;
-    return read<2>(text)->make_mesh(mesh).notes;
-  };
   const std::string four =
     "5\n1 1 2 1 1 1 2\n2 2 2 1 1 1 2 5\n3 2 2 1 1 2 3 5\n"
     "4 2 2 1 1 3 4 5\n5 2 2 1 1 4 6 5";
@@ -161,9 +198,122 @@ test_odd_files()
               "$Nodes\n6\n6 1e-12 0 0",
               with("5 0.5 0 0", "5 0.5 0.5 0")));
   check("a crack is noted",
-        notes(fan).size() == 1 &&
-          notes(fan)[0].find("2 nodes at the same place") != std::string::npos);
-  check("nothing else is", notes(with("4 6 5", "4 1 5", fan)).empty());
+        notes(*read<2>(fan)).find("there are 2 nodes at the same place") == 0);
+  check("nothing else is",
+        notes(*read<2>(with("4 6 5", "4 1 5", fan))).empty());
+}
+
+
+
+/// A square of two triangles and one of two quadrilaterals beside it in a
+/// partition of two, whose pieces have groups of their own beside those of the
+/// file; whole and one piece with the cells of the other as ghosts.
+void
+test_partition()
+{
+  std::cout << "Partitions" << std::endl;
+  const std::string header =
+    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n"
+    "1 1 \"the_left\"\n1 9 \"_part{1}_physical{the_left}\"\n"
+    "2 2 \"a_body\"\n$EndPhysicalNames\n"
+    "$Entities\n0 1 1 0\n1 0 0 0 0 1 0 1 1 0\n1 0 0 0 2 1 0 1 2 0\n"
+    "$EndEntities\n";
+  const std::string nodes =
+    "$Nodes\n1 6 1 6\n2 1 0 6\n1\n2\n3\n4\n5\n6\n"
+    "0 0 0\n1 0 0\n2 0 0\n0 1 0\n1 1 0\n2 1 0\n$EndNodes\n";
+  const auto whole =
+    read<2>(header +
+            "$PartitionedEntities\n2\n0\n0 2 2 0\n"
+            "2 1 1 1 1 0 0 0 0 1 0 2 1 9 0\n"
+            "3 2 1 2 1 2 1 0 0 1 1 0 0 0\n"
+            "2 2 1 1 1 0 0 0 1 1 0 1 2 0\n3 2 1 1 2 1 0 0 2 1 0 1 2 0\n"
+            "$EndPartitionedEntities\n" +
+            nodes +
+            "$Elements\n4 6 1 6\n1 2 1 1\n1 1 4\n1 3 1 1\n2 2 5\n"
+            "2 2 2 2\n3 1 2 5\n4 1 5 4\n2 3 2 2\n5 2 3 6\n6 2 6 5\n"
+            "$EndElements\n");
+  check("it is joined",
+        whole->n_cells() == 4 && notes(*whole).empty() &&
+          whole->boundaries() == std::set<std::string>{"the_left"} &&
+          whole->inner_groups.empty() &&
+          whole->regions() == std::set<std::string>{"a_body"});
+  const auto piece =
+    read<2>(header +
+            "$PartitionedEntities\n2\n1\n3 1\n0 1 1 0\n"
+            "2 1 1 1 1 0 0 0 0 1 0 2 1 9 0\n2 2 1 1 1 0 0 0 1 1 0 1 2 0\n"
+            "$EndPartitionedEntities\n" +
+            nodes +
+            "$Elements\n3 5 1 6\n1 2 1 1\n1 1 4\n2 2 2 2\n3 1 2 5\n"
+            "4 1 5 4\n2 3 2 2\n5 2 3 6\n6 2 6 5\n$EndElements\n"
+            "$GhostElements\n2\n5 2 1 1\n6 2 1 1\n$EndGhostElements\n");
+  check("the ghosts of a piece are noted",
+        piece->n_cells() == 2 &&
+          notes(*piece) ==
+            "ghost cells of pieces of a partition are left out: 2\n");
+}
+
+
+
+/// Files that Gmsh reads otherwise than they are meant.
+void
+test_other_formats()
+{
+  std::cout << "Other formats" << std::endl;
+  const auto error =
+    [](const std::string &text, const std::string &name, const double size) {
+      print_error([&] { read<2>(text, name, size); });
+    };
+  const std::string entities =
+    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n2 0 1 0\n"
+    "1 0 0 0 0\n2 1 0 0 0\n1 0 0 0 1 1 0 0 1 7\n$EndEntities\n"
+    "$Nodes\n1 3 1 3\n2 1 0 3\n1\n2\n3\n0 0 0\n1 0 0\n0 1 0\n$EndNodes\n"
+    "$Elements\n1 1 1 1\n2 1 2 1\n1 1 2 3\n$EndElements\n";
+  check("a curve that is not in the file may bound a surface",
+        read<2>(entities)->n_cells() == 1);
+  error(with("1 0 0 0 0\n", "1 0 0 0\n0\n", entities), "test.msh", 0.);
+  error("    -1\n  2467\n    -1\n", "test.unv", 0.);
+  error("*HEADING\n", "test.inp", 0.);
+  error("solid\nendsolid\n", "empty.stl", 0.);
+  error("Save \"other.msh\";\nExit;\n", "test.geo", 0.);
+  const std::string plane = "SetFactory(\"OpenCASCADE\");\n"
+                            "Rectangle(1) = {0, 0, 0, 2, 1};\n";
+  // 2 / (sqrt(3)/4 1e-12) triangles of 1000 bytes, of a memory of 1e12.
+  error(plane, "test.geo", 1e-6);
+  error(plane + "Rotate {{1, 0, 0}, {0, 0, 0}, Pi/2} { Surface{1}; }\n",
+        "test.geo",
+        0.);
+  error(plane + "Rotate {{0, 1, 0}, {0, 0, 0}, Pi/2} { Surface{1}; }\n",
+        "test.geo",
+        0.);
+  std::string words;
+  try
+    {
+      read<2>(plane + "Mesh.MeshSizeMax = 0.001;\n", "test.geo", 0., 3e7);
+    }
+  catch (const std::invalid_argument &said)
+    {
+      words = said.what();
+    }
+  check("Gmsh's memory is limited",
+        words.find("a memory of 0.0 GiB is not enough") != std::string::npos);
+  const std::string tetrahedron =
+    "solid\n"
+    "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 1 0\n"
+    "vertex 1 0 0\nendloop\nendfacet\n"
+    "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+    "vertex 0 0 1\nendloop\nendfacet\n"
+    "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 1\n"
+    "vertex 0 1 0\nendloop\nendfacet\n"
+    "facet normal 0 0 0\nouter loop\nvertex 1 0 0\nvertex 0 1 0\n"
+    "vertex 0 0 1\nendloop\nendfacet\nendsolid\n";
+  print_error([&] { read<3>(tetrahedron, "test.stl"); });
+  Triangulation<3> mesh;
+  read<3>("Merge \"test.stl\";\nSurface Loop(1) = Surface{:};\n"
+          "Volume(1) = {1};\n",
+          "test.geo")
+    ->make_mesh(mesh);
+  check("an STL file that is filled",
+        std::abs(measure_of(mesh) - 1. / 6.) < 1e-12);
 }
 
 
@@ -235,6 +385,21 @@ test_geometry()
   };
   check("edges of the foot", n_on(1., "foot") == 20);
   check("edges around", n_on(2., "around") == 30);
+  const auto left_out =
+    read<2>("SetFactory(\"OpenCASCADE\");\n"
+            "Rectangle(1) = {0, 0, 0, 1, 1};\nRectangle(2) = {1, 0, 0, 1, 1};\n"
+            "BooleanFragments{ Surface{1}; Delete; }{ Surface{2}; Delete; }\n"
+            "Transfinite Curve {:} = 4;\nTransfinite Surface {:};\n"
+            "Physical Surface(\"plate\") = {1};\n"
+            "bottom() = Curve In BoundingBox {-1, -0.1, -1, 3, 0.1, 1};\n"
+            "Physical Curve(\"bottom\") = bottom();\n",
+            "test.geo");
+  check("what is left out is noted",
+        left_out->n_cells() == 18 &&
+          notes(*left_out) ==
+            "cells left out: 18; surfaces in no group of the file: 1\n"
+            "3 of 6 faces of the group bottom lie inside the body or away from "
+            "it, and are left out\n");
   parameters.size = 0.;
   print_error([&] { make_body(3, parameters); });
   std::ofstream("test.geo") << "SetFactory(\"OpenCASCADE\");\n"
@@ -258,6 +423,8 @@ main(int argc, char **)
   print_figures = argc > 1;
   test_errors();
   test_odd_files();
+  test_partition();
+  test_other_formats();
   test_mixed_cells();
   test_geometry();
 }

@@ -171,6 +171,14 @@ refused "no boundary seam, but 5; the group of this name lies inside" \
   "${file[@]}" --set "Boundary conditions/Contact boundary=seam"
 refused "no boundary half, but 5; the region of this name" \
   "${file[@]}" --set "Boundary conditions/Clamped boundaries=half"
+# Commas separate names, but for those of a name.
+mesh $'3\n1 5 "id: 1, side: 2"\n1 6 "id: 1, side: 3"\n1 7 "side: 2"' \
+  $'5\n1 1 2 5 1 4 1\n2 1 2 6 1 1 2\n3 1 2 7 1 2 3\n4 2 2 8 1 1 2 3\n5 2 2 8 1 1 3 4'
+file+=(--validate --set "Boundary conditions/Contact boundary=id: 1,side: 3")
+expect_code 0 "$debond" "${file[@]}" --set \
+  "Boundary conditions/Clamped boundaries=side: 2, id: 1, side: 2"
+refused "the side id: 1, side: 3 is clamped already" "${file[@]}" --set \
+  "Boundary conditions/Clamped boundaries=id: 1, side: 2, id: 1, side: 3"
 rm log errors plain.prm mesh.msh
 
 [ "$(ls)" = "$(printf '%s\n' again.prm defaults.prm help set.prm version)" ] ||

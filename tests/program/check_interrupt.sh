@@ -124,3 +124,19 @@ for stage in "search for a lower minimum" proof; do
     fail "$(cat errors)"
   grep -q '"status": "success"' long/summary.json || fail "no result"
 done
+
+# Gmsh, which meshes in a process of its own, ends with the program.
+cat >fine.geo <<'GEO'
+SetFactory("OpenCASCADE");
+Rectangle(1) = {0, 0, 0, 1, 1};
+Physical Curve("left") = {4};
+Physical Curve("bottom") = {1};
+GEO
+for signal in TERM KILL; do
+  signal_when $signal 'gmsh=$(pgrep -P $process) && sleep 0.5' \
+    "$debond" "$scene" --set Output/Directory=fine --set Mesh/Source=file \
+    --set "Mesh/File=$PWD/fine.geo" --set Mesh/Size=0.001
+  sleep 1
+  state=$(ps -o stat= -p "$gmsh") || true
+  [[ -z $state || $state == Z* ]] || fail "Gmsh goes on after SIG$signal: $state"
+done

@@ -77,7 +77,7 @@ assert n_found >= 10 and largest > 1e-4, (n_found, largest)
 SCRIPT
 
 "$debond" plane.prm >log
-grep -q "^  mesh  *80 triangles, quadratic displacements$" log ||
+grep -q "^  mesh  *80 triangles, 0.4 x 0.04, quadratic displacements$" log ||
   fail "the log does not say it: $(cat log)"
 python3 check.py output/plane 22 3 "$tests"
 "$debond" solid.prm >/dev/null

@@ -195,7 +195,7 @@ def check_ends(directory):
             (["Certificate/Kind=global"], 2, "Certificate/Kind: several ranks"),
             (["Mesh/Cells=0, 4"], 2, "Mesh/Cells"),
             (["Loads/Traction top=0; if(x > 0.39, log(-1), 0)"], 2, "Loads/Traction top"),
-            (["Mesh/Cells=1, 1"], 2, "cells cannot be shared by"),
+            (["Mesh/Cells=1, 1"], 2, "Mesh/Source: 4 cells cannot be shared by 5 ranks; start"),
             (["Boundary conditions/Clamped boundaries=left, right, bottom"], 2, "Boundary")):
         folder = os.path.join(directory, "refused")
         n = 5 if "shared" in message else 3

@@ -19,6 +19,10 @@ namespace Debond
   double
   memory_left(const double limit);
 
+  /// Lets this process take so many bytes beside what it has.
+  void
+  limit_memory(const double bytes);
+
   /// "1.5 GiB"
   std::string
   in_gib(const double bytes);

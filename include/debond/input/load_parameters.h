@@ -77,6 +77,13 @@ namespace Debond
                  LoadParameters    &loads,
                  ParameterTable    &table);
 
+  /// Commas in a list separate names: puts @p known ones together again that
+  /// have commas themselves and stand in the list as they are.
+  void
+  join_names(const std::string           &list,
+             const std::set<std::string> &known,
+             std::set<std::string>       &names);
+
   /// Rejects the entry @p path if the body has not all boundaries of these
   /// names.
   void

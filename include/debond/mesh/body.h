@@ -88,7 +88,7 @@ namespace Debond
   public:
     virtual ~BodyDescription() = default;
 
-    /// Groups of faces in its file that lie inside: no boundaries.
+    /// Groups in its file with faces that are inside or away from it.
     std::set<std::string> inner_groups;
 
     /// The pieces of the boundary that a scene can name.

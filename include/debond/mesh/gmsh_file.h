@@ -15,12 +15,13 @@ namespace Debond
     /// Of one kind in one entity, with corners as tags of nodes.
     struct Elements
     {
-      int                        dimension, order, n_corners;
+      int                        dimension, entity, order, n_corners;
       std::vector<std::size_t>   tags, corners;
       std::map<int, std::string> groups; ///< names by number, if they have any
     };
 
     bool                     is_geometry = false; ///< meshed on the spot
+    std::size_t              n_ghosts    = 0;     ///< of pieces of a partition
     std::vector<std::size_t> nodes;               ///< tags
     std::vector<double>      coordinates;         ///< three for each
     std::vector<Elements>    elements;
@@ -29,11 +30,16 @@ namespace Debond
   /**
    * Has Gmsh read a file in any of its formats, with elements of the dimension
    * @p dim and of one less. A geometry is meshed, with edges of the length
-   * @p size, or of what the file or Gmsh finds good if it is 0. Partitions are
-   * joined. Throws std::invalid_argument with Gmsh's words.
+   * @p size, or of what the file or Gmsh finds good if it is 0. Gmsh may take
+   * so many bytes of @p memory. Partitions are joined. Throws
+   * std::invalid_argument with Gmsh's words, or if there is more in the file
+   * than Gmsh understands.
    */
   GmshFile
-  read_gmsh_file(const std::string &file_name, int dim, double size);
+  read_gmsh_file(const std::string &file_name,
+                 int                dim,
+                 double             size,
+                 double             memory);
 } // namespace Debond
 
 #endif

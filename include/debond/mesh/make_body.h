@@ -21,8 +21,9 @@ namespace Debond
     Source        source = Source::box;
     BoxParameters box;
     std::string   file;              ///< that Gmsh reads
-    double        scale = 1.;        ///< of the lengths in the file
-    double        size  = 0.;        ///< of cells of a geometry, if not 0
+    double        scale  = 1.;       ///< of the lengths in the file
+    double        size   = 0.;       ///< of cells of a geometry, if not 0
+    double        memory = 1e12;     ///< bytes that Gmsh may take
     std::string   generator;         ///< a function of dealii::GridGenerator
     std::string   arguments;         ///< of that function
     unsigned int  n_refinements = 0; ///< unless it is a box

@@ -15,7 +15,7 @@ namespace Debond
   {
     dealii::Triangulation<dim> mesh;
     PieceNames                 names;
-    std::set<std::string>      inner_groups; ///< of faces inside the body
+    std::set<std::string>      inner_groups; ///< with faces not on its boundary
 
     /// Halves the cells in each direction @p n_refinements times. Throws
     /// std::invalid_argument if they are triangles or tetrahedra.
@@ -24,22 +24,24 @@ namespace Debond
   };
 
   /**
-   * The mesh of a Gmsh file, see read_msh(), with its lengths multiplied by
-   * @p scale. In 2D z must be the same everywhere. Physical groups of faces
+   * The mesh of a Gmsh file, see read_gmsh_file(), with its lengths multiplied
+   * by @p scale. In 2D z must be the same everywhere. Physical groups of faces
    * are boundaries, those of cells regions, by their names or, without one, by
-   * their numbers. Groups that lie inside of the body are no boundaries.
+   * their numbers. What groups have inside or away from the body belongs to no
+   * boundary.
    *
    * Throws std::invalid_argument with file and line if the mesh has cells of
    * several kinds or none, if a cell is flat or so distorted that its centre
    * does not see its faces, if cells overlap or hang together by less than a
-   * face, if a vertex lies on a face without being one of its own (a hanging
-   * node), or if a face in a group is none of the mesh.
+   * face, or if a vertex lies on a face without being one of its own (a hanging
+   * node).
    */
   template <int dim>
   std::unique_ptr<SourceMesh<dim>>
   read_gmsh_mesh(const std::string &file_name,
                  const double       scale,
-                 const double       size);
+                 const double       size,
+                 const double       memory);
 
   /**
    * What deal.II's GridGenerator::generate_from_name_and_arguments() makes,
