@@ -400,6 +400,32 @@ def check_refined():
         check("fewer unknowns than the uniform mesh", levels[-1]["unknowns"] < most)
 
 
+def check_cells_at_edge():
+    """E*/a = (0.91 / (1 - 0.3^2)) / 5 = 0.2, where bonds of one part of the bottom end: cells of
+    1/20 are a quarter of it. A softer region beside it, with Young's modulus 0.091, has no say."""
+    block = ["Mesh/Lengths=2, 1", "Material/Young modulus=0.91", "Material/Poisson ratio=0.3",
+             "Material/Hypothesis=plane strain", "Boundary conditions/Clamped boundaries=",
+             "Boundary conditions/Roller boundaries=left", "Loads/Traction top=",
+             "Boundary conditions/Displacement top=free; 0.0001", "Solver/Method=automatic",
+             "Contact law/Tangential displacement=free", "Contact law/Bond threshold=0.01",
+             "Contact law/Bond stiffness=if(x < 1, 5, 0)", "Load path/Displacement factors=1, 2",
+             "Parts/soft=x > 1.5", "Material/Young modulus soft=0.091", NO_GLOBAL]
+    for name, size, *scene in (
+            ("linear", 0.25, "Mesh/Cells=40, 20"),
+            ("quadratic", 0.25, "Mesh/Cells=40, 20", "Mesh/Degree=2",
+             "Contact law/Quadrature=gauss 4"),
+            ("finer", 0.125, "Mesh/Cells=80, 40"),
+            # The sides of four triangles of a square.
+            ("solid", 1., "Dimension=3", "Mesh/Lengths=2, 1, 0.2", "Mesh/Cells=10, 5, 1",
+             "Boundary conditions/Displacement top=free; 0.0001; free",
+             "Boundary conditions/Roller boundaries=left, front, back"),
+            ("no edge", 0., "Mesh/Cells=40, 20", "Contact law/Bond stiffness=5")):
+        result = solve(*block, *scene)
+        for row in result["path"]:
+            close("cells at the edge, " + name, row["cell_size_at_edge"], size, 1e-9)
+        close("of the path", result["load_path"]["cell_size_at_edge"], size, 1e-9)
+
+
 def check_estimate_for_good():
     """All bonds break, and the body is unloaded until their gaps are less than M: what is
     left is that without bonds, and so is its estimate."""
@@ -445,5 +471,6 @@ scenes.together(*(("", *check) for check in (
     *((check_column_for_good, *case) for case in (
         (2, "nodal", 1), (2, "gauss 2", 1), (2, "gauss 3", 2), (3, "gauss 2", 2))),
     [check_benchmark], [check_other_laws], [check_arcs], [check_refined],
+    [check_cells_at_edge],
     [check_estimate_for_good], [check_search_beside_path])))
 scenes.end()
