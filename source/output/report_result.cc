@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/output/report.h>
 
 #include <algorithm>
@@ -503,12 +504,6 @@ namespace Debond
 
 
 
-    /// With it a front of bonds breaks at a load that is 5 % too high
-    /// (doc/guide/load-path.md).
-    constexpr double largest_cell_size_at_edge = 1. / 32.;
-
-
-
     /// What became of the factors of a load path, and its curve of stationary
     /// states.
     template <int dim>
@@ -542,7 +537,7 @@ namespace Debond
                 std::setprecision(2),
                 1. / size,
                 " cells there",
-                size > largest_cell_size_at_edge ?
+                size > Tolerance::cell_size_at_edge ?
                   ": a path breaks late. Take smaller cells there, or "
                   "let the bonds end with a part of the boundary" :
                   ""));
