@@ -40,12 +40,6 @@ namespace Debond
 
   namespace
   {
-    /// Beyond it estimates of one mesh are far off more often than not, see
-    /// doc/notes/accuracy.md.
-    constexpr double largest_judged_error = 0.2;
-
-
-
     /// What the verification has against the result, or against the first
     /// step of a load path that it has something against; empty if nothing.
     template <int dim>
@@ -172,11 +166,6 @@ namespace Debond
               "the mean normal of their sides, other nodes that of their side. "
               "What that changes in J is no part of what residuals tell; it "
               "falls with the square of the sides' length");
-          if (result.estimate->is_of_J &&
-              result.estimate->relative() > largest_judged_error)
-            result.notes.push_back(
-              "the mesh is coarse: of an error that is estimated to be more than "
-              "a fifth of J nothing else is known");
         }
       catch (const std::invalid_argument &error)
         {
