@@ -141,7 +141,8 @@ def levels_of(program, directory, scene, degree, unknowns):
         summary = json.load(file)
     return ([] if summary["estimated_error_of"] != "J" else
             [(level["functional"],
-              level["estimated_error"] * abs(level["functional"]))
+              level["estimated_error"] / (level["error_factor"] or 1.)
+              * abs(level["functional"]))
              for level in summary["levels"]])
 
 

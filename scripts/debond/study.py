@@ -359,8 +359,8 @@ def order(study, column, rows, index):
 
 
 def levels(summary):
-    """The estimate of the error beside the error, to the limit that J and its
-    estimate on the last meshes have; the first mesh, and the least and the
+    """What the residuals of each mesh say of its error beside the error, to the
+    limit that J and its estimate on the last meshes have; the first mesh, and the least and the
     largest ratio on all that have four times the last estimate."""
     found = summary.get("levels") or []
     found = list(found.values()) if isinstance(found, dict) else found
@@ -368,6 +368,7 @@ def levels(summary):
         return {}
     n, J, estimate = (numpy.array([level[name] for level in found]) for name in
                       ("unknowns", "functional", "estimated_error"))
+    estimate = estimate / [level["error_factor"] or 1. for level in found]
     size = estimate * abs(J)
     limit = J[-1] - (J[-3] - J[-1]) / (size[-3] - size[-1]) * size[-1]
     error = (J - limit) / abs(limit)

@@ -6,7 +6,6 @@
 #include <debond/base/field_value.h>
 #include <debond/base/owned_cells.h>
 #include <debond/base/ranks.h>
-#include <debond/base/text.h>
 #include <debond/base/tolerances.h>
 #include <debond/check/error_estimate.h>
 
@@ -28,14 +27,6 @@ namespace Debond
     {
       return degree == 1 ? (dim == 2 ? 0.97 : 2.65) : (dim == 2 ? 0.41 : 1.05);
     }
-
-    /// Beyond this lambda / mu, that of nu = 0.45 in plane strain, the ratio of
-    /// estimate and error depends on the mesh.
-    constexpr double largest_calibrated_lambda = 9.;
-
-    /// Of the longest edge of a cell to the shortest one, in 3D: three halves
-    /// of that of a cube's.
-    constexpr double largest_calibrated_stretch = 3.;
 
     /// J that is less than so much of the energy of the stresses is what large
     /// terms leave.
@@ -210,10 +201,6 @@ namespace Debond
       /// That of an elastic body with these stresses, of own cells.
       double stress_energy = 0.;
 
-      /// What the constant was not measured for.
-      bool is_nearly_incompressible = false;
-      bool has_stretched_cells      = false;
-
     private:
       /// What the next cells need of one that is done.
       struct CellStress
@@ -312,12 +299,6 @@ namespace Debond
           stress_energy += 0.5 * (1. / (2. * mu)) * volume *
                            (at_points.stress(0) * at_points.stress(0) -
                             part_of_lambda * trace * trace);
-        is_nearly_incompressible =
-          is_nearly_incompressible || lambda > largest_calibrated_lambda * mu;
-        has_stretched_cells =
-          has_stretched_cells ||
-          (dim == 3 && cell->diameter() > largest_calibrated_stretch *
-                                            cell->minimum_vertex_distance());
       }
 
       /// Of each face of a cell: asking ReferenceCell for each of them takes
@@ -517,23 +498,6 @@ namespace Debond
       std::unordered_map<dealii::types::coarse_cell_id, unsigned int>
         first_contact_face;
     };
-
-
-
-    template <int dim>
-    std::string
-    outside_calibration(const Residuals<dim> &residuals, const MPI_Comm ranks)
-    {
-      const auto is_anywhere = [ranks](const bool is_here) {
-        return dealii::Utilities::MPI::max(is_here ? 1 : 0, ranks) == 1;
-      };
-      std::vector<std::string> reasons;
-      if (is_anywhere(residuals.has_stretched_cells))
-        reasons.emplace_back("cells that are stretched");
-      if (is_anywhere(residuals.is_nearly_incompressible))
-        reasons.emplace_back("nearly incompressible materials");
-      return join(reasons, " and ");
-    }
   } // namespace
 
 
@@ -543,23 +507,25 @@ namespace Debond
   estimate_error(const EstimatedProblem<dim> &of,
                  const DofVector             &u,
                  const double                 functional,
-                 const LoadFactors            factors)
+                 const LoadFactors            factors,
+                 const std::optional<double>  error_factor)
   {
     const auto                   &dofs  = of.problem.unknowns().dof_handler();
     const MPI_Comm                ranks = of.problem.unknowns().communicator();
     std::optional<Residuals<dim>> residuals;
     on_all_ranks(ranks, [&]() { residuals.emplace(of, u, factors); });
 
-    const double  constant = calibration<dim>(of.problem.unknowns().degree());
+    const double constant = calibration<dim>(of.problem.unknowns().degree()) *
+                            error_factor.value_or(1.);
     ErrorEstimate result;
-    result.cells = std::move(residuals->parts);
+    result.factor = error_factor;
+    result.cells  = std::move(residuals->parts);
     for (double &part : result.cells)
       part *= constant;
     double sum = 0.;
     for (const auto &cell : owned_cells(dofs))
       sum += result.cells[cell->active_cell_index()];
-    result.functional          = dealii::Utilities::MPI::sum(sum, ranks);
-    result.outside_calibration = outside_calibration(*residuals, ranks);
+    result.functional = dealii::Utilities::MPI::sum(sum, ranks);
     const double stress_energy =
       dealii::Utilities::MPI::sum(residuals->stress_energy, ranks);
     result.is_of_J =

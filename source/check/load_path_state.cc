@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/owned_cells.h>
 #include <debond/base/text.h>
 #include <debond/check/broken_zone.h>
 #include <debond/check/load_path_state.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace Debond
 {
@@ -29,6 +31,52 @@ namespace Debond
       for (unsigned int k = 0; k < held.size(); ++k)
         sum += forces[k] * held[k].normal_displacement;
       return sum;
+    }
+
+
+
+    /// LoadPathState::cell_size_at_edge.
+    template <int dim>
+    double
+    cell_size_at_edge(const ElasticProblem<dim> &problem,
+                      const Verification<dim>   &verification)
+    {
+      const ElasticUnknowns<dim> &unknowns = problem.unknowns();
+      const auto                 &boundary = unknowns.contact().boundary();
+
+      // By cell the stiffness of bonds times the size of a face at the edge.
+      std::vector<double> at_edge(
+        unknowns.dof_handler().get_triangulation().n_global_active_cells());
+      for (const auto &face : boundary.faces)
+        {
+          bool   are_gone  = false;
+          double stiffness = 0.;
+          for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
+            if (!face.is_held(k))
+              {
+                const ContactNodeState &node = verification.nodes[face.node(k)];
+                if (node.branch == BondState::broken ||
+                    node.branch == BondState::free)
+                  are_gone = true;
+                else
+                  stiffness = std::max(stiffness, node.bond_stiffness);
+              }
+          if (are_gone)
+            at_edge[face.cell] =
+              stiffness *
+              (dim == 2 ? face.measure : 2. * std::sqrt(face.measure));
+        }
+      double largest = 0.;
+      for (const auto &cell : owned_cells(unknowns.dof_handler()))
+        {
+          const Material &material = problem.fields().material(cell);
+          largest =
+            std::max(largest,
+                     at_edge[cell->id().get_coarse_cell_id()] *
+                       (1. - material.poisson_ratio * material.poisson_ratio) /
+                       material.young_modulus);
+        }
+      return dealii::Utilities::MPI::max(largest, unknowns.communicator());
     }
   } // namespace
 
@@ -112,6 +160,7 @@ namespace Debond
     state.force_imbalance      = verification.force_imbalance;
     state.broken_zone          = verification.broken_zone;
     state.fronts = fronts(boundary, adhesion.adhesive_law(), adhesion, s);
+    state.cell_size_at_edge = cell_size_at_edge(problem, verification);
     state.dissipated_energy = adhesion.dissipated_energy();
     for (const auto &[name, vector] : verification.reactions)
       state.vectors.emplace_back("reaction_" + as_title(name), vector);

@@ -83,6 +83,7 @@ namespace Debond
             [k](const State &state) { return state.other_parts[k].second; });
       add("broken_zone", &State::broken_zone);
       add("fronts", &fronts_of<dim>);
+      add("cell_size_at_edge", &State::cell_size_at_edge);
       add("dissipated_energy", &State::dissipated_energy);
       for (std::size_t k = 0; k < first.vectors.size(); ++k)
         add_vector(first.vectors[k].first,

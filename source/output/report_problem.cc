@@ -173,7 +173,8 @@ namespace Debond
                 {"contact_nodes", level.contact_nodes},
                 {"iterations", level.iterations},
                 {"functional", level.functional},
-                {"estimated_error", level.estimated_error},
+                {"estimated_error", level.estimated_error()},
+                {"error_factor", Record::json_of(level.error_factor)},
                 {"gap", level.gap},
                 {"seconds", level.seconds}});
     record.line(
@@ -184,7 +185,7 @@ namespace Debond
             " contact nodes, J ",
             scientific(level.functional, 10),
             ", error about ",
-            scientific(level.estimated_error, 1),
+            scientific(level.estimated_error(), 1),
             level.gap > 0. ? ", gap " + scientific_above(level.gap, 1) : "") +
         (record.has_details() ? ", " + fixed_point(level.seconds, 2) + " s" :
                                 ""));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/output/report.h>
 
 #include <algorithm>
@@ -98,11 +99,17 @@ namespace Debond
       record.add("/estimated_error", estimate.relative());
       record.add("/estimated_error_of",
                  estimate.is_of_J ? "J" : "stress energy");
+      record.add("/error_factor", Record::json_of(estimate.factor));
       record.line("error of the mesh",
                   "about " + scientific(estimate.relative(), 1) +
                     (estimate.is_of_J ?
                        " of J" :
-                       " of the energy of the stresses, as J is near zero"));
+                       " of the energy of the stresses, as J is near zero") +
+                    (estimate.factor ?
+                       " (" + fixed_point(*estimate.factor, 1) +
+                         " times the residual estimate, as J fell from mesh "
+                         "to mesh)" :
+                       ", not checked by a finer mesh"));
     }
 
 
@@ -518,6 +525,22 @@ namespace Debond
                     load_path,
                     record);
       report_arc(result.arc, load_path, record);
+
+      double size = 0.;
+      for (const LoadPathStep<dim> &step : result.path)
+        size = std::max(size, step.state.cell_size_at_edge);
+      record.add("/load_path/cell_size_at_edge", size);
+      if (size > 0.)
+        record.line(
+          "edge of the bonds",
+          words("E*/a is about ",
+                std::setprecision(2),
+                1. / size,
+                " cells there",
+                size > Tolerance::cell_size_at_edge ?
+                  ": a path breaks late. Take smaller cells there, or "
+                  "let the bonds end with a part of the boundary" :
+                  ""));
     }
   } // namespace
 

@@ -40,12 +40,6 @@ namespace Debond
 
   namespace
   {
-    /// Up to here estimates are from half of the error to twice of it, see
-    /// doc/notes/accuracy.md.
-    constexpr double largest_judged_error = 0.2;
-
-
-
     /// What the verification has against the result, or against the first
     /// step of a load path that it has something against; empty if nothing.
     template <int dim>
@@ -106,6 +100,23 @@ namespace Debond
 
 
 
+    /// Whether nodes of the contact boundary have other normals than their
+    /// sides.
+    template <int dim>
+    bool
+    is_curved(const ContactBoundary<dim> &boundary)
+    {
+      for (const auto &face : boundary.faces)
+        for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
+          if (!face.is_held(k) &&
+              (boundary.nodes[face.node(k)].normal - face.normal).norm() >
+                Tolerance::same_normal)
+            return true;
+      return false;
+    }
+
+
+
     /// Bonds that reach over a gap are one as well.
     template <int dim>
     bool
@@ -134,26 +145,27 @@ namespace Debond
     {
       try
         {
-          result.estimate = estimate_error<dim>({scene.problem(),
-                                                 bonds,
-                                                 scene.conditions(),
-                                                 scene.supports(),
-                                                 scene.loads(),
-                                                 &scene.dead_loads()},
-                                                result.solve.u,
-                                                result.solve.functional,
-                                                result.solve.load_factor);
-          if (const std::string &reason = result.estimate->outside_calibration;
-              !reason.empty())
+          result.estimate =
+            estimate_error<dim>({scene.problem(),
+                                 bonds,
+                                 scene.conditions(),
+                                 scene.supports(),
+                                 scene.loads(),
+                                 &scene.dead_loads()},
+                                result.solve.u,
+                                result.solve.functional,
+                                result.solve.load_factor,
+                                result.levels.empty() ?
+                                  std::nullopt :
+                                  result.levels.back().error_factor);
+          if ((!result.levels.empty() ||
+               scene.problem().unknowns().degree() == 2) &&
+              is_curved(scene.contact_boundary()))
             result.notes.push_back(
-              "the error of the mesh may be from two thirds to three times the "
-              "estimate, which was not calibrated for " +
-              reason);
-          else if (result.estimate->is_of_J &&
-                   result.estimate->relative() > largest_judged_error)
-            result.notes.push_back(
-              "the mesh is coarse: estimates of more than a fifth of J are from a "
-              "third of the error to twice of it");
+              "the contact boundary is curved: vertices of the first mesh have "
+              "the mean normal of their sides, other nodes that of their side. "
+              "What that changes in J is no part of what residuals tell; it "
+              "falls with the square of the sides' length");
         }
       catch (const std::invalid_argument &error)
         {

@@ -63,11 +63,11 @@ namespace Debond
         if (state.mesh != 0 && state.mesh != mesh)
           throw BadInput({state_file() + " is of another mesh; run without "
                                          "--restart"});
-        state.mesh   = mesh;
-        begun        = state.meshes;
-        begun.start  = on_these_ranks(state.meshes.start);
-        begun_path   = state.path;
-        begun_path.u = on_these_ranks(state.path.u);
+        state.mesh      = mesh;
+        begun           = state.meshes;
+        begun.start     = on_these_ranks(state.meshes.start);
+        path.progress   = state.path;
+        path.progress.u = on_these_ranks(state.path.u);
         choose_linear_solver(*scene, parameters.solver, choice);
         check_supports_of_method(choice, parameters.solver, *scene);
         // Before the solve, so that nothing is lost if it is not finite
@@ -88,7 +88,7 @@ namespace Debond
       bool
       open_output()
       {
-        list_files();
+        list_files(*scene);
         try
           {
             on_all_ranks(scene->ranks(), [&]() {
@@ -96,7 +96,7 @@ namespace Debond
                 lock.emplace(parameters.output.directory);
             });
             remove_files(files, parameters.output.directory);
-            if (begun_path.steps.empty())
+            if (path.progress.steps.empty())
               path_output->remove_steps();
             if (!options.restart)
               remove_files({{"restart.state", {}, {}}},
@@ -136,13 +136,12 @@ namespace Debond
           refine();
         else if (!has_path)
           minimise();
-        // On a refined mesh the states are computed again, now with all that
-        // is written of them.
+        // Of a refined mesh the global branch and the arc are left to do.
         if (has_path && result.solve.status != SolverStatus::interrupted)
           follow();
-        else if (!path.steps.empty())
+        else if (!path.progress.steps.empty())
           {
-            result.path         = path.steps;
+            result.path         = path.progress.steps;
             result.verification = verify(scene->problem(),
                                          *path.bonds,
                                          scene->law(),
@@ -221,17 +220,16 @@ namespace Debond
       }
 
     private:
-      /// Of the scene as it is.
       void
-      list_files()
+      list_files(const Scene<dim> &on_mesh)
       {
-        files = output_files(parameters.output, *scene, result);
+        files = output_files(parameters.output, on_mesh, result);
         path_output.emplace(parameters.output,
-                            scene->problem(),
+                            on_mesh.problem(),
                             result.path,
                             result.arc);
         append(path_output->files(), files);
-        append(certification->files(parameters.output, *scene), files);
+        append(certification->files(parameters.output, on_mesh), files);
       }
 
       std::string
@@ -339,6 +337,13 @@ namespace Debond
           state.meshes.start =
             in_serial_order(next.problem().unknowns(), progress.start);
           save_state();
+          list_files(next);
+          path_output->remove_steps();
+        };
+        observer.step_is_done = [this](const PathProgress<dim> &progress,
+                                       const Verification<dim> &verification,
+                                       const AdhesionIntegral<dim> &) {
+          path_output->add(progress.steps.back(), progress.u, verification);
         };
         // A path that has begun stays on its mesh.
         if (state.has_last_mesh)
@@ -373,22 +378,26 @@ namespace Debond
         result.solve        = std::move(adaptive.solve);
         shortfall           = adaptive.shortfall;
         path                = std::move(adaptive.path);
+        path.result         = result.solve;
         state.meshes.levels = result.levels;
         state.has_last_mesh = true;
         state.shortfall     = shortfall;
-        list_files();
+        list_files(*scene);
+        // They are of the mesh that was interrupted.
+        if (result.solve.status == SolverStatus::interrupted)
+          path_output->remove_steps();
       }
 
       void
       follow()
       {
-        if (!begun_path.steps.empty())
-          path_output->go_on_after(begun_path.steps);
+        if (!path.progress.steps.empty())
+          path_output->go_on_after(path.progress.steps);
         path = follow_load_path<dim>(
           parameters.load_path,
           settings(),
           *scene,
-          begun_path,
+          path,
           [this](const PathProgress<dim> &progress,
                  const Verification<dim> &verification,
                  const AdhesionIntegral<dim> &) {
@@ -403,7 +412,7 @@ namespace Debond
           },
           log());
         result.solve = std::move(path.result);
-        result.path  = path.steps;
+        result.path  = path.progress.steps;
         result.arc   = path.arc;
       }
 
@@ -419,10 +428,9 @@ namespace Debond
 
       RunState<dim>     state; ///< as it is to be saved
       bool              has_state = false;
-      AdaptiveProgress  begun;      ///< by an earlier run
-      PathProgress<dim> begun_path; ///< the same
+      AdaptiveProgress  begun; ///< by an earlier run
       RunResult<dim>    result;
-      FollowedPath<dim> path;      ///< of which result has the steps
+      FollowedPath<dim> path;      ///< begun by an earlier run or refine()
       std::string       shortfall; ///< of refinement
 
       std::vector<OutputFile>            files;

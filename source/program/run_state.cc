@@ -79,7 +79,8 @@ namespace Debond
         .largest_gap &state.normal_force &state.contact_reaction &state
         .clamped_reaction &state.law_violation &state
         .equilibrium_residual &state.force_imbalance &state.broken_zone &state
-        .fronts &state.dissipated_energy &state.vectors;
+        .fronts &state.cell_size_at_edge &state.dissipated_energy &state
+        .vectors;
     }
 
 
@@ -102,8 +103,9 @@ namespace Debond
     exchange(Archive &archive, AdaptiveLevel &level)
     {
       archive &level.cells &level.unknowns &level.contact_nodes &level
-        .iterations &level.functional &level.estimated_error &level.gap &level
-        .seconds;
+        .iterations &level.step &level.functional &level.residual_error &level
+        .scale &level.search_gain &level.gap &level.seconds;
+      exchange(archive, level.error_factor);
     }
 
 

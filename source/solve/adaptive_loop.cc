@@ -4,6 +4,7 @@
 #include <debond/base/interrupt.h>
 #include <debond/base/memory.h>
 #include <debond/base/owned_cells.h>
+#include <debond/base/tolerances.h>
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/input/bad_input.h>
 #include <debond/mesh/bisected_body.h>
@@ -133,10 +134,10 @@ namespace Debond
         , progress(begun)
         , growth(accuracy, dim, problem.degree)
       {
-        for (const AdaptiveLevel &level : progress.levels)
+        for (AdaptiveLevel &level : progress.levels)
           {
             observer.level_is_done(level);
-            growth.add(level.unknowns, level.estimated_error);
+            growth.add(level);
           }
       }
 
@@ -184,7 +185,7 @@ namespace Debond
             // Its memory is for the next mesh; the state of a path knows it.
             const std::shared_ptr<const Body<dim>> finished = latest;
             latest                                          = body;
-            if (finished && result.path.steps.empty())
+            if (finished && result.path.progress.steps.empty())
               scene.reset();
             if (!solve_on(next, on_next))
               {
@@ -273,7 +274,7 @@ namespace Debond
         // Where the body comes off on the way, the factors before that count.
         const bool comes_off_later =
           result.solve.status == SolverStatus::comes_off &&
-          !result.path.steps.empty();
+          !result.path.progress.steps.empty();
         const bool is_usable =
           (can_be_verified(result.solve.status) || comes_off_later) &&
           !result.solve.minimum.interrupted;
@@ -283,16 +284,24 @@ namespace Debond
         if (!ended)
           {
             const ElasticUnknowns<dim> &unknowns = scene->problem().unknowns();
-            progress.levels.push_back({scene->n_cells(),
-                                       unknowns.n_free_dofs(),
-                                       unknowns.contact().size(),
-                                       result.solve.iterations,
-                                       functional,
-                                       estimate.relative(),
-                                       goal_here.width,
-                                       seconds + timer.wall_time()});
-            observer.level_is_done(progress.levels.back());
-            growth.add(unknowns.n_free_dofs(), estimate.relative());
+            const double                search_gain =
+              result.solve.functional_from_start.value_or(functional) -
+              functional;
+            AdaptiveLevel level = {scene->n_cells(),
+                                   unknowns.n_free_dofs(),
+                                   unknowns.contact().size(),
+                                   result.solve.iterations,
+                                   estimated_step,
+                                   functional,
+                                   estimate.relative(),
+                                   estimate.scale,
+                                   search_gain,
+                                   {},
+                                   goal_here.width,
+                                   seconds + timer.wall_time()};
+            growth.add(level);
+            progress.levels.push_back(level);
+            observer.level_is_done(level);
           }
         return true;
       }
@@ -310,16 +319,21 @@ namespace Debond
           on_mesh,
           here,
           {},
-          [&](const PathProgress<dim> &progress,
-              const Verification<dim> &,
+          [&](const PathProgress<dim>     &progress,
+              const Verification<dim>     &verification,
               const AdhesionIntegral<dim> &bonds) {
+            observer.step_is_done(progress, verification, bonds);
             const LoadPathStep<dim> &step = progress.steps.back();
             ErrorEstimate            own  = estimate_of(
               here, bonds, progress.u, step.state.functional, step.factors());
-            if (estimate.cells.empty() || own.relative() > estimate.relative())
+            // Rounding does not choose between steps that are as good.
+            if (estimate.cells.empty() ||
+                own.relative() >
+                  (1. + Tolerance::decimals) * estimate.relative())
               {
-                estimate   = std::move(own);
-                functional = step.state.functional;
+                estimate       = std::move(own);
+                functional     = step.state.functional;
+                estimated_step = step.step;
               }
           },
           nullptr);
@@ -335,25 +349,20 @@ namespace Debond
       }
 
       bool
-      is_accurate() const
-      {
-        return estimate.relative() <= accuracy.target;
-      }
-
-      bool
       is_finished()
       {
         if (ended)
           return true;
         if (goal == nullptr)
-          return is_accurate();
+          return growth.meets_target();
         // Its look may have been cut short.
         if (guard.requested())
           {
             interrupt();
             return true;
           }
-        return goal_here.is_reached && (is_accurate() || accuracy.target == 0.);
+        return goal_here.is_reached &&
+               (growth.meets_target() || accuracy.target == 0.);
       }
 
       /// Its divisions are added to those of progress. @p limit becomes why
@@ -394,14 +403,18 @@ namespace Debond
           return;
         if (goal && !goal_here.is_reached)
           result.shortfall = goal_here.shortfall + ": " + limit + '.';
-        if (!is_accurate() && accuracy.target > 0.)
+        if (!growth.meets_target() && accuracy.target > 0.)
           {
+            const double       error = progress.levels.back().estimated_error();
             std::ostringstream text;
             text << (result.shortfall.empty() ? "" : " ")
-                 << "The estimated error of " << std::setprecision(2)
-                 << estimate.relative()
-                 << " is above Accuracy/Target = " << accuracy.target << ": "
-                 << limit << '.';
+                 << "The estimated error of " << std::setprecision(2) << error
+                 << (error > accuracy.target ?
+                       " is above" :
+                       " has not been checked by a finer mesh, as it has to be "
+                       "for")
+                 << " Accuracy/Target = " << accuracy.target << ": " << limit
+                 << '.';
             result.shortfall += text.str();
           }
       }
@@ -430,7 +443,8 @@ namespace Debond
       bool                ended = false; ///< by no result, or no estimate
       AdaptiveProgress    progress;
       ErrorEstimate       estimate;
-      double              functional = 0.; ///< that it is relative to
+      double              functional     = 0.; ///< that it is relative to
+      unsigned int        estimated_step = 0;  ///< of the path
       MeshGrowth          growth;
       GoalOnMesh          goal_here;
       dealii::Timer       timer;

@@ -43,21 +43,25 @@ namespace Debond
       PathFollower(const LoadPathParameters &parameters,
                    const SolveSettings      &settings,
                    const Scene<dim>         &scene,
-                   const PathProgress<dim>  &start,
+                   const FollowedPath<dim>  &start,
                    std::ostream             *out)
-        : progress(start)
+        : progress(start.progress)
         , parameters(parameters)
         , solver_parameters(settings.parameters)
         , tolerance(settings.tolerance)
         , scene(scene)
         , out(out)
-        , solver(make_contact_solver(settings.choice, scene))
-        , condensed(solver->condensed())
+        , result(start.result)
+        , solver(steps.size() < parameters.factors.size() || parameters.arc ||
+                     parameters.global_branch != GlobalBranch::none ?
+                   make_contact_solver(settings.choice, scene) :
+                   nullptr)
+        , condensed(solver ? solver->condensed() : nullptr)
       {
         if (condensed != nullptr &&
             scene.problem().unknowns().held_by_contact().motions.empty())
           result.condition_estimate = condensed->condition_estimate();
-        result.parts["condensation"] = timer.wall_time();
+        result.parts["condensation"] += timer.wall_time();
       }
 
       void
@@ -82,7 +86,7 @@ namespace Debond
               break;
             print(steps.back());
           }
-        result.parts["followed path"] = timer.wall_time();
+        result.parts["followed path"] += timer.wall_time();
       }
 
       /// Whether all factors were solved and verified.
@@ -199,7 +203,8 @@ namespace Debond
         AdhesionIntegral<dim> bonds =
           scene.adhesion().at(factors.displacements);
         bonds.set_memory(progress.memory);
-        solver->start_from(points.back(), progress.u);
+        if (solver)
+          solver->start_from(points.back(), progress.u);
         RunWatch::has_result = true;
         observer(progress, verify(factors, bonds, progress.u), bonds);
       }
@@ -431,8 +436,8 @@ namespace Debond
         return !guard.requested();
       };
 
-      const std::unique_ptr<ContactSolver<dim>> solver;
-      const Condensation *const condensed; ///< null with multigrid
+      const std::unique_ptr<ContactSolver<dim>> solver; ///< null: not needed
+      const Condensation *const condensed; ///< null with multigrid as well
 
       std::vector<Eigen::VectorXd> &points = progress.points;
       std::vector<MinimumKind>     &kinds  = progress.kinds;
@@ -446,7 +451,7 @@ namespace Debond
   follow_load_path(const LoadPathParameters    &parameters,
                    const SolveSettings         &settings,
                    const Scene<dim>            &scene,
-                   const PathProgress<dim>     &start,
+                   const FollowedPath<dim>     &start,
                    const LoadPathObserver<dim> &observer,
                    std::ostream                *out)
   {
@@ -469,7 +474,7 @@ namespace Debond
         "There is no global branch: it is for one factor, bonds that heal, a "
         "direct linear solver and bodies that not only bonds and the "
         "foundation hold.");
-    followed.steps = std::move(path.steps);
+    followed.progress = std::move(path.progress);
     return followed;
   }
 

@@ -13,6 +13,11 @@ namespace Debond
     /// The part of Accuracy/Target that a mesh is made for.
     constexpr double aim = 0.9;
 
+    /// Of what the residuals say. J that falls although the residual estimate
+    /// grows comes from a first mesh that does not see what there is; larger
+    /// factors belong to exponents below 0.1.
+    constexpr double largest_factor = 20.;
+
     /// Cells that are cut for others.
     constexpr double closure = 1.1;
   } // namespace
@@ -30,22 +35,60 @@ namespace Debond
     : accuracy(accuracy)
     , least_growth(degree == 1 ? 1.25 : 1.1)
     , largest_growth(degree == 1 ? 4. : 1.4)
+    , least_ratio(degree == 1 ? 2. : 1.4)
     , smooth_rate(2. * degree / dim)
     , rate(smooth_rate)
   {}
 
 
 
+  // Residuals tell what one more halving of the cells would bring; the error is
+  // the sum of all halvings, and how fast that converges depends on the
+  // exponents of corners (doc/reference/theory.md). So it is measured: what J
+  // fell by, without what searches found, over what the estimate did.
   void
-  MeshGrowth::add(const double n_unknowns, const double relative_error)
+  MeshGrowth::add(AdaptiveLevel &level)
   {
-    if (unknowns > 0. && error > 0. && relative_error > 0.)
-      rate = std::clamp(std::log(error / relative_error) /
-                          std::log(n_unknowns / unknowns),
-                        0.5 * smooth_rate,
-                        1.5 * smooth_rate);
-    unknowns = n_unknowns;
-    error    = relative_error;
+    if (!levels.empty())
+      {
+        const AdaptiveLevel &before = levels.back();
+        level.error_factor          = before.error_factor;
+        rate =
+          std::clamp(std::log(before.residual_error / level.residual_error) /
+                       std::log(static_cast<double>(level.unknowns) /
+                                before.unknowns),
+                     0.5 * smooth_rate,
+                     1.5 * smooth_rate);
+      }
+    double found = level.search_gain;
+    for (auto before = levels.rbegin(); before != levels.rend(); ++before)
+      {
+        if (before->step == level.step &&
+            least_ratio * before->unknowns <= level.unknowns)
+          {
+            const double fall = before->functional - level.functional - found;
+            const double explained = before->residual_error * before->scale -
+                                     level.residual_error * level.scale;
+            level.error_factor =
+              explained > 0. ?
+                std::clamp(fall / explained, 1., largest_factor) :
+              fall > 0. ? largest_factor :
+                          1.;
+            break;
+          }
+        found += before->search_gain;
+      }
+    levels.push_back(level);
+  }
+
+
+
+  bool
+  MeshGrowth::meets_target() const
+  {
+    const AdaptiveLevel &last = levels.back();
+    return last.error_factor.value_or(largest_factor) * last.residual_error <=
+           accuracy.target;
   }
 
 
@@ -53,16 +96,20 @@ namespace Debond
   double
   MeshGrowth::next() const
   {
-    double whole = std::numeric_limits<double>::infinity();
+    const AdaptiveLevel &last  = levels.back();
+    double               whole = std::numeric_limits<double>::infinity();
     if (accuracy.target > 0.)
-      whole = std::pow(error / (aim * accuracy.target), 1. / rate);
+      whole =
+        std::pow(last.estimated_error() / (aim * accuracy.target), 1. / rate);
     if (accuracy.maximum_unknowns > 0)
-      whole = std::min(whole, accuracy.maximum_unknowns / (closure * unknowns));
+      whole =
+        std::min(whole, accuracy.maximum_unknowns / (closure * last.unknowns));
     if (!std::isfinite(whole))
       return largest_growth;
     const double steps =
       std::max(1., std::ceil(std::log(whole) / std::log(largest_growth)));
-    return std::max(least_growth, std::pow(whole, 1. / steps));
+    return std::max(last.error_factor ? least_growth : least_ratio,
+                    std::pow(whole, 1. / steps));
   }
 
 

@@ -4,7 +4,8 @@
 are known otherwise: states that linear displacements reproduce, displacements with closed
 forms (the error of J is half of the energy of what is missing), and the paper's benchmark
 beside its J on fine meshes; quadratic displacements beside an independent program and beside
-linear ones; meshes that are refined: J falls, targets are met or not met with a word."""
+linear ones; meshes that are refined: J falls, targets are met or not met with a word, also
+where residuals tell but a part of the error."""
 import pathlib
 import sys
 
@@ -223,12 +224,63 @@ def check_refinement():
     check("a target is met", met["status"] == "success" and met["exit_code"] == 0)
     for result in (short, met):
         last = result["levels"][-1]
-        check("numbers of the last mesh", [result[name] for name in (
-            "degrees_of_freedom", "functional", "estimated_error")] == [last[name] for name in (
-                "unknowns", "functional", "estimated_error")])
+        check("numbers of the last mesh",
+              [result[name] for name in ("degrees_of_freedom", "functional", "error_factor")]
+              == [last[name] for name in ("unknowns", "functional", "error_factor")])
+        close("estimate", result["estimated_error"], last["estimated_error"], 1e-12)
+
+
+def check_strong_corner():
+    """An L whose re-entrant corner slides along the foundation on both sides: there stresses grow
+    like r^(-2/3), so that J of quadratic displacements on uniform meshes converges like h^(2/3)
+    to its limit. Residuals of one mesh tell a third of the error; how J falls tells the rest."""
+    corner = ["Mesh/Source=generator", "Mesh/Generator=hyper_L", "Mesh/Arguments=-1 : 1 : true",
+              "Mesh/Refinements=2", "Mesh/Degree=2", "Material/Young modulus=1",
+              "Parts/corner=boundary: x > -1e-6 && y > -1e-6 && x < 0.999 && y < 0.999",
+              "Parts/foot=boundary: y < -0.999", "Parts/side=boundary: x < -0.999",
+              "Boundary conditions/Clamped boundaries=foot",
+              "Boundary conditions/Contact boundary=corner", "Loads/Traction top=",
+              "Loads/Traction side=0.01; 0", "Contact law/Law=none",
+              "Contact law/Tangential displacement=free", "Contact law/Quadrature=gauss 4",
+              "Solver/Method=automatic"]
+    coarse, fine = (solve(*corner, f"Mesh/Refinements={n}")["functional"] for n in (4, 5))
+    limit = fine - (coarse - fine) / (2.**(2. / 3.) - 1.)
+
+    def true_error(level, J=limit):
+        return J / level["functional"] - 1.
+
+    one = solve(*corner)
+    check("one mesh does not know", one["error_factor"] is None
+          and one["estimated_error"] < 0.5 * true_error(one))
+    for name, target, *scene in (
+            ("quadratic", 1e-3), ("quadratic, soon", 1e-2), ("linear", 3e-2, "Mesh/Degree=1"),
+            ("load path", 1e-3, "Load path/Factors=0.5, 1", "Load path/Global branch=none")):
+        refined = solve(*corner, f"Accuracy/Target={target}", *scene)
+        levels = refined["levels"]
+        last = levels[-1]
+        check(name + ", met", refined["status"] == "success"
+              and last["estimated_error"] <= target)
+        check(name + ", not by one mesh", levels[0]["error_factor"] is None
+              and last["error_factor"] > 1.3)
+        # Both steps have the same error, J with the square of the factor.
+        part = last["functional"] / refined["functional"]
+        check(name + ", J", true_error(last, part * limit) <= 1.2 * target,
+              true_error(last, part * limit))
+        for level in levels:
+            if level["error_factor"]:
+                check_factor(name + ", estimate", level["estimated_error"]
+                             / true_error(level, part * limit), 2.)
+        close(name + ", the estimate of the result is that of its mesh",
+              refined["estimated_error"], last["estimated_error"], 1e-6)
+        close(name + ", factor", refined["error_factor"], last["error_factor"], 1e-12)
+    # A target that one mesh says to be met, and that cannot be checked, is not met.
+    unchecked = solve(*corner, f"Accuracy/Target={2. * one['estimated_error']}",
+                      f"Accuracy/Maximum unknowns={one['degrees_of_freedom'] + 1}")
+    check("not checked", unchecked["status"] == "not accurate enough"
+          and "has not been checked" in unchecked["message"], unchecked["message"])
 
 
 scenes.together(*((test.__name__, test) for test in (
     check_constant_strain, check_closed_forms, check_benchmark, check_quadratic_bodies,
-    check_refinement)))
+    check_refinement, check_strong_corner)))
 scenes.end()

@@ -111,8 +111,16 @@ for key in ("functional", "degrees_of_freedom", "contact_nodes"):
         sys.exit(f"refined: {key} {one} and {other}")
 # A path on a refined mesh, stopped on the last one.
 both = ["Accuracy/Target=2e-3", "Load path/Bonds heal=false",
-        "Load path/Factors=0.5:0.5:2.5, 2:-0.5:0"]
+        "Load path/Factors=0.5:0.5:2.5, 2:-0.5:0", "Output/Load path body VTU=true"]
 run("load-path-690", "both", both)
+# Each step has been computed once there, and its file is of that mesh.
+last = summary("both")
+if last["iterations"]["total"] != last["levels"][-1]["iterations"]:
+    sys.exit(f"{last['iterations']} on a mesh with {last['levels'][-1]['iterations']}")
+for k in range(1, len(rows("both")) + 1):
+    file = pathlib.Path(f"both/load_path/body-{k:05}.vtu").read_text(encoding="latin-1")
+    if f'NumberOfCells="{last["cells"]}"' not in file:
+        sys.exit(f"the file of step {k} is of another mesh")
 kill_after("        2.5 ", "load-path-690", "both-again", both)
 if " 640 triangles" in run("load-path-690", "both-again", [*both, "--restart"], 2):
     sys.exit("the run starts on the first mesh")

@@ -231,6 +231,10 @@ namespace Debond
     /// The scale of forces in contact, to that of the body's.
     constexpr double contact_force = 1e-3;
 
+    /// Of cells where bonds end, to E* / a: with it a front of bonds breaks at
+    /// a load that is 5 % too high (doc/guide/load-path.md).
+    constexpr double cell_size_at_edge = 1. / 32.;
+
     /// Gaps under pressure that an iterative method has not closed yet.
     constexpr double open_contact = 1e-3;
 

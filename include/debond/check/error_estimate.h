@@ -6,7 +6,7 @@
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
 
-#include <string>
+#include <optional>
 #include <vector>
 
 namespace Debond
@@ -22,12 +22,11 @@ namespace Debond
     double scale   = 0.;
     bool   is_of_J = true;
 
-    /// What the constant of the estimate was not measured for, in words; empty
-    /// if the body is like those of doc/notes/accuracy.md.
-    std::string outside_calibration;
-
     /// The parts of the active cells, which add up to `functional`.
     std::vector<double> cells;
+
+    /// How many times they are what the residuals say, if that was measured.
+    std::optional<double> factor;
 
     /// Zero if there is nothing to compare with.
     double
@@ -82,7 +81,8 @@ namespace Debond
    * J is not in it.
    *
    * @p functional is J(u), @p factors the multiples of the loads that @p u
-   * belongs to. Throws
+   * belongs to, @p error_factor that of an AdaptiveLevel, by which the estimate
+   * is multiplied. Throws
    * std::invalid_argument with the place if a load or a bond is none at a point
    * of a face that the solution did not ask for.
    *
@@ -94,7 +94,8 @@ namespace Debond
   estimate_error(const EstimatedProblem<dim> &of,
                  const DofVector             &u,
                  const double                 functional,
-                 const LoadFactors            factors = 1.);
+                 const LoadFactors            factors      = 1.,
+                 const std::optional<double>  error_factor = {});
 } // namespace Debond
 
 #endif

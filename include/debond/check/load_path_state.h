@@ -58,6 +58,11 @@ namespace Debond
 
     std::vector<dealii::Point<dim>> fronts; ///< see fronts()
 
+    /// Of the contact faces where bonds that hold meet bonds that do not, or
+    /// none, the largest size over E* / a, 0 if there are none. E* is E / (1 -
+    /// nu^2), a the stiffness of the bonds.
+    double cell_size_at_edge;
+
     double dissipated_energy; ///< by bonds that do not heal
 
     /// By the titles of their columns, without the axis.

@@ -5,6 +5,7 @@
 #include <debond/check/error_estimate.h>
 #include <debond/input/accuracy_parameters.h>
 #include <debond/solve/load_path.h>
+#include <debond/solve/mesh_growth.h>
 #include <debond/solve/refinement_goal.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve.h>
@@ -16,21 +17,6 @@
 
 namespace Debond
 {
-  /// A mesh of the loop and the solution on it.
-  struct AdaptiveLevel
-  {
-    unsigned int cells;
-    unsigned int unknowns;
-    unsigned int contact_nodes;
-    unsigned int iterations;
-    double       functional;      ///< J, of the factor of the estimate
-    double       estimated_error; ///< ErrorEstimate::relative()
-    double       gap;             ///< GoalOnMesh::width, 0 without a goal
-    double       seconds;         ///< wall time of mesh, assembly and solve
-  };
-
-
-
   /// How far the loop has come.
   struct AdaptiveProgress
   {
@@ -54,6 +40,9 @@ namespace Debond
     /// The scene on the next mesh, before it is solved.
     std::function<void(const AdaptiveProgress &, const Scene<dim> &)>
       next_mesh_is_made;
+
+    /// Of a load path on any of the meshes.
+    LoadPathObserver<dim> step_is_done;
   };
 
 

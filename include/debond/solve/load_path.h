@@ -16,19 +16,6 @@
 
 namespace Debond
 {
-  /// The states of a load path on a mesh.
-  template <int dim>
-  struct FollowedPath
-  {
-    SolveResult                    result; ///< that of the last factor
-    std::vector<LoadPathStep<dim>> steps;
-    std::vector<LoadPathStep<dim>> arc;
-
-    /// As they are after the last step, with references to the scene; null if
-    /// there is none.
-    std::shared_ptr<const AdhesionIntegral<dim>> bonds;
-  };
-
   /// How far a path has come, and all that the way on depends on.
   template <int dim>
   struct PathProgress
@@ -42,6 +29,19 @@ namespace Debond
     /// After the last step.
     DofVector  u;
     BondMemory memory;
+  };
+
+  /// The states of a load path on a mesh.
+  template <int dim>
+  struct FollowedPath
+  {
+    SolveResult                    result; ///< that of the last factor
+    PathProgress<dim>              progress;
+    std::vector<LoadPathStep<dim>> arc;
+
+    /// As they are after the last step, with references to the scene; null if
+    /// there is none.
+    std::shared_ptr<const AdhesionIntegral<dim>> bonds;
   };
 
   /// Called after each factor, with the verification of the displacement and
@@ -64,16 +64,17 @@ namespace Debond
    * if all factors were solved, whether or not all of them are verified. A
    * table of the factors is printed to @p out unless that is null.
    *
-   * @p start has the steps that an earlier run has done, none at first; the
-   * observer sees the last of them again. The scene's arc, see follow_arc(),
-   * starts from the first factor.
+   * @p start has the steps that an earlier run or call has done, none at first;
+   * the observer sees the last of them again. There is no factorisation if
+   * nothing but that is left to do. The scene's arc, see follow_arc(), starts
+   * from the first factor.
    */
   template <int dim>
   FollowedPath<dim>
   follow_load_path(const LoadPathParameters    &parameters,
                    const SolveSettings         &settings,
                    const Scene<dim>            &scene,
-                   const PathProgress<dim>     &start,
+                   const FollowedPath<dim>     &start,
                    const LoadPathObserver<dim> &observer,
                    std::ostream                *out);
 } // namespace Debond

@@ -4,12 +4,46 @@
 
 #include <debond/input/accuracy_parameters.h>
 
+#include <optional>
 #include <vector>
 
 namespace Debond
 {
-  /// How many times the cells of each mesh the next one has, by how the
-  /// estimate of the error falls from mesh to mesh.
+  /// A mesh of a loop that refines, and the solution on it.
+  struct AdaptiveLevel
+  {
+    unsigned int cells;
+    unsigned int unknowns;
+    unsigned int contact_nodes;
+    unsigned int iterations;
+
+    /// The step of a load path, from 1, whose estimate is the largest part of
+    /// its J; 0 without a path. The next ones are of it.
+    unsigned int step;
+    double       functional; ///< J
+
+    double residual_error; ///< what the residuals say, relative to the scale
+    double scale;          ///< ErrorEstimate::scale
+
+    double search_gain; ///< what a search lowered J by
+
+    /// How many times the residual error that of J is; empty if there was no
+    /// mesh to measure it.
+    std::optional<double> error_factor;
+
+    double gap;     ///< GoalOnMesh::width, 0 without a goal
+    double seconds; ///< wall time of mesh, assembly and solve
+
+    /// ErrorEstimate::relative().
+    double
+    estimated_error() const
+    {
+      return error_factor.value_or(1.) * residual_error;
+    }
+  };
+
+  /// What J and the estimates of its error on the meshes so far say of the last
+  /// one, and how many times its cells the next one has.
   class MeshGrowth
   {
   public:
@@ -19,12 +53,19 @@ namespace Debond
                const unsigned int        dim,
                const unsigned int        degree);
 
-    /// A mesh has been estimated.
+    /// A mesh has been estimated. Sets its error_factor, by the last mesh with
+    /// sufficiently fewer unknowns and the same step; if there is none it is
+    /// that of the mesh before.
     void
-    add(const double n_unknowns, const double relative_error);
+    add(AdaptiveLevel &level);
+
+    /// Whether the error of the last mesh is at most the target, whatever the
+    /// factor is if it has not been measured.
+    bool
+    meets_target() const;
 
     /// That of the next mesh: equal steps to the mesh that meets the target,
-    /// or to the largest one that is allowed.
+    /// or to the largest one that is allowed, and enough to measure the factor.
     double
     next() const;
 
@@ -39,10 +80,11 @@ namespace Debond
     const AccuracyParameters &accuracy;
     const double              least_growth;
     const double              largest_growth;
+    const double              least_ratio; ///< of unknowns, for the factor
     const double              smooth_rate;
     double                    rate; ///< error ~ unknowns^-rate
-    double                    unknowns = 0.;
-    double                    error    = 0.;
+
+    std::vector<AdaptiveLevel> levels;
   };
 
   /// How often each cell is to be cut, for @p growth times the cells, by the
