@@ -51,7 +51,8 @@ namespace Debond
         , tolerance(settings.tolerance)
         , scene(scene)
         , out(out)
-        , solver(make_contact_solver(settings.choice, scene))
+        , choice(settings.choice)
+        , solver(make_contact_solver(choice, scene))
         , condensed(solver->condensed())
       {
         if (condensed != nullptr &&
@@ -220,6 +221,18 @@ namespace Debond
           solver_parameters,
           [this](const auto &) { return may_go_on(); },
           may_go_on);
+        if (const auto direct = factorisation_instead(
+              scene, solver_parameters, choice, minimum.status))
+          {
+            result.notes.push_back(multigrid_has_failed + minimum.message);
+            choice = *direct;
+            solver.reset();
+            solver    = make_contact_solver(choice, scene);
+            condensed = solver->condensed();
+            if (!steps.empty())
+              solver->start_from(points.back(), progress.u);
+            return solve(factors, observer);
+          }
         if (minimum.status == SolverStatus::interrupted && !steps.empty())
           {
             interrupt("the path is not complete");
@@ -319,7 +332,7 @@ namespace Debond
       std::string
       failure(const Verification<dim> &verification) const
       {
-        return verification.failure(tolerance);
+        return verification.failure(tolerance, condensed == nullptr);
       }
 
       std::string
@@ -431,8 +444,9 @@ namespace Debond
         return !guard.requested();
       };
 
-      const std::unique_ptr<ContactSolver<dim>> solver;
-      const Condensation *const condensed; ///< null with multigrid
+      MethodChoice                        choice;
+      std::unique_ptr<ContactSolver<dim>> solver;
+      const Condensation                 *condensed; ///< null with multigrid
 
       std::vector<Eigen::VectorXd> &points = progress.points;
       std::vector<MinimumKind>     &kinds  = progress.kinds;
