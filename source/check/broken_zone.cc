@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/tolerances.h>
 #include <debond/check/broken_zone.h>
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <numeric>
 
 namespace Debond
@@ -68,6 +70,39 @@ namespace Debond
 
 
 
+  namespace
+  {
+    /// Next to a vertex, where bonds of this face begin or end: those of the
+    /// vertex itself are those of its other faces as well.
+    template <int dim>
+    std::array<double, dim>
+    just_inside(const unsigned int vertex)
+    {
+      std::array<double, dim> coordinates;
+      coordinates.fill(Tolerance::beside_vertex);
+      coordinates[vertex] = 1. - (dim - 1) * Tolerance::beside_vertex;
+      return coordinates;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  double
+  zone_without_bonds(const ContactBoundary<dim>  &boundary,
+                     const AdhesionIntegral<dim> &adhesion)
+  {
+    double                  sum = 0.;
+    std::array<double, dim> middle;
+    middle.fill(1. / dim);
+    for (const auto &face : boundary.faces)
+      if (adhesion.bonds_of(face, middle).energy == 0.)
+        sum += face.measure;
+    return sum;
+  }
+
+
+
   template <int dim>
   double
   broken_zone(const ContactBoundary<dim>  &boundary,
@@ -86,37 +121,38 @@ namespace Debond
     double sum = 0.;
     for (const auto &face : boundary.faces)
       {
-        std::array<double, dim> threshold, beyond;
+        const auto threshold = [&](const std::array<double, dim> &coordinates) {
+          const BondScale bonds = adhesion.bonds_of(face, coordinates);
+          return bonds.energy == 0. ||
+                     adhesion.least_piece_at(face, coordinates) == last ?
+                   0. :
+                   law.bond_threshold() * bonds.stretch;
+        };
+        std::array<double, dim> thresholds, beyond;
+        unsigned int            n_without = 0;
         for (unsigned int k = 0; k < dim; ++k)
           {
-            const BondScale bonds = adhesion.bonds_at(face, k);
-            const bool      is_loose =
-              bonds.energy == 0. || adhesion.least_piece_at(face, k) == last;
-            threshold[k] = is_loose ? 0. : law.bond_threshold() * bonds.stretch;
-            beyond[k]    = -adhesion.trace_at(face, k, s) - threshold[k];
+            const auto inside = just_inside<dim>(k);
+            n_without += adhesion.bonds_of(face, inside).energy == 0.;
+            thresholds[k] = threshold(inside);
+            beyond[k]     = -adhesion.trace_at(face, k, s) - thresholds[k];
           }
-        if (boundary.degree == 2)
-          {
-            const auto [least, largest] =
-              range_on_simplex<dim>(adhesion.trace_on(face, s), 2);
-            const auto [low, high] =
-              std::minmax_element(threshold.begin(), threshold.end());
-            if (-largest >= *high)
-              sum += face.measure;
-            else if (-least > *low)
-              sum += face.measure *
-                     positive_part_on_pieces<dim>(
-                       [&](const std::array<double, dim> &coordinates) {
-                         return -adhesion.trace(face, coordinates, s) -
-                                std::inner_product(coordinates.begin(),
-                                                   coordinates.end(),
-                                                   threshold.begin(),
-                                                   0.);
-                       });
-            continue;
-          }
-        // Closed cracks are not open.
-        sum += face.measure * positive_part(beyond);
+        const auto [low, high] =
+          std::minmax_element(thresholds.begin(), thresholds.end());
+        const auto [least, largest] =
+          range_on_simplex<dim>(adhesion.trace_on(face, s), boundary.degree);
+        if (-largest >= *high && -least > 0.)
+          sum += face.measure;
+        else if (-least > *low)
+          // Closed cracks are not open.
+          sum += face.measure *
+                 (boundary.degree == 1 && n_without % dim == 0 ?
+                    positive_part(beyond) :
+                    positive_part_on_pieces<dim>(
+                      [&](const std::array<double, dim> &coordinates) {
+                        return -adhesion.trace(face, coordinates, s) -
+                               threshold(coordinates);
+                      }));
       }
     return sum;
   }
@@ -134,25 +170,34 @@ namespace Debond
     const unsigned int              last = law.branches().size() - 1;
     if (dim != 2 || last == 0)
       return result;
+    // Bonds next to a vertex: 0 if there are none, 2 if they hold.
+    std::map<double, std::map<double, unsigned int>> grips;
     for (const auto &face : boundary.faces)
       {
         // How far bonds are from the last kink; below 0 they hold.
-        std::array<double, dim> beyond;
-        std::array<bool, dim>   are_gone, hold;
+        std::array<double, dim>       beyond;
+        std::array<unsigned int, dim> grip;
         for (unsigned int k = 0; k < dim; ++k)
           {
-            const BondScale bonds = adhesion.bonds_at(face, k);
-            are_gone[k] =
-              bonds.energy == 0. || adhesion.least_piece_at(face, k) == last;
+            const BondScale bonds =
+              adhesion.bonds_of(face, just_inside<dim>(k));
             beyond[k] = -adhesion.trace_at(face, k, s) -
                         law.bond_threshold() * bonds.stretch;
-            hold[k] = !are_gone[k] && beyond[k] < 0.;
+            grip[k] =
+              bonds.energy == 0. || adhesion.least_piece_at(face, k) == last ?
+                0 :
+              beyond[k] < 0. ? 2 :
+                               1;
+            const dealii::Point<dim> &vertex = face.vertices[k];
+            const auto [other, is_first] =
+              grips[vertex[0]].emplace(vertex[1], grip[k]);
+            if (!is_first && grip[k] != 1 && grip[k] + other->second == 2)
+              result.push_back(vertex);
           }
-        if (hold[0] == hold[1])
+        if ((grip[0] == 2) == (grip[1] == 2))
           continue;
-        const double part = are_gone[0] || are_gone[1] ?
-                              0.5 :
-                              beyond[0] / (beyond[0] - beyond[1]);
+        const double part =
+          grip[0] * grip[1] == 0 ? 0.5 : beyond[0] / (beyond[0] - beyond[1]);
         result.push_back(face.vertices[0] +
                          part * (face.vertices[1] - face.vertices[0]));
       }
@@ -161,8 +206,10 @@ namespace Debond
 
 
 
-  template decltype(fronts<2>)      fronts<2>;
-  template decltype(fronts<3>)      fronts<3>;
-  template decltype(broken_zone<2>) broken_zone<2>;
-  template decltype(broken_zone<3>) broken_zone<3>;
+  template decltype(fronts<2>)             fronts<2>;
+  template decltype(fronts<3>)             fronts<3>;
+  template decltype(broken_zone<2>)        broken_zone<2>;
+  template decltype(broken_zone<3>)        broken_zone<3>;
+  template decltype(zone_without_bonds<2>) zone_without_bonds<2>;
+  template decltype(zone_without_bonds<3>) zone_without_bonds<3>;
 } // namespace Debond

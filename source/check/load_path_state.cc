@@ -97,6 +97,7 @@ namespace Debond
 
     constexpr unsigned int n_known =
       static_cast<unsigned int>(BondState::held) + 1;
+    state.other_parts.emplace_back(verification.name(BondState::free), 0.);
     for (std::size_t k = n_known; k < verification.state_names.size(); ++k)
       state.other_parts.emplace_back(as_title(verification.state_names[k]), 0.);
     const auto part = [&](const BondState branch) -> double & {
@@ -107,11 +108,14 @@ namespace Debond
           case BondState::bonded:
             return state.bonded_part;
           case BondState::broken:
-          case BondState::free:
             return state.broken_part;
+          case BondState::free:
+            return adhesion.adhesive_law().is_loose(0) ?
+                     state.broken_part :
+                     state.other_parts[0].second;
           default:
             return state
-              .other_parts[static_cast<unsigned int>(branch) - n_known]
+              .other_parts[static_cast<unsigned int>(branch) - n_known + 1]
               .second;
         }
     };

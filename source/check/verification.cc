@@ -42,7 +42,8 @@ namespace Debond
 
   template <int dim>
   std::string
-  Verification<dim>::failure(const double tolerance) const
+  Verification<dim>::failure(const double tolerance,
+                             const bool   is_iterative) const
   {
     std::ostringstream text;
     text.precision(3);
@@ -58,7 +59,7 @@ namespace Debond
                 "contact law violation is "
              << error() << ", required is at most " << tolerance;
         if (force_rounding <= 0.1 * tolerance)
-          text << ". Try a smaller stop tolerance.";
+          text << (is_iterative ? ". Try a smaller stop tolerance." : ".");
         else
           text << ", and rounding of the displacements alone makes forces of "
                   "up to "
@@ -459,6 +460,7 @@ namespace Debond
     result.penetration     = 0.;
     result.largest_opening = 0.;
     result.broken_zone     = broken_zone(boundary, law, adhesion, s);
+    result.without_bonds   = zone_without_bonds(boundary, adhesion);
     for (unsigned int i = 0; i < s.size(); ++i)
       {
         ContactNodeState node;
@@ -494,12 +496,16 @@ namespace Debond
     // A body at rest, or off, has no other forces.
     if (Tolerance::force_rounding * largest_force < rounding_of_gaps)
       rounding.add(rounding_of_gaps);
-    const double resolved_above_gaps =
-      Tolerance::resolved *
-      std::min(rounding_of_gaps, Tolerance::negligible_force * largest_force);
+    // Beside loads that balance each other, such as heat that loosens a press
+    // fit, nothing else may be left.
+    const double resolved_beside_loads =
+      std::max(Tolerance::negligible_force * largest_load,
+               Tolerance::resolved *
+                 std::min(rounding_of_gaps,
+                          Tolerance::negligible_force * largest_force));
     const Eigen::VectorXd resolved_at_nodes =
       (Tolerance::resolved * contact.trace(rounding))
-        .cwiseMax(resolved_above_gaps);
+        .cwiseMax(resolved_beside_loads);
     const std::vector<LawScale> scales =
       law_scales(adhesion,
                  boundary,
@@ -519,7 +525,7 @@ namespace Debond
 
     const double resolved =
       std::max(Tolerance::resolved * rounding.linfty_norm(),
-               resolved_above_gaps);
+               resolved_beside_loads);
     result.equilibrium_residual =
       largest.free > 0. ?
         largest.free / std::max({largest.free, largest.supported, resolved}) :

@@ -231,6 +231,7 @@ namespace Debond
 
       record.add("/largest_opening", verification.largest_opening);
       record.add("/broken_zone", verification.broken_zone);
+      record.add("/without_bonds", verification.without_bonds);
       record.line("opening",
                   "largest " + scientific(verification.largest_opening, 3) +
                     ", broken zone " + scientific(verification.broken_zone, 3));

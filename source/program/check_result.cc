@@ -50,7 +50,10 @@ namespace Debond
         if (!step.message.empty())
           return step.message;
       if (!(result.verification.error() <= tolerance))
-        return result.verification.failure(tolerance);
+        return result.verification.failure(
+          tolerance,
+          result.solve.linear_iterations > 0 ||
+            !result.solve.bundle_history.empty());
       if (const std::optional<double> &descent = result.solve.relative_descent;
           descent && !(*descent <= Tolerance::descent))
         {

@@ -52,9 +52,10 @@ namespace Debond
         , scene(scene)
         , out(out)
         , result(start.result)
+        , choice(settings.choice)
         , solver(steps.size() < parameters.factors.size() || parameters.arc ||
                      parameters.global_branch != GlobalBranch::none ?
-                   make_contact_solver(settings.choice, scene) :
+                   make_contact_solver(choice, scene) :
                    nullptr)
         , condensed(solver ? solver->condensed() : nullptr)
       {
@@ -225,6 +226,18 @@ namespace Debond
           solver_parameters,
           [this](const auto &) { return may_go_on(); },
           may_go_on);
+        if (const auto direct = factorisation_instead(
+              scene, solver_parameters, choice, minimum.status))
+          {
+            result.notes.push_back(multigrid_has_failed + minimum.message);
+            choice = *direct;
+            solver.reset();
+            solver    = make_contact_solver(choice, scene);
+            condensed = solver->condensed();
+            if (!steps.empty())
+              solver->start_from(points.back(), progress.u);
+            return solve(factors, observer);
+          }
         if (minimum.status == SolverStatus::interrupted && !steps.empty())
           {
             interrupt("the path is not complete");
@@ -324,7 +337,7 @@ namespace Debond
       std::string
       failure(const Verification<dim> &verification) const
       {
-        return verification.failure(tolerance);
+        return verification.failure(tolerance, condensed == nullptr);
       }
 
       std::string
@@ -436,8 +449,9 @@ namespace Debond
         return !guard.requested();
       };
 
-      const std::unique_ptr<ContactSolver<dim>> solver; ///< null: not needed
-      const Condensation *const condensed; ///< null with multigrid as well
+      MethodChoice                        choice;
+      std::unique_ptr<ContactSolver<dim>> solver; ///< null: not needed
+      const Condensation *condensed; ///< null with multigrid as well
 
       std::vector<Eigen::VectorXd> &points = progress.points;
       std::vector<MinimumKind>     &kinds  = progress.kinds;

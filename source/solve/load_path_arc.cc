@@ -138,10 +138,12 @@ namespace Debond
       return step.status != "not verified";
     };
 
-    using Event                 = StationaryPath::Event;
-    Event              last     = Event::contact;
-    const Eigen::Index most     = 100 + 20 * s.size();
-    bool               is_going = add(true);
+    using Event = StationaryPath::Event;
+    Event last  = Event::contact;
+    // Nodes touch and go through the pieces of the law, there and back.
+    const std::size_t most =
+      100 + 10 * (1 + scene.scene.law().branches().size()) * s.size();
+    bool is_going = add(true);
     for (unsigned int k = 0; is_going && last != Event::end; ++k)
       {
         if (!may_go_on())

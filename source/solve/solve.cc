@@ -114,6 +114,14 @@ namespace Debond
       else
         solve_by_multigrid(choice, parameters, scene, start, *watch, result);
     }
+    if (const auto direct =
+          factorisation_instead(scene, parameters, choice, result.status))
+      {
+        const std::string note = multigrid_has_failed + result.message;
+        result = solve(*direct, parameters, scene, out, terminal, start);
+        result.notes.push_back(note);
+        return result;
+      }
     if (!choice.is_condensed)
       result.minimum.kind =
         kind_without_search(scene.adhesion(), scene.contact_trace(result.u));

@@ -362,6 +362,62 @@ def check_heated(dim, hypothesis):
         close(f"force of {side}", held["reactions"][side][0], force, 1e-12)
 
 
+def check_loosened(dim, L, unit, degree, is_moved):
+    """A press fit between a roller, or a side that is moved, and the foundation, cooled until
+    it is loose: then there is no stress, and a gap of alpha dT H less the interference."""
+    lengths, E, nu, alpha = (2. * L, 0.7 * L, 0.9 * L), 70. * unit, 0.3, 1.2e-5
+    H, fit = lengths[1], 1e-3 * L
+    sides = "top" if dim == 2 else "top, back"
+    moved = ["Boundary conditions/Roller boundaries=left" + ", back" * (dim == 3),
+             "Boundary conditions/Displacement top=free; "
+             + f"{-0.5 * fit}" + "; free" * (dim == 3)]
+    body = box(dim, lengths, "13, 5" + ", 4" * (dim == 3), E, nu, "left, " + sides.split(",")[0],
+               *(moved if is_moved else []), "Contact law/Law=none",
+               f"Contact law/Initial gap={-0.5 * fit if is_moved else -fit}",
+               "Material/Hypothesis=plane stress", f"Material/Thermal expansion={alpha}",
+               "Loads/Temperature change=-1", "Boundary conditions/Contact boundary=bottom",
+               f"Mesh/Degree={degree}",
+               *(["Contact law/Quadrature=gauss 2"] if degree == 2 else []),
+               "Load path/Factors=" + ", ".join(f"{2. * fit / (alpha * H) * part}"
+                                                for part in (0., 0.25, 0.6, 1., 3., 0.1)),
+               "Load path/Global branch=none",
+               *(["Load path/Displacement factors=1, 1, 1, 1, 1, 1"] if is_moved else []))
+    result = solve(*body)
+    check("all steps", result["status"] == "success" and len(result["path"]) == 6,
+          result["errors"])
+    area = lengths[0] * (lengths[2] if dim == 3 else 1.)
+    for row, part in zip(result["path"], (0., 0.25, 0.6, 1., 3., 0.1)):
+        close("gap", row["largest_gap"], max(0., 2. * part - 1.) * fit, 1e-9, fit)
+        close("force", row["normal_force"], E * max(0., 1. - 2. * part) * fit / H * area, 1e-9,
+              E * fit / H * area)
+
+
+def check_crack(dim, degree, quadrature, cells, said):
+    """A beam that is lifted at its end, which is open where there are no bonds."""
+    scenes.section(f"Crack in {dim}D, {said}, degree {degree}, {quadrature}, {cells} cells")
+    depth = 3. if dim == 3 else 1.
+    lift = "Boundary conditions/Displacement left=free; 0.5" + "; free" * (dim == 3)
+    bonds = ["Contact law/Bond stiffness=if(x < 40, 0, 1e4)"] if said == "by place" else [
+        "Contact law/Bond stiffness=1e4", "Contact law/Bond stiffness crack=0",
+        "Parts/crack=bottom: x < 40"]
+    result = solve(f"Dimension={dim}", "Mesh/Lengths=100, 1.5" + ", 3" * (dim == 3),
+                   f"Mesh/Cells={cells}, 1" + ", 2" * (dim == 3), f"Mesh/Degree={degree}",
+                   "Material/Young modulus=70000", "Material/Poisson ratio=0",
+                   "Boundary conditions/Clamped boundaries=right", lift,
+                   "Boundary conditions/Contact boundary=bottom", *bonds,
+                   "Contact law/Bond threshold=1", "Contact law/Quadrature=" + quadrature,
+                   "Contact law/Tangential displacement=free", "Load path/Factors=1",
+                   "Load path/Global branch=none")
+    # In cells where bonds begin the zone is a sum over 1024 pieces of a side, or 1024 triangles.
+    error = 1e-9 if cells % 5 == 0 else 100. / cells / (1000. if dim == 2 else 10.)
+    close("broken zone", result["broken_zone"], 40. * depth, error, depth)
+    if cells % 5 == 0:
+        close("without bonds", result["without_bonds"], 40. * depth, 1e-12)
+    close("on the path", result["path"][0]["broken_zone"], result["broken_zone"], 1e-12)
+    if dim == 2 and cells % 5 == 0:
+        close("front", float(result["path"][0]["fronts"].split()[0]), 40., 1e-12)
+
+
 # Bodies that nothing clamps.
 
 
@@ -644,6 +700,15 @@ scenes.together(
       for dim, name, length, modulus in SYSTEMS if dim == 2),
     *(("gap at a clamp", check_gap_at_clamp, f"1e-3*(x*{a!r} - {0.3 * a!r})/{a!r}")
       for a in (k * math.pi for k in range(1, 52, 5))),
+    *((f"loosened, {dim}D, {name}", check_loosened, dim, length, modulus, degree, is_moved)
+      for dim, name, length, modulus in SYSTEMS for degree in (1, 2)
+      for is_moved in (False, True)),
+    *(("crack", check_crack, *case) for case in (
+        (2, 1, "nodal", 25, "by place"), (2, 1, "nodal", 25, "by part"),
+        (2, 1, "midpoint", 25, "by place"), (2, 1, "gauss 3", 50, "by part"),
+        (2, 2, "gauss 2", 25, "by part"), (2, 2, "gauss 4", 50, "by place"),
+        (2, 1, "gauss 4", 33, "by place"), (2, 2, "gauss 4", 33, "by place"),
+        (3, 1, "nodal", 10, "by place"), (3, 2, "gauss 2", 10, "by part"))),
     *((test.__name__, test, *arguments) for test, *arguments in (
         [check_half_of_symmetric_body], [check_bonds], [check_hard_laws], [check_corner, 2],
         [check_corner, 3], [check_resultants], [check_far_foundation], [check_loads],

@@ -372,6 +372,53 @@ def check_arcs():
     check("without a note", not back["notes"])
 
 
+def check_arc_of_steps():
+    """Each node goes through all pieces of its law, of which there are many."""
+    scenes.section("Arc of a law with many pieces")
+    steps = range(1, 81)
+    result = solve(BENCHMARK[0], NO_GLOBAL, "Load path/Arc=true", "Load path/Factors=0, 30",
+                   "Mesh/Cells=5, 1", "Contact law/Law=stepped",
+                   "Contact law/Stepped/Stiffnesses="
+                   + ", ".join(f"{690. * (1. - 0.0125 * (step - 1))}" for step in steps),
+                   "Contact law/Stepped/Thresholds="
+                   + ", ".join(f"{0.0001 * step}" for step in steps))
+    nodes = sum(result["bond_states"].values())
+    broken = result["bond_states"]["broken"]
+    check("some nodes break", broken >= 2, result["bond_states"])
+    check("ends where the path ends", result["arc"][-1]["factor"] == 30.)
+    check("a state for each piece that a broken node has left",
+          len(result["arc"]) > broken * len(steps), len(result["arc"]))
+    check("more than 20 for each node", len(result["arc"]) > 100 + 20 * nodes)
+    check("without a note", not any("arc" in note for note in result["notes"]), result["notes"])
+
+
+def check_parts():
+    """A column without bonds to the left of 0.1. At 0.4 it could not open by M without any
+    bonds, and at 4 no bond holds."""
+    scenes.section("Parts of a boundary that has bonds in places")
+    result = solve("Mesh/Lengths=0.3, 0.2", "Mesh/Cells=6, 2", f"Material/Young modulus={E}",
+                   "Material/Poisson ratio=0", "Boundary conditions/Contact boundary=bottom",
+                   "Boundary conditions/Clamped boundaries=top",
+                   f"Contact law/Bond stiffness=if(x < 0.0999999, 0, {a})",
+                   f"Contact law/Bond threshold={M}", "Loads/Traction bottom=0; 1",
+                   "Contact law/Tangential displacement=free",
+                   "Load path/Factors=-1, 0.2, 0.4, 4, 0.4", NO_GLOBAL)
+    check("all steps", len(result["path"]) == 5)
+    check("a break and a closing", result["load_path"]["largest_break"]["factor"] == 4.
+          and result["load_path"]["largest_closing"]["factor"] == 0.4)
+    # Of the nodes 0, 0.05 and 0.1, ..., 0.3 the last five have bonds.
+    for row, contact, bonded, broken in zip(result["path"], (1., 0., 0., 0., 0.),
+                                            (0., 0.75, 0.75, 0., 0.75), (0., 0., 0., 0.75, 0.)):
+        for name, part in (("contact", contact), ("bonded", bonded), ("broken", broken),
+                           ("free", 1. - contact - bonded - broken)):
+            close(f"{name} part", row[name + "_part"], part, 1e-12, 1.)
+        close("broken zone", row["broken_zone"], 0.3 if broken else 0.1 * (1. - contact),
+              1e-10, 1.)
+        front = str(row["fronts"]).split()
+        check("fronts", not front if broken else len(front) == 2
+              and abs(float(front[0]) - 0.1) <= 1e-12, front)
+
+
 def check_refined():
     """One mesh for all factors, beside a uniform one that is much finer (of the least J that
     of linear displacements is off by 7e-4)."""
@@ -471,7 +518,7 @@ scenes.together(*(("", *check) for check in (
         [check_column_arc, False], [check_column_arc, True])),
     *((check_column_for_good, *case) for case in (
         (2, "nodal", 1), (2, "gauss 2", 1), (2, "gauss 3", 2), (3, "gauss 2", 2))),
-    [check_benchmark], [check_other_laws], [check_arcs], [check_refined],
-    [check_cells_at_edge],
+     [check_benchmark], [check_other_laws], [check_arcs], [check_arc_of_steps],
+     [check_parts], [check_refined], [check_cells_at_edge],
     [check_estimate_for_good], [check_search_beside_path])))
 scenes.end()

@@ -8,10 +8,17 @@
 
 namespace Debond
 {
+  /// The length (in 3D the area) of the faces in whose middle the scene has no
+  /// bonds, open or closed.
+  template <int dim>
+  double
+  zone_without_bonds(const ContactBoundary<dim>  &boundary,
+                     const AdhesionIntegral<dim> &adhesion);
+
   /// The length (in 3D the area) of the contact boundary that is open and not
   /// bonded: where s falls below the last kink of the law, or below 0 where
-  /// there are no bonds or bonds are broken for good, the difference being
-  /// linear on each face. So a crack in 2D ends between two nodes.
+  /// there are no bonds or bonds are broken for good. So a crack in 2D ends
+  /// between two nodes, or where the scene's bonds begin.
   template <int dim>
   double
   broken_zone(const ContactBoundary<dim>  &boundary,
@@ -21,9 +28,9 @@ namespace Debond
 
   /// Of a plane body the places where bonds that hold meet bonds that do not,
   /// or none, in the order of the faces: where s is at the last kink of the
-  /// law, or in the middle of a face at one end of which there are no bonds, or
-  /// they are broken for good. They stay where they are when a crack closes.
-  /// Of solids none.
+  /// law, at a vertex where the scene's bonds begin, or in the middle of a face
+  /// at one end of which bonds are broken for good. They stay where they are
+  /// when a crack closes. Of solids none.
   template <int dim>
   std::vector<dealii::Point<dim>>
   fronts(const ContactBoundary<dim>  &boundary,

@@ -33,12 +33,13 @@ namespace Debond
     double unit_displacement_work;
 
     /// Parts of the contact boundary by its nodes' measures. Open boundary
-    /// counts as broken, if there is no adhesion.
+    /// counts as broken if the law has no adhesion.
     double contact_part;
     double bonded_part;
     double broken_part;
 
-    /// Of the law's other branches, by their names in words with underscores.
+    /// Open and without bonds where others have some, and of the law's other
+    /// branches, by their names in words with underscores.
     std::vector<std::pair<std::string, double>> other_parts;
 
     double mean_gap;

@@ -97,13 +97,16 @@ namespace Debond
      * times ElasticProblem::residual_rounding(): bonds weaker than that are
      * not resolved, and rounding alone is a violation of 1e-4. The same holds
      * of what rounding of w = u - gap makes, as long as that is below 1e-7 of
-     * the largest force, or all that there is.
+     * the largest force, or all that there is; and of forces below 1e-7 of the
+     * largest nodal load.
      */
     double law_violation;
 
-    /// The largest distance to the foundation, and broken_zone().
+    /// The largest distance to the foundation, broken_zone() and
+    /// zone_without_bonds().
     double largest_opening;
     double broken_zone;
+    double without_bonds;
 
     /// Largest s > 0 (zero if there is none), in length.
     double penetration;
@@ -147,9 +150,10 @@ namespace Debond
     double
     error() const;
 
-    /// What is wrong with a result whose error() is above the tolerance.
+    /// What is wrong with a result whose error() is above the tolerance. @p
+    /// is_iterative: of a method that a smaller tolerance takes further.
     std::string
-    failure(const double tolerance) const;
+    failure(const double tolerance, const bool is_iterative = false) const;
 
     unsigned int
     count(const BondState state) const;

@@ -206,6 +206,11 @@ namespace Debond
              const std::array<double, dim>             &barycentric,
              const VectorView                          &s) const;
 
+    /// The bonds at a point of a face, as the scene has them there.
+    BondScale
+    bonds_of(const typename ContactBoundary<dim>::Face &face,
+             const std::array<double, dim>             &barycentric) const;
+
     /// Whether bonds are not the same everywhere.
     bool
     has_field() const
@@ -254,10 +259,6 @@ namespace Debond
     double
     held_trace(const typename ContactBoundary<dim>::Face &face,
                const unsigned int                         k) const;
-
-    BondScale
-    bonds_of(const typename ContactBoundary<dim>::Face &face,
-             const std::array<double, dim>             &barycentric) const;
 
     /// Makes bonds_of_nodes and bonds_of_held.
     void

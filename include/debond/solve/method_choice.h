@@ -5,8 +5,10 @@
 #include <debond/input/accuracy_parameters.h>
 #include <debond/input/problem_parameters.h>
 #include <debond/input/solver_parameters.h>
+#include <debond/optimization/status.h>
 #include <debond/solve/scene.h>
 
+#include <optional>
 #include <string>
 
 namespace Debond
@@ -84,6 +86,19 @@ namespace Debond
   choose_linear_solver(const Scene<dim>       &scene,
                        const SolverParameters &solver,
                        MethodChoice           &choice);
+
+  /// What to say where a factorisation takes the place of multigrid.
+  constexpr const char *multigrid_has_failed =
+    "multigrid did not converge, and a factorisation has taken its place: ";
+
+  /// The same choice with a factorisation, where multigrid has ended with this
+  /// @p status, which is no solution; none if that does not fit into memory.
+  template <int dim>
+  std::optional<MethodChoice>
+  factorisation_instead(const Scene<dim>       &scene,
+                        const SolverParameters &solver,
+                        const MethodChoice     &choice,
+                        const SolverStatus      status);
 } // namespace Debond
 
 #endif
