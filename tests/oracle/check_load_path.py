@@ -518,7 +518,7 @@ scenes.together(*(("", *check) for check in (
         [check_column_arc, False], [check_column_arc, True])),
     *((check_column_for_good, *case) for case in (
         (2, "nodal", 1), (2, "gauss 2", 1), (2, "gauss 3", 2), (3, "gauss 2", 2))),
-     [check_benchmark], [check_other_laws], [check_arcs], [check_arc_of_steps],
-     [check_parts], [check_refined], [check_cells_at_edge],
+    [check_benchmark], [check_other_laws], [check_arcs], [check_arc_of_steps],
+    [check_parts], [check_refined], [check_cells_at_edge],
     [check_estimate_for_good], [check_search_beside_path])))
 scenes.end()
