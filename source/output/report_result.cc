@@ -535,7 +535,7 @@ namespace Debond
         record.line(
           "edge of the bonds",
           words("E*/a is about ",
-                std::setprecision(2),
+                std::setprecision(3),
                 1. / size,
                 " cells there",
                 size > Tolerance::cell_size_at_edge ?
