@@ -3,7 +3,6 @@
 #ifndef debond_tests_solved_h
 #define debond_tests_solved_h
 
-#include <debond/solve/adaptive_loop.h>
 #include <debond/solve/method_choice.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve.h>
@@ -52,37 +51,6 @@ solved(const Debond::Parameters &parameters,
                        nullptr,
                        false,
                        start);
-}
-
-
-
-/// A scene on the last of its meshes.
-template <int dim>
-struct Refined
-{
-  std::shared_ptr<const Debond::Scene<dim>> scene;
-  std::vector<Debond::AdaptiveLevel>        levels;
-  Debond::AdaptiveResult<dim>               result;
-};
-
-
-
-template <int dim>
-Refined<dim>
-refined(const Debond::Parameters &parameters)
-{
-  Refined<dim> refined;
-  refined.scene =
-    Debond::make_first_scene<dim>(parameters, parameters.accuracy);
-  refined.result = Debond::solve_adaptively<dim>(
-    settings_of(parameters, *refined.scene),
-    parameters.accuracy,
-    nullptr,
-    [&](const Debond::AdaptiveLevel &level) {
-      refined.levels.push_back(level);
-    },
-    refined.scene);
-  return refined;
 }
 
 #endif
