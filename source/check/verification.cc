@@ -496,10 +496,12 @@ namespace Debond
     // A body at rest, or off, has no other forces.
     if (Tolerance::force_rounding * largest_force < rounding_of_gaps)
       rounding.add(rounding_of_gaps);
-    // Beside loads that balance each other, such as heat that loosens a press
-    // fit, nothing else may be left.
+    // Thermal loads balance each other, so that of heat that loosens a press
+    // fit nothing but rounding is left, ten and more times the least there is.
+    const double thermal_load =
+      problem.fields().is_heated() ? largest_load : 0.;
     const double resolved_beside_loads =
-      std::max(Tolerance::negligible_force * largest_load,
+      std::max(Tolerance::negligible_force * thermal_load,
                Tolerance::resolved *
                  std::min(rounding_of_gaps,
                           Tolerance::negligible_force * largest_force));

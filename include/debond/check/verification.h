@@ -97,8 +97,8 @@ namespace Debond
      * times ElasticProblem::residual_rounding(): bonds weaker than that are
      * not resolved, and rounding alone is a violation of 1e-4. The same holds
      * of what rounding of w = u - gap makes, as long as that is below 1e-7 of
-     * the largest force, or all that there is; and of forces below 1e-7 of the
-     * largest nodal load.
+     * the largest force, or all that there is; and, where a change of
+     * temperature is a load, of forces below 1e-7 of the largest nodal load.
      */
     double law_violation;
 

@@ -81,6 +81,13 @@ namespace Debond
     thermal_stress(const Cell               &cell,
                    const dealii::Point<dim> &unit_point) const;
 
+    /// Whether a change of temperature is among the loads.
+    bool
+    is_heated() const
+    {
+      return !thermal_stresses.empty();
+    }
+
     const ElasticUnknowns<dim> &
     unknowns() const
     {
