@@ -84,7 +84,7 @@ def check_pad():
 
 
 def main(count=5, first=0):
-    """Laws of which some bonds break."""
+    """Laws of which some bonds break; on every second one bonds have to bridge a gap."""
     missed = tried = number = 0
     while tried < count:
         draw = Draw(first + number)
@@ -94,8 +94,12 @@ def main(count=5, first=0):
         if not opening:
             continue
         tried += 1
-        scene += [f"Contact law/Bond threshold={opening * draw.magnitude(-2., -0.1)}",
+        threshold = opening * draw.magnitude(-2., -0.1)
+        scene += [f"Contact law/Bond threshold={threshold}",
                   f"Contact law/Bond stiffness={draw.magnitude(-2.5, 1.) / height}"]
+        if draw.chance(0.5):
+            scene.append(f"Contact law/Initial gap={threshold * draw.uniform(0.1, 1.6)}"
+                         f"*(1-cos({draw.uniform(2., 12.)}*x))/2")
         found = scenes.solve(*scene)
         proved = scenes.solve(*scene, "Solver/Prove=true", "Solver/Proof/Maximum nodes=1000")
         scenes.check(f"scene {first + number - 1}",
