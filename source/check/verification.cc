@@ -496,8 +496,9 @@ namespace Debond
     // A body at rest, or off, has no other forces.
     if (Tolerance::force_rounding * largest_force < rounding_of_gaps)
       rounding.add(rounding_of_gaps);
-    // Thermal loads balance each other, so that of heat that loosens a press
-    // fit nothing but rounding is left, ten and more times the least there is.
+    // Thermal loads balance each other. Where heat has loosened a press fit,
+    // nothing but rounding is left of the forces, and the condensation leaves
+    // up to 20 times what residual_rounding() counts.
     const double thermal_load =
       problem.fields().is_heated() ? largest_load : 0.;
     const double resolved_beside_loads =
