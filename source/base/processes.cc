@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <memory>
 #include <thread>
+#include <utility>
 
 namespace Debond
 {
@@ -46,6 +47,16 @@ namespace Debond
     // Who uses this as a library may have started it.
     if (dealii::Utilities::MPI::job_supports_mpi())
       return;
+    // One process alone needs no daemon of Open MPI beside it and no network,
+    // for which MPI_Init() would look for most of a second.
+    if (n_started_ranks() == 1)
+      for (const auto &[name, value] :
+           {std::pair{"OMPI_MCA_ess_singleton_isolated", "1"},
+            std::pair{"OMPI_MCA_pml", "ob1"},
+            std::pair{"OMPI_MCA_btl", "self"},
+            std::pair{"OMPI_MCA_osc", "^ucx"},
+            std::pair{"OMPI_MCA_mtl", "^ofi"}})
+        setenv(name, value, /*overwrite=*/0);
     static int    argc = 0;
     static char **argv = nullptr;
     // A library that starts with MPI takes it from an InterruptGuard.

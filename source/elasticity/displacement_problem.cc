@@ -33,7 +33,7 @@ namespace Debond
                                            const PiecewiseQuadratic  &nonsmooth,
                                            TruncatedMultigrid &multigrid_cycle,
                                            DistributedVector  &start)
-    : A(problem.trilinos_matrix())
+    : A(problem.distributed_matrix())
     , f(distribute(load,
                    start.locally_owned_elements(),
                    start.get_mpi_communicator()))

@@ -88,7 +88,7 @@ namespace Debond
           cell_dofs, pattern, /*keep_constrained_entries=*/false);
       }
     system_matrix.clear();
-    distributed_matrix.reset();
+    distributed.reset();
     sparsity.copy_from(pattern);
     system_matrix.reinit(sparsity);
     add_cell_matrices(materials);
@@ -200,21 +200,15 @@ namespace Debond
 
 
   template <int dim>
-  const dealii::TrilinosWrappers::SparseMatrix &
-  ElasticProblem<dim>::trilinos_matrix() const
+  const DistributedMatrix &
+  ElasticProblem<dim>::distributed_matrix() const
   {
-    if (!distributed_matrix)
-      {
-        distributed_matrix =
-          std::make_unique<dealii::TrilinosWrappers::SparseMatrix>();
-        const auto &own = elastic_unknowns.dof_handler().locally_owned_dofs();
-        distributed_matrix->reinit(own,
-                                   own,
-                                   system_matrix,
-                                   elastic_unknowns.communicator(),
-                                   /*drop_tolerance=*/0.);
-      }
-    return *distributed_matrix;
+    if (!distributed)
+      distributed = std::make_unique<const DistributedMatrix>(
+        MatrixOnRanks(system_matrix,
+                      elastic_unknowns.dof_handler().locally_owned_dofs(),
+                      elastic_unknowns.communicator()));
+    return *distributed;
   }
 
 

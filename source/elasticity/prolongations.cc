@@ -94,7 +94,7 @@ namespace Debond
 
     /// The rows of the unknowns of the finer nodes from @p first_point on.
     template <int dim>
-    TruncatedMultigrid::Prolongation
+    BlockRows<float>
     between_unknowns(const Interpolation   &interpolation,
                      const unsigned int     first_point,
                      const NodeFrames<dim> &fine,
@@ -105,36 +105,32 @@ namespace Debond
         const auto frame = frames.find(node);
         return frame == frames.end() ? nullptr : &frame->second;
       };
-      TruncatedMultigrid::Prolongation result;
-      result.starts = {0};
+      BlockRows<float> result;
+      result.height = result.width = dim;
       for (unsigned int i = 0; i < interpolation.n_points(); ++i)
         {
           const NodeFrame<dim> *const to = frame_of(fine, first_point + i);
-          for (unsigned int c = 0; c < dim; ++c)
+          for (std::size_t k = interpolation.starts[i];
+               k < interpolation.starts[i + 1];
+               ++k)
             {
-              for (std::size_t k = interpolation.starts[i];
-                   k < interpolation.starts[i + 1];
-                   ++k)
-                {
-                  const unsigned int          j    = interpolation.nodes[k];
-                  const NodeFrame<dim> *const from = frame_of(coarse, j);
-                  // A row of the map from coarse to fine unknowns.
-                  dealii::Tensor<1, dim> row;
-                  row[c] = 1.;
-                  if (to != nullptr)
-                    row = to->to_unknowns[c];
-                  if (from != nullptr)
-                    row = row * from->to_cartesian;
-                  for (unsigned int d = 0; d < dim; ++d)
-                    if (row[d] != 0.)
-                      {
-                        result.columns.push_back(j * dim + d);
-                        result.values.push_back(interpolation.weights[k] *
-                                                row[d]);
-                      }
-                }
-              result.starts.push_back(result.columns.size());
+              const unsigned int          j    = interpolation.nodes[k];
+              const NodeFrame<dim> *const from = frame_of(coarse, j);
+              // From coarse to fine unknowns.
+              dealii::Tensor<2, dim> map = dealii::unit_symmetric_tensor<dim>();
+              if (to != nullptr)
+                map = to->to_unknowns;
+              if (from != nullptr)
+                map = map * from->to_cartesian;
+              if (map.norm() == 0.)
+                continue;
+              result.columns.push_back(j);
+              for (unsigned int c = 0; c < dim; ++c)
+                for (unsigned int d = 0; d < dim; ++d)
+                  result.values.push_back(
+                    static_cast<float>(interpolation.weights[k] * map[c][d]));
             }
+          result.end_row();
         }
       return result;
     }
@@ -217,7 +213,7 @@ namespace Debond
 
 
   template <int dim>
-  std::vector<TruncatedMultigrid::Prolongation>
+  std::vector<Prolongation>
   prolongations(const Body<dim> &body, const ElasticUnknowns<dim> &unknowns)
   {
     const auto             &dofs  = unknowns.dof_handler();
@@ -232,8 +228,8 @@ namespace Debond
     for (unsigned int node = finer.begin; node < finer.end; ++node)
       points.push_back(of_unknowns[node * dim]);
 
-    std::vector<TruncatedMultigrid::Prolongation> result;
-    NodeFrames<dim>                               fine = node_frames(unknowns);
+    std::vector<Prolongation> result;
+    NodeFrames<dim>           fine = node_frames(unknowns);
     for (const CoarseLevel<dim> &level :
          body.coarse_levels(points, unknowns.degree() > 1))
       {
@@ -245,10 +241,10 @@ namespace Debond
                     rows,
                     ranks);
         NodeFrames<dim> coarse = coarse_frames(fine, rows, finer.begin, ranks);
-        result.push_back(between_unknowns(rows, finer.begin, fine, coarse));
-        result.back().n_own_columns = (coarser.end - coarser.begin) * dim;
-        fine                        = std::move(coarse);
-        finer                       = std::move(coarser);
+        result.push_back({coarser.end - coarser.begin,
+                          between_unknowns(rows, finer.begin, fine, coarse)});
+        fine  = std::move(coarse);
+        finer = std::move(coarser);
       }
     return result;
   }

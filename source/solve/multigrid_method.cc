@@ -6,6 +6,7 @@
 #include <debond/elasticity/displacement_problem.h>
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/elasticity/prolongations.h>
+#include <debond/linear_algebra/aggregation.h>
 #include <debond/linear_algebra/multigrid_factor.h>
 #include <debond/solve/condensed_methods.h>
 #include <debond/solve/multigrid_method.h>
@@ -74,17 +75,17 @@ namespace Debond
       // Trilinos needs MPI even in one process; others need not wait for it.
       start_mpi();
       const auto &unknowns = scene.problem().unknowns();
-      const auto &A        = scene.problem().trilinos_matrix();
+      const auto &A        = scene.problem().distributed_matrix();
       if (has_levels)
-        return std::make_unique<TruncatedMultigrid>(A,
-                                                    prolongations(scene.body(),
-                                                                  unknowns));
+        return std::make_unique<TruncatedMultigrid>(
+          A, dim, prolongations(scene.body(), unknowns));
       std::vector<DistributedVector> modes;
       for (const DofVector &mode : unknowns.rigid_body_modes())
         modes.push_back(distribute(mode,
                                    unknowns.dof_handler().locally_owned_dofs(),
                                    scene.ranks()));
-      return std::make_unique<TruncatedMultigrid>(A, dim, modes);
+      return std::make_unique<TruncatedMultigrid>(
+        A, dim, aggregated_prolongations(A, dim, modes));
     }
 
 
@@ -240,9 +241,7 @@ namespace Debond
     const ElasticUnknowns<dim> &unknowns = problem.unknowns();
     const auto                 &normals  = unknowns.contact().normals();
     return Condensation(
-      make_multigrid_factor({problem.matrix(),
-                             unknowns.dof_handler().locally_owned_dofs(),
-                             scene.ranks()},
+      make_multigrid_factor(problem.distributed_matrix(),
                             eliminate_all_but(
                               {normals.begin(), normals.end()},
                               unknowns.n_dofs(),

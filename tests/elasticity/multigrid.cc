@@ -11,6 +11,7 @@
 #include <debond/elasticity/displacement_problem.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/mesh_transfer.h>
+#include <debond/linear_algebra/aggregation.h>
 #include <debond/mesh/box.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 
@@ -127,7 +128,8 @@ namespace
     std::vector<DistributedVector> modes;
     for (const DofVector &mode : body.problem->unknowns().rigid_body_modes())
       modes.push_back(distributed(mode));
-    TruncatedMultigrid cycle(body.problem->trilinos_matrix(), dim, modes);
+    const DistributedMatrix &A = body.problem->distributed_matrix();
+    TruncatedMultigrid cycle(A, dim, aggregated_prolongations(A, dim, modes));
     DistributedVector  u = distributed(body.problem->load());
     const AdhesiveLaw  law(winkler_law(69., 0.002).branches);
     for (const std::string rule : {"nodal", "gauss 2"})

@@ -17,9 +17,10 @@
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/sparsity_tools.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
-#include <debond/linear_algebra/truncated_multigrid.h>
+#include <debond/linear_algebra/aggregation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -33,9 +34,8 @@ using namespace Debond;
 
 namespace
 {
-  using Matrix        = dealii::TrilinosWrappers::SparseMatrix;
   using Entry         = TruncatedMultigrid::Entry;
-  using Prolongations = std::vector<TruncatedMultigrid::Prolongation>;
+  using Prolongations = std::vector<Prolongation>;
   using Point         = dealii::Point<3>;
 
   const MPI_Comm communicator = MPI_COMM_WORLD;
@@ -77,6 +77,7 @@ namespace
         false,
         dealii::Utilities::MPI::this_mpi_process(communicator));
       pattern.compress();
+      dealii::TrilinosWrappers::SparseMatrix A;
       A.reinit(pattern);
 
       const dealii::QGaussSimplex<3>               rule(1);
@@ -104,6 +105,18 @@ namespace
             constraints.distribute_local_to_global(K, index, A);
           }
       A.compress(dealii::VectorOperation::add);
+
+      dealii::DynamicSparsityPattern own_pattern(A.m(), A.m(), owned);
+      for (const auto i : owned)
+        for (auto entry = A.begin(i); entry != A.end(i); ++entry)
+          own_pattern.add(i, entry->column());
+      sparsity.copy_from(own_pattern);
+      matrix.reinit(sparsity);
+      for (const auto i : owned)
+        for (auto entry = A.begin(i); entry != A.end(i); ++entry)
+          matrix.set(i, entry->column(), entry->value());
+      distributed = std::make_unique<DistributedMatrix>(
+        MatrixOnRanks(matrix, owned, communicator));
     }
 
     bool
@@ -139,7 +152,7 @@ namespace
       std::vector<Entry> E;
       for (const unsigned int i : dofs.locally_owned_dofs())
         if (is_contact(i) && has_bond(points.at(i)))
-          for (auto entry = A.begin(i); entry != A.end(i); ++entry)
+          for (auto entry = matrix.begin(i); entry != matrix.end(i); ++entry)
             if (const unsigned int j = entry->column();
                 is_contact(j) && has_bond(points.at(j)))
               E.push_back({i, j, i == j ? stiffness : stiffness / 10.});
@@ -166,7 +179,9 @@ namespace
     dealii::parallel::fullydistributed::Triangulation<3> mesh;
     dealii::DoFHandler<3>                                dofs;
     std::map<dealii::types::global_dof_index, Point>     points;
-    Matrix                                               A;
+    dealii::SparsityPattern                              sparsity;
+    dealii::SparseMatrix<double>                         matrix; ///< own rows
+    std::unique_ptr<DistributedMatrix>                   distributed;
   };
 
 
@@ -184,25 +199,30 @@ namespace
 
   /// Sums of 8 successive nodes of a rank, with less weight also of 8 far away,
   /// which another rank may have.
-  TruncatedMultigrid::Prolongation
+  Prolongation
   sums(const dealii::IndexSet                  &finer,
        const std::function<bool(unsigned int)> &is_constrained)
   {
-    const unsigned int               n_nodes = finer.n_elements() / 3;
-    TruncatedMultigrid::Prolongation P{3 * ((n_nodes + 7) / 8), {0}, {}, {}};
-    const dealii::IndexSet           own = own_range(P.n_own_columns);
-    for (unsigned int i = 0; i < finer.n_elements(); ++i)
+    const unsigned int     n_nodes = finer.n_elements() / 3;
+    Prolongation           P{(n_nodes + 7) / 8, {}};
+    const dealii::IndexSet own = own_range(P.n_own_columns);
+    P.rows.height = P.rows.width = 3;
+    for (unsigned int node = 0; node < n_nodes; ++node)
       {
-        if (!is_constrained(finer.nth_index_in_set(i)))
+        const unsigned int column = own.nth_index_in_set(node / 8);
+        for (const auto &[j, value] :
+             {std::pair{column, 1.f},
+              std::pair{(column + own.size() / 2) % own.size(), 0.3f}})
           {
-            const unsigned int column =
-              own.nth_index_in_set(3 * (i / 24) + i % 3);
-            P.columns.push_back(column);
-            P.values.push_back(1.);
-            P.columns.push_back((column + own.size() / 6 * 3) % own.size());
-            P.values.push_back(0.3);
+            P.rows.columns.push_back(j);
+            for (unsigned int k = 0; k < 9; ++k)
+              P.rows.values.push_back(
+                k % 4 == 0 &&
+                    !is_constrained(finer.nth_index_in_set(3 * node + k / 4)) ?
+                  value :
+                  0.f);
           }
-        P.starts.push_back(P.columns.size());
+        P.rows.end_row();
       }
     return P;
   }
@@ -210,10 +230,10 @@ namespace
 
 
   /// Any numbers between -1 and 1.
-  DistributedVector
-  some_vector(const Matrix &A, const unsigned int seed)
+  template <typename Vector>
+  Vector
+  some_numbers(Vector v, const unsigned int seed)
   {
-    DistributedVector v(A.locally_owned_domain_indices(), communicator);
     for (const auto i : v.locally_owned_elements())
       v(i) = std::sin(seed + 1e3 * std::sin(1. + i));
     return v;
@@ -222,17 +242,17 @@ namespace
 
 
   DistributedVector
-  product(const Matrix &A, const DistributedVector &v)
+  some_vector(const TruncatedMultigrid &multigrid, const unsigned int seed)
   {
-    DistributedVector result(A.locally_owned_range_indices(), communicator);
-    A.vmult(result, v);
-    return result;
+    const DistributedMatrix &A = multigrid.matrix().A;
+    return some_numbers(DistributedVector(A.own_rows, A.ranks), seed);
   }
 
 
 
+  template <typename Vector>
   double
-  relative_difference(DistributedVector a, const DistributedVector &b)
+  relative_difference(Vector a, const Vector &b)
   {
     a -= b;
     return a.l2_norm() / b.l2_norm();
@@ -247,18 +267,20 @@ namespace
                 const unsigned int               l,
                 const std::vector<unsigned int> &held)
   {
-    const Matrix           &P    = multigrid.prolongation(l);
-    const DistributedVector x    = some_vector(multigrid.matrix(l + 1), 7);
-    DistributedVector       fine = product(P, x);
+    const MultigridLevel &fine    = multigrid.level(l),
+                         &coarse  = multigrid.level(l + 1);
+    const SinglePrecisionVector x = some_numbers(coarse.nodes.vector(), 7);
+    SinglePrecisionVector v(fine.nodes.vector()), B_v(v), expected(x), found(x);
+    fine.prolongate(v, x);
     if (l == 0)
       for (const unsigned int i : held)
-        fine(i) = 0.;
-    fine = product(multigrid.matrix(l), fine);
-    DistributedVector expected(x), found = product(multigrid.matrix(l + 1), x);
-    P.Tvmult(expected, fine);
-    const double largest = expected.linfty_norm();
+        v(i) = 0.f;
+    fine.matrix.vmult(B_v, v);
+    fine.restrict(expected, B_v);
+    coarse.matrix.vmult(found, x);
+    const float largest = expected.linfty_norm();
     for (const auto i : found.locally_owned_elements())
-      if (std::abs(expected(i)) < 1e-14 * largest)
+      if (std::abs(expected(i)) < 1e-6f * largest)
         found(i) = expected(i);
     return relative_difference(found, expected);
   }
@@ -270,7 +292,7 @@ namespace
   n_steps(const TruncatedMultigrid        &multigrid,
           const std::vector<unsigned int> &held)
   {
-    DistributedVector r = some_vector(multigrid.matrix(), 3), u(r);
+    DistributedVector r = some_vector(multigrid, 3), u(r);
     for (const unsigned int i : held)
       r(i) = 0.;
     u = 0.;
@@ -290,8 +312,8 @@ namespace
   double
   asymmetry(const TruncatedMultigrid &multigrid)
   {
-    const DistributedVector r = some_vector(multigrid.matrix(), 1),
-                            s = some_vector(multigrid.matrix(), 2);
+    const DistributedVector r = some_vector(multigrid, 1),
+                            s = some_vector(multigrid, 2);
     DistributedVector M_r(r), M_s(s);
     multigrid.vmult(M_r, r);
     multigrid.vmult(M_s, s);
@@ -303,7 +325,7 @@ namespace
   DistributedVector
   cycle(const TruncatedMultigrid &multigrid)
   {
-    const DistributedVector r = some_vector(multigrid.matrix(), 5);
+    const DistributedVector r = some_vector(multigrid, 5);
     DistributedVector       z(r);
     multigrid.vmult(z, r);
     return z;
@@ -346,9 +368,9 @@ namespace
     const auto multigrid = make();
     section(name);
     check("steps", n_steps(*multigrid, {}), most_steps);
-    check("symmetric", asymmetry(*multigrid), 1e-11);
+    check("symmetric", asymmetry(*multigrid), 1e-6);
     for (unsigned int l = 0; l + 1 < multigrid->n_levels(); ++l)
-      check("product", product_error(*multigrid, l, {}), 1e-12);
+      check("product", product_error(*multigrid, l, {}), 1e-6);
     const DistributedVector as_made = cycle(*multigrid);
     for (const Truncation &truncation : truncations)
       {
@@ -360,11 +382,9 @@ namespace
             std::min(1U, multigrid->n_levels() - 1) :
             multigrid->n_levels() - 1;
         for (unsigned int l = 0; l < n_products; ++l)
-          check("product",
-                product_error(*multigrid, l, truncation.held),
-                1e-12);
+          check("product", product_error(*multigrid, l, truncation.held), 1e-6);
         check("steps", n_steps(*multigrid, truncation.held), most_steps);
-        check("symmetric", asymmetry(*multigrid), 1e-11);
+        check("symmetric", asymmetry(*multigrid), 1e-6);
         const DistributedVector z       = cycle(*multigrid);
         double                  largest = 0.;
         for (const unsigned int i : truncation.held)
@@ -376,10 +396,10 @@ namespace
         other->truncate(truncation.E, truncation.held);
         check("as if it were the first truncation",
               relative_difference(z, cycle(*other)),
-              1e-10);
+              1e-6);
       }
     section(name);
-    check("as made", relative_difference(cycle(*multigrid), as_made), 1e-10);
+    check("as made", relative_difference(cycle(*multigrid), as_made), 1e-6);
   }
 } // namespace
 
@@ -395,33 +415,37 @@ main(int argc, char *argv[])
 
   const Cube small(6), large(16);
   const auto direct = [&] {
-    return std::make_unique<TruncatedMultigrid>(small.A, Prolongations());
+    return std::make_unique<TruncatedMultigrid>(*small.distributed,
+                                                3,
+                                                Prolongations());
   };
-  test("direct", small, direct, 2);
+  test("direct", small, direct, 3);
   const auto with_sums = [&] {
     const auto first =
       sums(small.dofs.locally_owned_dofs(),
            [&](const unsigned int i) { return small.is_constrained(i); });
-    const auto second = sums(own_range(first.n_own_columns),
-                             [](const unsigned int) { return false; });
-    return std::make_unique<TruncatedMultigrid>(small.A,
+    const dealii::IndexSet coarse = own_range(3 * first.n_own_columns);
+    const auto second = sums(coarse, [](const unsigned int) { return false; });
+    return std::make_unique<TruncatedMultigrid>(*small.distributed,
+                                                3,
                                                 Prolongations{first, second});
   };
-  test("sums of nodes", small, with_sums, 200);
+  test("sums of nodes", small, with_sums, 40);
   const auto with_aggregates = [&] {
-    return std::make_unique<TruncatedMultigrid>(large.A,
-                                                3,
-                                                large.rigid_motions());
+    return std::make_unique<TruncatedMultigrid>(
+      *large.distributed,
+      3,
+      aggregated_prolongations(*large.distributed, 3, large.rigid_motions()));
   };
-  test("aggregates", large, with_aggregates, 40);
+  test("aggregates", large, with_aggregates, 20);
 
   // An entry outside of the pattern.
-  TruncatedMultigrid multigrid(small.A, Prolongations());
+  TruncatedMultigrid multigrid(*small.distributed, 3, Prolongations());
   const unsigned int first      = *small.dofs.locally_owned_dofs().begin();
   bool               is_refused = false;
   try
     {
-      multigrid.truncate({{first, small.A.m() - 1 - first, 1.}}, {});
+      multigrid.truncate({{first, small.matrix.m() - 1 - first, 1.}}, {});
     }
   catch (const dealii::ExceptionBase &)
     {

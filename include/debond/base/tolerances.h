@@ -101,8 +101,9 @@ namespace Debond
     /// factorisation loses with them.
     constexpr double row_of_product = 4. * epsilon;
 
-    /// Diagonals of a truncated cycle's matrix: what is left of a held unknown.
-    constexpr double held_diagonal = 1e-12;
+    /// Entries of a truncated cycle's matrices, which are in single precision:
+    /// what is left of a held unknown.
+    constexpr double held_diagonal = 1e-6;
 
     /// What makes the coarsest matrix regular where aggregates have dependent
     /// modes: far above rounding, far below what slows a cycle down.

@@ -2,8 +2,6 @@
 #ifndef debond_elasticity_displacement_problem_h
 #define debond_elasticity_displacement_problem_h
 
-#include <deal.II/lac/trilinos_sparse_matrix.h>
-
 #include <debond/elasticity/contact_unknowns.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
@@ -69,14 +67,14 @@ namespace Debond
                    Vector       &correction,
                    unsigned int &n_iterations) const;
 
-    const dealii::TrilinosWrappers::SparseMatrix &A;
-    const Vector                                  f;
-    const Vector                                  diagonal; ///< of A
-    const PiecewiseQuadratic                     &phi;
-    const ContactUnknowns                         contact;
-    const Eigen::SparseMatrix<double>             contact_block; ///< of A
-    TruncatedMultigrid                           &cycle;
-    Vector                                       &u;
+    const DistributedMatrix          &A;
+    const Vector                      f;
+    const Vector                      diagonal; ///< of A
+    const PiecewiseQuadratic         &phi;
+    const ContactUnknowns             contact;
+    const Eigen::SparseMatrix<double> contact_block; ///< of A
+    TruncatedMultigrid               &cycle;
+    Vector                           &u;
 
     /// As of the last evaluate().
     double largest_force  = 0.; ///< what residuals are relative to

@@ -5,13 +5,13 @@
 #include <deal.II/grid/tria.h>
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/sparsity_pattern.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <debond/base/dof_vector.h>
 #include <debond/elasticity/fields.h>
 #include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/material.h>
 #include <debond/elasticity/unknowns.h>
+#include <debond/linear_algebra/distributed_matrix.h>
 
 #include <memory>
 #include <vector>
@@ -85,9 +85,10 @@ namespace Debond
     DofVector
     diagonal() const;
 
-    /// A as Trilinos reads it, made when it is asked for first. Needs MPI.
-    const dealii::TrilinosWrappers::SparseMatrix &
-    trilinos_matrix() const;
+    /// A on vectors that ranks share, made when it is asked for first. Needs
+    /// MPI.
+    const DistributedMatrix &
+    distributed_matrix() const;
 
     /// f - A G, what is applied together with what the lifting makes of it, at
     /// the free degrees of freedom, for @p factors times what is applied and
@@ -109,12 +110,11 @@ namespace Debond
 
     dealii::SparsityPattern      sparsity;
     dealii::SparseMatrix<double> system_matrix;
-    // An empty one would need MPI already.
-    mutable std::unique_ptr<dealii::TrilinosWrappers::SparseMatrix>
-                             distributed_matrix;
-    std::vector<std::string> notes;
-    DofVector                whole_load; ///< that for the factors 1
-    DofVector                f_0, f_2;   ///< empty for none
+    // That needs MPI already.
+    mutable std::unique_ptr<const DistributedMatrix> distributed;
+    std::vector<std::string>                         notes;
+    DofVector whole_load; ///< that for the factors 1
+    DofVector f_0, f_2;   ///< empty for none
   };
 } // namespace Debond
 

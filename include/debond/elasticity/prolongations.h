@@ -15,7 +15,7 @@ namespace Debond
   /// the frames and supports of the fine nodes at which they lie. Empty if the
   /// body has no coarser levels. To be called by all ranks, of degree 1.
   template <int dim>
-  std::vector<TruncatedMultigrid::Prolongation>
+  std::vector<Prolongation>
   prolongations(const Body<dim> &body, const ElasticUnknowns<dim> &unknowns);
 } // namespace Debond
 

@@ -2,16 +2,27 @@
 #ifndef debond_linear_algebra_truncated_multigrid_h
 #define debond_linear_algebra_truncated_multigrid_h
 
-#include <deal.II/lac/trilinos_sparse_matrix.h>
+#include <debond/linear_algebra/coarsest_factor.h>
+#include <debond/linear_algebra/distributed_matrix.h>
+#include <debond/linear_algebra/multigrid_level.h>
 
-#include <debond/linear_algebra/distributed_vector.h>
-
-#include <cstddef>
 #include <memory>
 #include <vector>
 
 namespace Debond
 {
+  /// The rows of a prolongation from the next coarser level at own nodes, with
+  /// columns by the numbers of coarse nodes in the whole.
+  struct Prolongation
+  {
+    /// Coarse nodes of this rank; those of the ranks follow each other.
+    unsigned int n_own_columns;
+
+    BlockRows<float> rows;
+  };
+
+
+
   /**
    * One V-cycle for A + E with some unknowns held at zero, symmetric and
    * positive definite: a preconditioner for conjugate gradients that takes
@@ -23,7 +34,7 @@ namespace Debond
    * A only next to the held unknowns and those of E, and only these differences
    * are multiplied. Levels are smoothed by Chebyshev polynomials of degree 2 in
    * D^{-1}B, D being the diagonal of the matrix B; the coarsest one is
-   * factorised on the first rank.
+   * factorised. The cycle is in single precision but for the coarsest level.
    *
    * Level 0 is the finest. All ranks call the functions together, except where
    * said.
@@ -31,20 +42,6 @@ namespace Debond
   class TruncatedMultigrid
   {
   public:
-    /// The rows of a prolongation from the next coarser level that this rank
-    /// has, in the order of its unknowns of the finer level.
-    struct Prolongation
-    {
-      /// Coarse unknowns of this rank; those of the ranks follow each other.
-      unsigned int n_own_columns;
-
-      /// Where the entries of each row begin, and behind the last one.
-      std::vector<std::size_t> starts;
-
-      std::vector<unsigned int> columns; ///< in the whole coarser level
-      std::vector<double>       values;
-    };
-
     /// An entry of a matrix by the numbers of its row and column in the whole.
     struct Entry
     {
@@ -52,24 +49,33 @@ namespace Debond
       double       value;
     };
 
-    /// With the given prolongations, finest first; without any, matrix() is
-    /// solved directly. Each rank has a contiguous range of rows of A, and the
-    /// same one of columns; rows of constrained unknowns have only their
-    /// diagonal entry, and no entries in the prolongations. Keeps a reference
-    /// to A, whose values must stay.
-    TruncatedMultigrid(const dealii::TrilinosWrappers::SparseMatrix &A,
+    /// A + E with the held unknowns at zero, in double precision: of Q (A + E)
+    /// Q + D (I - Q), with Q leaving out these and D the diagonal of A.
+    class FinestMatrix
+    {
+    public:
+      explicit FinestMatrix(const DistributedMatrix &A);
+
+      void
+      vmult(DistributedVector &dst, const DistributedVector &src) const;
+
+      const DistributedMatrix  &A;
+      std::vector<Entry>        E; ///< in own rows
+      std::vector<unsigned int> held;
+
+    private:
+      mutable DistributedVector free_values;
+    };
+
+    /// With @p n_components successive unknowns a node and the given
+    /// prolongations, finest first; without any, A is solved directly. Rows of
+    /// constrained unknowns have only their diagonal entry, and no entries in
+    /// the prolongations. Keeps a reference to A, whose values must stay.
+    TruncatedMultigrid(const DistributedMatrix         &A,
+                       const unsigned int               n_components,
                        const std::vector<Prolongation> &prolongations);
 
-    /// With the smoothed aggregates of Trilinos ML (Vanek, Mandel, Brezina,
-    /// Computing 56, 1996) for @p n_components successive unknowns a node and a
-    /// near null space, such as the rigid motions, zero where A is constrained.
-    TruncatedMultigrid(const dealii::TrilinosWrappers::SparseMatrix &A,
-                       const unsigned int                    n_components,
-                       const std::vector<DistributedVector> &near_null_space);
-
     TruncatedMultigrid(const TruncatedMultigrid &) = delete;
-
-    ~TruncatedMultigrid();
 
     /// From now on matrix() is Q (A + E) Q + D (I - Q), whatever it was before:
     /// E symmetric and positive semidefinite, Q leaving out the @p held
@@ -80,49 +86,74 @@ namespace Debond
     truncate(const std::vector<Entry>        &E,
              const std::vector<unsigned int> &held);
 
-    /// Of a level, as truncated. A coarse unknown that no free unknown follows
-    /// has a positive diagonal entry and no others. Any rank may call it.
-    const dealii::TrilinosWrappers::SparseMatrix &
-    matrix(const unsigned int level = 0) const;
+    /// Any rank may call it.
+    const FinestMatrix &
+    matrix() const
+    {
+      return finest;
+    }
 
-    /// To the given level from the next coarser one, not truncated. Any rank
-    /// may call it.
-    const dealii::TrilinosWrappers::SparseMatrix &
-    prolongation(const unsigned int level) const;
+    /// As truncated: a coarse unknown that no free unknown follows has a
+    /// positive diagonal entry and no others. Prolongations are not truncated.
+    /// Any rank may call it.
+    const MultigridLevel &
+    level(const unsigned int l) const
+    {
+      return *levels.at(l);
+    }
+
+    /// Any rank may call it.
+    unsigned int
+    n_levels() const
+    {
+      return static_cast<unsigned int>(levels.size());
+    }
 
     /// z is next to matrix()^{-1} r, and zero at held unknowns whatever r is
     /// there. The vectors may have ghosts, which are left as they are.
     void
     vmult(DistributedVector &z, const DistributedVector &r) const;
 
-    /// Any rank may call it.
-    unsigned int
-    n_levels() const;
-
   private:
-    struct Level;
-
-    /// Makes what the finest level needs.
-    explicit TruncatedMultigrid(
-      const dealii::TrilinosWrappers::SparseMatrix &A);
-
-    /// Behind the coarsest one. The Galerkin product is made if it is null.
     void
-    add_level(std::unique_ptr<Epetra_CrsMatrix> P,
-              std::unique_ptr<Epetra_CrsMatrix> product);
+    add_finest();
 
-    /// Smoothers and the factorisation for what the matrices are now.
+    /// A at an own node, in the given pattern by local numbers. Valid until the
+    /// next call.
+    const double *
+    finest_blocks(const BlockPattern &pattern, const unsigned int node) const;
+
+    /// A by numbers of the whole.
+    NumberedRows
+    finest_rows() const;
+
+    /// Behind the coarsest one, of which the own rows are given, and on the
+    /// finest not asked for. Returns its own rows, by numbers of the whole.
+    NumberedRows
+    add_level(const Prolongation &P, const NumberedRows &fine_rows);
+
+    /// Q (A + E) Q - A at the nodes where it is not zero.
+    NumberedRows
+    finest_change() const;
+
+    /// For what the matrices are now.
     void
-    update_solvers();
+    make_smoothers();
 
     /// x of the level for its b.
     void
-    cycle(const unsigned int level) const;
+    cycle(const unsigned int l) const;
 
-    const dealii::TrilinosWrappers::SparseMatrix &A;
-    std::vector<std::unique_ptr<Level>>           levels;
-    DistributedVector                             free; ///< 0 if held, else 1
+    const unsigned int                           n_components;
+    FinestMatrix                                 finest;
+    std::vector<std::unique_ptr<MultigridLevel>> levels;
+    std::unique_ptr<CoarsestFactor>              coarsest;
+    SinglePrecisionVector                        free; ///< 0 if held, else 1
     double finest_eigenvalue = 0.; ///< largest of D^{-1}A, 0 if not known yet
+
+    // Of finest_blocks().
+    mutable std::vector<double>       row_of_A;
+    mutable std::vector<unsigned int> places;
   };
 } // namespace Debond
 

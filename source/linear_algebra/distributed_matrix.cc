@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/linear_algebra/distributed_matrix.h>
+
+#include <algorithm>
+
+namespace Debond
+{
+  DistributedMatrix::DistributedMatrix(const MatrixOnRanks &A)
+    : MatrixOnRanks(A)
+    , values(A.A.m())
+  {
+    std::vector<dealii::types::global_dof_index> others;
+    for (const auto row : own_rows)
+      for (auto entry = A.A.begin(row); entry != A.A.end(row); ++entry)
+        if (!own_rows.is_element(entry->column()))
+          others.push_back(entry->column());
+    std::sort(others.begin(), others.end());
+    dealii::IndexSet ghosts(A.A.m());
+    ghosts.add_indices(others.begin(),
+                       std::unique(others.begin(), others.end()));
+    with_ghosts.reinit(own_rows, ghosts, ranks);
+  }
+
+
+
+  const std::vector<double> &
+  DistributedMatrix::at_columns(const DistributedVector &v) const
+  {
+    with_ghosts.copy_locally_owned_data_from(v);
+    with_ghosts.update_ghost_values();
+    const auto  &partitioner = *with_ghosts.get_partitioner();
+    unsigned int i           = 0;
+    for (const auto row : own_rows)
+      values[row] = with_ghosts.local_element(i++);
+    for (const auto column : partitioner.ghost_indices())
+      values[column] = with_ghosts.local_element(i++);
+    with_ghosts.zero_out_ghost_values();
+    return values;
+  }
+
+
+
+  void
+  DistributedMatrix::vmult(DistributedVector       &dst,
+                           const DistributedVector &src) const
+  {
+    multiply(dst, at_columns(src));
+  }
+
+
+
+  void
+  DistributedMatrix::multiply(DistributedVector         &dst,
+                              const std::vector<double> &v) const
+  {
+    unsigned int i = 0;
+    for (const auto row : own_rows)
+      {
+        double     sum = 0.;
+        const auto end = A.end(row);
+        for (auto entry = A.begin(row); entry != end; ++entry)
+          sum += entry->value() * v[entry->column()];
+        dst.local_element(i++) = sum;
+      }
+  }
+} // namespace Debond

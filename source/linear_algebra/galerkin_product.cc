@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/linear_algebra/galerkin_product.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace Debond
+{
+  namespace
+  {
+    constexpr unsigned int none = std::numeric_limits<unsigned int>::max();
+
+
+
+    /// Numbers that are met, each once, in O(1) each.
+    class NumberSet
+    {
+    public:
+      explicit NumberSet(const unsigned int n)
+        : places(n, none)
+      {}
+
+      void
+      clear()
+      {
+        for (const unsigned int number : numbers)
+          places[number] = none;
+        numbers.clear();
+      }
+
+      /// Its place in the order in which they are met.
+      unsigned int
+      insert(const unsigned int number)
+      {
+        if (places[number] == none)
+          {
+            places[number] = static_cast<unsigned int>(numbers.size());
+            numbers.push_back(number);
+          }
+        return places[number];
+      }
+
+      std::vector<unsigned int> numbers;
+
+    private:
+      std::vector<unsigned int> places;
+    };
+
+
+
+    /// The rows and columns of P'MP, counted first.
+    NumberedRows
+    product_pattern(const std::vector<unsigned int> &rows,
+                    const BlockPattern              &M,
+                    const BlockPattern              &P,
+                    const unsigned int               n_columns)
+    {
+      // For each row of the product the rows of M that add to it.
+      std::vector<std::size_t> starts(n_columns + 1, 0);
+      const auto               for_all = [&](const auto &work) {
+        for (unsigned int r = 0; r < rows.size(); ++r)
+          for (auto k = P.starts[rows[r]]; k < P.starts[rows[r] + 1]; ++k)
+            work(P.columns[k], r);
+      };
+      for_all(
+        [&](const unsigned int c, const unsigned int) { ++starts[c + 1]; });
+      std::partial_sum(starts.begin(), starts.end(), starts.begin());
+      std::vector<unsigned int> adding(starts.back());
+      std::vector<std::size_t>  next(starts.begin(), starts.end() - 1);
+      for_all([&](const unsigned int c, const unsigned int r) {
+        adding[next[c]++] = r;
+      });
+
+      NumberedRows result;
+      result.height = result.width = P.width;
+      NumberSet found(n_columns);
+      for (unsigned int c = 0; c < n_columns; ++c)
+        {
+          if (starts[c] == starts[c + 1])
+            continue;
+          found.clear();
+          for (std::size_t a = starts[c]; a < starts[c + 1]; ++a)
+            for (auto k = M.starts[adding[a]]; k < M.starts[adding[a] + 1]; ++k)
+              for (auto l = P.starts[M.columns[k]];
+                   l < P.starts[M.columns[k] + 1];
+                   ++l)
+                found.insert(P.columns[l]);
+          std::vector<unsigned int> sorted = found.numbers;
+          std::sort(sorted.begin(), sorted.end());
+          result.columns.insert(result.columns.end(),
+                                sorted.begin(),
+                                sorted.end());
+          result.rows.push_back(c);
+          result.end_row();
+        }
+      return result;
+    }
+
+
+
+    /// C += A B, or A'B, all stored row by row.
+    template <unsigned int n,
+              unsigned int m,
+              unsigned int l,
+              typename A,
+              typename B>
+    void
+    add_product(double *C, const A *a, const B *b)
+    {
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int k = 0; k < m; ++k)
+          for (unsigned int j = 0; j < l; ++j)
+            C[i * l + j] += a[i * m + k] * static_cast<double>(b[k * l + j]);
+    }
+
+    template <unsigned int n,
+              unsigned int m,
+              unsigned int l,
+              typename A,
+              typename B>
+    void
+    add_transposed_product(double *C, const A *a, const B *b)
+    {
+      for (unsigned int k = 0; k < m; ++k)
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int j = 0; j < l; ++j)
+            C[i * l + j] += static_cast<double>(a[k * n + i]) * b[k * l + j];
+    }
+  } // namespace
+
+
+
+  NumberedRows
+  galerkin_product(const std::vector<unsigned int>                   &rows,
+                   const BlockPattern                                &pattern,
+                   const std::function<const double *(unsigned int)> &blocks,
+                   const BlockRows<float>                            &P,
+                   const unsigned int                                 n_columns)
+  {
+    NumberedRows C = product_pattern(rows, pattern, P, n_columns);
+    C.values.assign(C.columns.size() * C.n_entries_of_block(), 0.);
+    std::vector<unsigned int> row_of(n_columns);
+    for (unsigned int i = 0; i < C.rows.size(); ++i)
+      row_of[C.rows[i]] = i;
+
+    with_sizes(P.height, P.width, [&](const auto fine, const auto coarse) {
+      constexpr unsigned int n = decltype(fine)::value,
+                             m = decltype(coarse)::value;
+      NumberSet           found(n_columns);
+      std::vector<double> MP; // of a row
+      for (unsigned int r = 0; r < rows.size(); ++r)
+        {
+          const std::size_t begin = P.starts[rows[r]],
+                            end   = P.starts[rows[r] + 1];
+          if (begin == end)
+            continue;
+          found.clear();
+          MP.clear();
+          const double *block = blocks(r);
+          for (auto k = pattern.starts[r]; k < pattern.starts[r + 1];
+               ++k, block += n * n)
+            for (auto l = P.starts[pattern.columns[k]];
+                 l < P.starts[pattern.columns[k] + 1];
+                 ++l)
+              {
+                const std::size_t place = found.insert(P.columns[l]);
+                if (place * n * m == MP.size())
+                  MP.resize(MP.size() + n * m, 0.);
+                add_product<n, n, m>(MP.data() + place * n * m,
+                                     block,
+                                     P.block(l));
+              }
+          for (std::size_t l = begin; l < end; ++l)
+            {
+              const unsigned int i     = row_of[P.columns[l]];
+              const auto         first = C.columns.begin() + C.starts[i];
+              const auto         last  = C.columns.begin() + C.starts[i + 1];
+              for (std::size_t place = 0; place < found.numbers.size(); ++place)
+                {
+                  const auto k =
+                    std::lower_bound(first, last, found.numbers[place]);
+                  add_transposed_product<m, n, m>(C.block(k -
+                                                          C.columns.begin()),
+                                                  P.block(l),
+                                                  MP.data() + place * n * m);
+                }
+            }
+        }
+    });
+    return C;
+  }
+} // namespace Debond

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/linear_algebra/multigrid_level.h>
+
+#include <algorithm>
+
+namespace Debond
+{
+  namespace
+  {
+    /// y += M x, or M'x, for own rows and local columns.
+    template <bool transposed>
+    void
+    add_product(const BlockRows<float> &M,
+                const unsigned int      n_rows,
+                const float            *x,
+                float                  *y)
+    {
+      with_sizes(M.height, M.width, [&](const auto height, const auto width) {
+        constexpr unsigned int h = decltype(height)::value,
+                               w = decltype(width)::value;
+        const float *block       = M.values.data();
+        for (unsigned int i = 0; i < n_rows; ++i)
+          {
+            float row[h] = {};
+            if (transposed)
+              std::copy_n(x + std::size_t(i) * h, h, row);
+            for (auto k = M.starts[i]; k < M.starts[i + 1]; ++k, block += h * w)
+              {
+                const std::size_t j = std::size_t(M.columns[k]) * w;
+                for (unsigned int c = 0; c < h; ++c)
+                  for (unsigned int d = 0; d < w; ++d)
+                    if (transposed)
+                      y[j + d] += block[c * w + d] * row[c];
+                    else
+                      row[c] += block[c * w + d] * x[j + d];
+              }
+            if (!transposed)
+              for (unsigned int c = 0; c < h; ++c)
+                y[std::size_t(i) * h + c] += row[c];
+          }
+      });
+    }
+  } // namespace
+
+
+
+  void
+  LevelMatrix::vmult(SinglePrecisionVector       &dst,
+                     const SinglePrecisionVector &src) const
+  {
+    src.update_ghost_values();
+    dst = 0.f;
+    add_product<false>(*this, n_rows(), src.begin(), dst.begin());
+    src.zero_out_ghost_values();
+  }
+
+
+
+  void
+  MultigridLevel::reinit()
+  {
+    for (auto *v : {&x, &b, &r})
+      *v = nodes.vector();
+    matrix.n_unknowns = x.size();
+    inverse_diagonal =
+      std::make_shared<dealii::DiagonalMatrix<SinglePrecisionVector>>(x);
+  }
+
+
+
+  void
+  MultigridLevel::set_change(const NumberedRows &change)
+  {
+    auto saved = unchanged.begin();
+    for (const unsigned int row : changed_rows)
+      {
+        const std::size_t n = matrix.n_entries_of_block() *
+                              (matrix.starts[row + 1] - matrix.starts[row]);
+        std::copy_n(saved, n, matrix.block(matrix.starts[row]));
+        saved += n;
+      }
+    changed_rows = change.rows;
+    unchanged.clear();
+    const unsigned int n = matrix.width;
+    for (unsigned int r = 0; r < change.n_rows(); ++r)
+      {
+        const unsigned int row   = change.rows[r];
+        const std::size_t  begin = matrix.starts[row],
+                          end    = matrix.starts[row + 1];
+        unchanged.insert(unchanged.end(),
+                         matrix.block(begin),
+                         matrix.block(end));
+        for (auto k = change.starts[r]; k < change.starts[r + 1]; ++k)
+          {
+            const unsigned int column = change.columns[k];
+            float *const       block =
+              matrix.block(std::find(matrix.columns.begin() + begin,
+                                     matrix.columns.begin() + end,
+                                     column) -
+                           matrix.columns.begin());
+            for (unsigned int e = 0; e < n * n; ++e)
+              block[e] = changed(block[e],
+                                 change.block(k)[e],
+                                 column == row && e % (n + 1) == 0);
+          }
+      }
+  }
+
+
+
+  double
+  MultigridLevel::make_smoother(const double largest_eigenvalue)
+  {
+    SinglePrecisionVector &inverse = inverse_diagonal->get_vector();
+    const unsigned int     n       = matrix.width;
+    for (unsigned int row = 0; row < matrix.n_rows(); ++row)
+      for (auto k = matrix.starts[row]; k < matrix.starts[row + 1]; ++k)
+        for (unsigned int c = 0; matrix.columns[k] == row && c < n; ++c)
+          inverse.local_element(row * n + c) =
+            1.f / matrix.block(k)[c * (n + 1)];
+
+    typename decltype(smoother)::AdditionalData parameters;
+    parameters.preconditioner      = inverse_diagonal;
+    parameters.degree              = 2;
+    parameters.smoothing_range     = 20.;
+    parameters.eig_cg_n_iterations = largest_eigenvalue > 0. ? 0 : 10;
+    parameters.max_eigenvalue      = largest_eigenvalue;
+    smoother.initialize(matrix, parameters);
+    return smoother.estimate_eigenvalues(b).max_eigenvalue_estimate;
+  }
+
+
+
+  void
+  MultigridLevel::prolongate(SinglePrecisionVector       &fine,
+                             const SinglePrecisionVector &coarse) const
+  {
+    coarse.update_ghost_values();
+    fine = 0.f;
+    add_product<false>(prolongation,
+                       nodes.n_own(),
+                       coarse.begin(),
+                       fine.begin());
+    coarse.zero_out_ghost_values();
+  }
+
+
+
+  void MultigridLevel::restrict(SinglePrecisionVector       &coarse,
+                                const SinglePrecisionVector &fine) const
+  {
+    coarse = 0.f;
+    add_product<true>(prolongation,
+                      nodes.n_own(),
+                      fine.begin(),
+                      coarse.begin());
+    coarse.compress(dealii::VectorOperation::add);
+  }
+} // namespace Debond
