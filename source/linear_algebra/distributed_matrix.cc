@@ -10,10 +10,11 @@ namespace Debond
     , values(A.A.m())
   {
     std::vector<dealii::types::global_dof_index> others;
-    for (const auto row : own_rows)
-      for (auto entry = A.A.begin(row); entry != A.A.end(row); ++entry)
-        if (!own_rows.is_element(entry->column()))
-          others.push_back(entry->column());
+    if (is_shared())
+      for (const auto row : own_rows)
+        for (auto entry = A.A.begin(row); entry != A.A.end(row); ++entry)
+          if (!own_rows.is_element(entry->column()))
+            others.push_back(entry->column());
     std::sort(others.begin(), others.end());
     dealii::IndexSet ghosts(A.A.m());
     ghosts.add_indices(others.begin(),

@@ -89,7 +89,9 @@ namespace Debond
              row < (nodes.global(i) + 1) * n;
              ++row)
           for (auto entry = A.A.begin(row); entry != A.A.end(row); ++entry)
-            columns.push_back(entry->column() / n);
+            if (const unsigned int column = entry->column() / n;
+                columns.empty() || columns.back() != column)
+              columns.push_back(column);
         std::sort(columns.begin(), columns.end());
         rows.columns.insert(rows.columns.end(),
                             columns.begin(),

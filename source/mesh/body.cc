@@ -105,13 +105,13 @@ namespace Debond
 
       /// The vertices of a cell that the point is inside of, or least outside,
       /// and its barycentric coordinates there.
-      std::array<std::pair<unsigned int, double>, dim + 1>
+      typename LinearFields<dim>::Weights
       operator()(const dealii::Point<dim> &point) const
       {
         namespace index = boost::geometry::index;
         std::vector<std::size_t> nearest;
         double                   farthest = -std::numeric_limits<double>::max();
-        std::array<std::pair<unsigned int, double>, dim + 1> result;
+        typename LinearFields<dim>::Weights result;
         const auto look_at = [&](const std::size_t candidate) {
           const auto              &cell   = cells[candidate];
           const dealii::Point<dim> origin = cell->vertex(0);
@@ -193,6 +193,21 @@ namespace Debond
 
 
   template <int dim>
+  LinearFields<dim>
+  Body<dim>::linear_fields() const
+  {
+    const auto mesh = std::make_shared<dealii::Triangulation<dim>>();
+    make_whole_mesh(*mesh);
+    const auto search = std::make_shared<const CellSearch<dim>>(*mesh);
+    return {mesh->get_vertices(),
+            [mesh, search](const dealii::Point<dim> &point) {
+              return (*search)(point);
+            }};
+  }
+
+
+
+  template <int dim>
   std::vector<CoarseLevel<dim>>
   Body<dim>::coarse_levels(const std::vector<dealii::Point<dim>> &points,
                            const bool with_own) const
@@ -206,16 +221,15 @@ namespace Debond
       {
         if (body == this && !with_own)
           continue;
-        dealii::Triangulation<dim> mesh;
-        body->make_whole_mesh(mesh);
-        const CellSearch<dim> search(mesh);
-        CoarseLevel<dim>      level;
-        level.to_finer.n_nodes = mesh.n_vertices();
+        LinearFields<dim> fields = body->linear_fields();
+        CoarseLevel<dim>  level;
+        level.to_finer.n_nodes =
+          static_cast<unsigned int>(fields.vertices.size());
         for (const dealii::Point<dim> &point :
              levels.empty() ? points : levels.back().vertices)
           {
             double     sum   = 0.;
-            const auto found = search(point);
+            const auto found = fields.weights_at(point);
             for (const auto &[unused, weight] : found)
               sum += weight > Tolerance::zero_weight ? weight : 0.;
             for (const auto &[vertex, weight] : found)
@@ -227,7 +241,7 @@ namespace Debond
                 }
             level.to_finer.starts.push_back(level.to_finer.nodes.size());
           }
-        level.vertices = mesh.get_vertices();
+        level.vertices = std::move(fields.vertices);
         levels.push_back(std::move(level));
       }
     return levels;

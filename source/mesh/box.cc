@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 
 namespace Debond
@@ -183,6 +184,120 @@ namespace Debond
   {
     make_box(parameters, mesh);
     return {box_boundaries<dim>(), {}};
+  }
+
+
+
+  namespace
+  {
+    /// The vertices of the crossed mesh of a box by their places, in halves of
+    /// cells: corners have only even coordinates, centres of cells only odd
+    /// ones, and centres of faces, in 3D, one that is even.
+    template <int dim>
+    class Lattice
+    {
+    public:
+      using Place = std::array<unsigned int, dim>;
+
+      explicit Lattice(const BoxParameters &box)
+        : box(box)
+        , rotation(rotation_matrix<dim>(box.rotation))
+      {
+        unsigned int n_places = 1;
+        for (unsigned int d = 0; d < dim; ++d)
+          n_places *= 2 * box.cells[d] + 1;
+        numbers.resize(n_places);
+        for (unsigned int k = 0; k < n_places; ++k)
+          {
+            dealii::Point<dim> x;
+            unsigned int       rest = k, n_odd = 0;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const unsigned int place = rest % (2 * box.cells[d] + 1);
+                rest /= 2 * box.cells[d] + 1;
+                n_odd += place % 2;
+                x[d] = 0.5 * place * (box.lengths[d] / box.cells[d]);
+              }
+            if (n_odd == 1)
+              continue;
+            numbers[k] = static_cast<unsigned int>(vertices.size());
+            vertices.push_back(
+              box.rotation == 0. ? x : dealii::Point<dim>(rotation * x));
+          }
+      }
+
+      /// Simplices have the centre of a cell, in 3D that of a face, and the two
+      /// ends of an edge of the cell.
+      typename LinearFields<dim>::Weights
+      weights_at(const dealii::Point<dim> &point) const
+      {
+        const dealii::Tensor<1, dim> x =
+          box.rotation == 0. ?
+            dealii::Tensor<1, dim>(point) :
+            dealii::Tensor<1, dim>(dealii::transpose(rotation) * point);
+        // From the centre of the cell, the faces being at -1 and 1.
+        dealii::Tensor<1, dim>        t;
+        Place                         at;
+        std::array<unsigned int, dim> by_size;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double place = x[d] * (box.cells[d] / box.lengths[d]);
+            const auto   cell  = static_cast<unsigned int>(
+              std::clamp(std::floor(place), 0., box.cells[d] - 1.));
+            at[d]      = 2 * cell + 1;
+            t[d]       = 2. * (place - cell) - 1.;
+            by_size[d] = d;
+          }
+        std::sort(by_size.begin(),
+                  by_size.end(),
+                  [&t](const unsigned int a, const unsigned int b) {
+                    return std::abs(t[a]) > std::abs(t[b]);
+                  });
+        typename LinearFields<dim>::Weights result;
+        double                              left = 1.;
+        for (unsigned int k = 0; k + 1 < dim; ++k)
+          {
+            const unsigned int d = by_size[k];
+            result[k]            = {number(at), left - std::abs(t[d])};
+            left                 = std::abs(t[d]);
+            at[d] += t[d] < 0. ? -1 : 1;
+          }
+        const unsigned int along = by_size[dim - 1];
+        --at[along];
+        result[dim - 1] = {number(at), 0.5 * (left - t[along])};
+        at[along] += 2;
+        result[dim] = {number(at), 0.5 * (left + t[along])};
+        return result;
+      }
+
+      std::vector<dealii::Point<dim>> vertices;
+
+    private:
+      unsigned int
+      number(const Place &place) const
+      {
+        unsigned int k = 0;
+        for (unsigned int d = dim; d-- > 0;)
+          k = k * (2 * box.cells[d] + 1) + place[d];
+        return numbers[k];
+      }
+
+      const BoxParameters          box;
+      const dealii::Tensor<2, dim> rotation;
+      std::vector<unsigned int>    numbers; ///< where there is a vertex
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  LinearFields<dim>
+  Box<dim>::linear_fields() const
+  {
+    const auto lattice = std::make_shared<const Lattice<dim>>(parameters);
+    return {lattice->vertices, [lattice](const dealii::Point<dim> &point) {
+              return lattice->weights_at(point);
+            }};
   }
 
 

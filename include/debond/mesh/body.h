@@ -15,6 +15,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace Debond
@@ -120,6 +121,18 @@ namespace Debond
 
 
 
+  /// The vertices of a mesh and its P1 fields: at a point of the body they are
+  /// means of the values at these vertices, with these weights. Beside the mesh
+  /// weights may be negative.
+  template <int dim>
+  struct LinearFields
+  {
+    using Weights = std::array<std::pair<unsigned int, double>, dim + 1>;
+
+    std::vector<dealii::Point<dim>>                    vertices;
+    std::function<Weights(const dealii::Point<dim> &)> weights_at;
+  };
+
   /// A coarser mesh: its vertices, and its P1 fields at those of the next finer
   /// mesh.
   template <int dim>
@@ -192,6 +205,11 @@ namespace Debond
 
     virtual std::unique_ptr<Body>
     coarser_whole() const = 0;
+
+    /// Of a mesh that is as good as the one of make_whole_mesh(), with vertices
+    /// in another order.
+    virtual LinearFields<dim>
+    linear_fields() const;
   };
 } // namespace Debond
 

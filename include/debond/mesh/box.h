@@ -96,6 +96,9 @@ namespace Debond
     std::unique_ptr<Body<dim>>
     coarser_whole() const override;
 
+    LinearFields<dim>
+    linear_fields() const override;
+
     /// Not where its cells would be longer than those of this one.
     std::unique_ptr<Body<dim>>
     coarser_level() const override;
