@@ -5,8 +5,6 @@ import argparse
 import glob
 import os
 import sys
-import tempfile
-import xml.etree.ElementTree as xml
 
 import meshio
 import numpy
@@ -28,31 +26,17 @@ STATES = {"contact": "tab:blue", "bonded": "tab:green", "kink": "tab:olive",
           "broken": "tab:red", "free": "tab:gray", "held": "k"}
 
 
-def read(file):
-    """One mesh for each part of a file: of several meshio takes the last."""
-    tree = xml.parse(file)
-    (grid,) = tree.getroot().findall("UnstructuredGrid")
-    pieces, meshes = grid.findall("Piece"), []
-    for piece in pieces:
-        grid[:] = [piece]
-        with tempfile.NamedTemporaryFile(suffix=".vtu") as part:
-            tree.write(part.name)
-            meshes.append(meshio.read(part.name))
-    return meshes
-
-
 class Grid:
     """The cells of .vtu files by their corners, with their fields."""
 
     def __init__(self, files):
-        self.meshes = [mesh for file in files for mesh in read(file)]
+        self.meshes = [meshio.read(file) for file in files]
         self.points = numpy.concatenate([m.points for m in self.meshes])
         cells, n = [], 0
         for mesh in self.meshes:
-            for block in mesh.cells:
-                name = block.type.replace("VTK_LAGRANGE_", "").lower()
-                corners = {"li": 2, "tr": 3, "te": 4, "qu": 4}[name[:2]]
-                cells.append(block.data[:, :corners] + n)
+            (block,) = mesh.cells
+            corners = {"li": 2, "tr": 3, "te": 4, "qu": 4}[block.type[:2]]
+            cells.append(block.data[:, :corners] + n)
             n += len(mesh.points)
         self.cells = numpy.concatenate(cells)
         extent = numpy.ptp(self.points, axis=0)
@@ -64,16 +48,16 @@ class Grid:
     def in_cells(self, name):
         """Of each cell, the mean if the field is at points."""
         if name in self.meshes[0].cell_data:
-            return numpy.concatenate([data.ravel() for mesh in self.meshes
-                                      for data in mesh.cell_data[name]])
+            return numpy.concatenate([mesh.cell_data[name][0].ravel()
+                                      for mesh in self.meshes])
         if name not in self.meshes[0].point_data:
             raise BadInput(f"there is no field {name}")
         corners = self.at_points(name)[self.cells]
         return corners.reshape(len(self.cells), -1).mean(axis=1)
 
     def boundary(self):
-        """The faces (2D: edges) that belong to one cell, and the cells. Cells
-        may have points of their own: those at one place are one."""
+        """The faces (2D: edges) that belong to one cell, and the cells. Files
+        of ranks have points of their own: those at one place are one."""
         vertex = numpy.unique(
             numpy.round(self.points / self.size * 1e6).astype(int), axis=0,
             return_inverse=True)[1].ravel()

@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/data_out_base.h>
-#include <deal.II/base/geometry_info.h>
 #include <deal.II/base/mpi.h>
-#include <deal.II/fe/fe_simplex_p.h>
-#include <deal.II/fe/mapping_fe.h>
-#include <deal.II/numerics/data_out.h>
 
 #include <debond/base/atomic_file.h>
 #include <debond/base/bernstein.h>
@@ -12,6 +7,7 @@
 #include <debond/base/processes.h>
 #include <debond/base/ranks.h>
 #include <debond/output/vtu.h>
+#include <debond/output/vtu_grid.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,120 +19,123 @@ namespace Debond
 {
   namespace
   {
-    /// More effort takes several times longer for files that are a few per cent
-    /// smaller; the same results give the same file.
-    dealii::DataOutBase::VtkFlags
-    vtk_flags()
+    /// The own cells of this rank with the displacement at their nodes.
+    template <int dim>
+    VtuGrid
+    body_grid(const ElasticUnknowns<dim> &unknowns,
+              const DofVector            &displacement)
     {
-      dealii::DataOutBase::VtkFlags flags;
-      flags.compression_level   = dealii::DataOutBase::VtkFlags::best_speed;
-      flags.print_date_and_time = false;
-      return flags;
+      using Type                 = VtuGrid::CellType;
+      const auto        &dofs    = unknowns.dof_handler();
+      const bool         linear  = unknowns.degree() == 1;
+      const unsigned int n_nodes = n_coefficients(dim + 1, unknowns.degree());
+
+      VtuGrid grid = {dim == 2 ?
+                        (linear ? Type::triangle : Type::quadratic_triangle) :
+                        (linear ? Type::tetrahedron :
+                                  Type::quadratic_tetrahedron),
+                      n_nodes};
+      VtuGrid::Field u = {"displacement", 3};
+      grid.cells.reserve(std::size_t(n_nodes) *
+                         dofs.get_triangulation().n_active_cells());
+      std::vector<std::int32_t> point_of_node(dofs.n_dofs() / dim, -1);
+      std::vector<dealii::types::global_dof_index> cell_dofs(dim * n_nodes);
+      for (const auto &cell : owned_cells(dofs))
+        {
+          cell->get_dof_indices(cell_dofs);
+          for (unsigned int n = 0; n < n_nodes; ++n)
+            {
+              const auto    first = cell_dofs[dim * n];
+              std::int32_t &point = point_of_node[first / dim];
+              if (point < 0)
+                {
+                  dealii::Point<dim> position = cell->vertex(n <= dim ? n : 0);
+                  if (n > dim)
+                    {
+                      const auto &[a, b] = simplex_edges[n - dim - 1];
+                      position           = cell->vertex(a) +
+                                 0.5 * (cell->vertex(b) - cell->vertex(a));
+                    }
+                  point = grid.add_point(position);
+                  dealii::Tensor<1, dim> value;
+                  for (unsigned int d = 0; d < dim; ++d)
+                    value[d] = displacement(first + d);
+                  u.add(value);
+                }
+              grid.cells.push_back(point);
+            }
+        }
+      grid.at_points = {std::move(u)};
+      return grid;
     }
 
 
 
-    /// The numbers of the cells with their names.
+    /// The numbers of the own cells of this rank.
     template <int dim>
-    std::vector<std::pair<std::string, dealii::Vector<double>>>
+    std::vector<VtuGrid::Field>
     cell_fields(const ElasticProblem<dim>    &problem,
                 const DofVector              &displacement,
                 const LoadFactors             factors,
                 const ErrorEstimate          *estimate,
                 const std::vector<CellField> &more)
     {
-      std::vector<std::pair<std::string, dealii::Vector<double>>> all;
-      const auto &dofs   = problem.unknowns().dof_handler();
-      const auto &first  = *dofs.begin_active();
-      const auto &fields = problem.fields();
-      std::vector<dealii::SymmetricTensor<2, 3>> stresses;
-      bool                                       has_regions = false;
-      CellStresses<dim> means(fields, displacement, factors);
+      using Stress            = dealii::SymmetricTensor<2, dim>;
+      const auto &dofs        = problem.unknowns().dof_handler();
+      const auto &first       = *dofs.begin_active();
+      const auto &fields      = problem.fields();
+      bool        has_regions = false;
       for (const auto &cell : dofs.active_cell_iterators())
+        has_regions |= cell->material_id() != first.material_id();
+      has_regions = any_rank(has_regions);
+      const bool has_zz =
+        dim == 2 && fields.material(dofs.begin_active()).hypothesis ==
+                      Material::Hypothesis::plane_strain;
+      const std::string        axes = "xyz";
+      std::vector<std::string> components;
+      for (unsigned int c = 0; c < Stress::n_independent_components; ++c)
         {
-          means.reinit(cell);
-          stresses.push_back(means.solid_stress(0));
-          has_regions |= cell->material_id() != first.material_id();
+          const auto ij = Stress::unrolled_to_component_indices(c);
+          components.push_back(std::string("stress_") + axes[ij[0]] +
+                               axes[ij[1]]);
         }
-      has_regions    = any_rank(has_regions);
-      const auto add = [&](const std::string &name, const auto &value) {
-        all.emplace_back(name, stresses.size());
-        for (const auto &cell : dofs.active_cell_iterators())
-          all.back().second(cell->active_cell_index()) =
-            value(cell, stresses[cell->active_cell_index()]);
-      };
 
-      const std::string axes = "xyz";
-      for (unsigned int c = 0;
-           c < dealii::SymmetricTensor<2, dim>::n_independent_components;
-           ++c)
+      // Each cell comes to the fields in the same order.
+      std::vector<VtuGrid::Field> all;
+      std::size_t                 next = 0;
+      const auto add = [&](const char *const name, const double number) {
+        if (next == all.size())
+          {
+            all.push_back({name});
+            all[next].numbers.reserve(
+              dofs.get_triangulation().n_active_cells());
+          }
+        all[next++].numbers.push_back(static_cast<float>(number));
+      };
+      CellStresses<dim> means(fields, displacement, factors);
+      for (const auto &cell : owned_cells(dofs))
         {
-          const auto ij =
-            dealii::SymmetricTensor<2, dim>::unrolled_to_component_indices(c);
-          add(std::string("stress_") + axes[ij[0]] + axes[ij[1]],
-              [&](const auto &, const auto &stress) { return stress[ij]; });
+          next = 0;
+          means.reinit(cell);
+          const auto         stress = means.solid_stress(0);
+          const unsigned int index  = cell->active_cell_index();
+          for (unsigned int c = 0; c < components.size(); ++c)
+            add(components[c].c_str(),
+                stress[Stress::unrolled_to_component_indices(c)]);
+          if (has_zz)
+            add("stress_zz", stress[2][2]);
+          if (has_regions)
+            add("region", cell->material_id());
+          add("von_mises", von_mises(stress));
+          add("strain_energy_density",
+              fields.material(cell).energy_density(stress));
+          if (estimate != nullptr)
+            add("error_density", estimate->cells[index] / cell->measure());
+          for (const auto &[name, numbers] : more)
+            add(name.c_str(), numbers[index]);
         }
-      if (dim == 2 && fields.material(dofs.begin_active()).hypothesis ==
-                        Material::Hypothesis::plane_strain)
-        add("stress_zz",
-            [](const auto &, const auto &stress) { return stress[2][2]; });
-      if (has_regions)
-        add("region",
-            [](const auto &cell, const auto &) { return cell->material_id(); });
-      add("von_mises",
-          [](const auto &, const auto &stress) { return von_mises(stress); });
-      add("strain_energy_density", [&](const auto &cell, const auto &stress) {
-        return fields.material(cell).energy_density(stress);
-      });
-      if (estimate != nullptr)
-        add("error_density", [&](const auto &cell, const auto &) {
-          return estimate->cells[cell->active_cell_index()] / cell->measure();
-        });
-      for (const auto &[name, numbers] : more)
-        add(name, [&numbers = numbers](const auto &cell, const auto &) {
-          return numbers[cell->active_cell_index()];
-        });
       return all;
     }
-
-
-
-    template <int dim>
-    class BodyOut : public dealii::DataOut<dim>
-    {
-    public:
-      /// Writes a file of cells one part after the other: patches of a million
-      /// cells take a GiB.
-      void
-      write_in_parts(std::ostream                                       &file,
-                     const std::vector<typename BodyOut::cell_iterator> &cells,
-                     const unsigned int                                  degree)
-      {
-        constexpr std::size_t        cells_of_part = 1 << 18;
-        const dealii::MappingFE<dim> mapping(dealii::FE_SimplexP<dim>(1));
-        dealii::DataOutBase::write_vtu_header(file, vtk_flags());
-        for (std::size_t first = 0; first < cells.size();
-             first += cells_of_part)
-          {
-            std::size_t       next = first;
-            const std::size_t end =
-              std::min(first + cells_of_part, cells.size());
-            this->set_cell_selection(
-              [&](const auto &) { return cells[next = first]; },
-              [&](const auto &mesh, const auto &) {
-                return ++next < end ? cells[next] : mesh.end();
-              });
-            this->build_patches(mapping, degree);
-            dealii::DataOutBase::write_vtu_main(
-              this->get_patches(),
-              this->get_dataset_names(),
-              this->get_nonscalar_data_ranges(),
-              vtk_flags(),
-              file);
-          }
-        dealii::DataOutBase::write_vtu_footer(file);
-      }
-    };
 
 
 
@@ -227,30 +226,11 @@ namespace Debond
                  const ErrorEstimate          *estimate,
                  const std::vector<CellField> &more)
   {
-    namespace Interpretation             = dealii::DataComponentInterpretation;
     const ElasticUnknowns<dim> &unknowns = problem.unknowns();
     const DofVector displacement = unknowns.cartesian_displacement(u, factors);
-
-    BodyOut<dim> out;
-    out.set_flags(vtk_flags());
-    out.attach_dof_handler(unknowns.dof_handler());
-    out.add_data_vector(
-      displacement,
-      std::vector<std::string>(dim, "displacement"),
-      dealii::DataOut<dim>::type_dof_data,
-      std::vector<Interpretation::DataComponentInterpretation>(
-        dim, Interpretation::component_is_part_of_vector));
-    const auto fields =
-      cell_fields(problem, displacement, factors, estimate, more);
-    for (const auto &[name, numbers] : fields)
-      out.add_data_vector(numbers, name, dealii::DataOut<dim>::type_cell_data);
-    std::vector<typename BodyOut<dim>::cell_iterator> cells;
-    for (const auto &cell :
-         owned_cells(unknowns.dof_handler().get_triangulation()))
-      cells.push_back(cell);
-    const auto write = [&](std::ostream &file) {
-      out.write_in_parts(file, cells, unknowns.degree());
-    };
+    VtuGrid         grid         = body_grid(unknowns, displacement);
+    grid.in_cells = cell_fields(problem, displacement, factors, estimate, more);
+    const auto write = [&grid](std::ostream &file) { write_vtu(grid, file); };
 
     const MPI_Comm     ranks   = unknowns.communicator();
     const unsigned int n_ranks = number_of_ranks(ranks);
@@ -271,7 +251,7 @@ namespace Debond
         (path.parent_path() / of_rank(rank_of_this(ranks))).string(), write);
     });
     write_atomically(joined_file(file_name, ranks), [&](std::ostream &file) {
-      out.write_pvtu_record(file, names);
+      write_pvtu(grid, names, file);
     });
   }
 
@@ -300,11 +280,14 @@ namespace Debond
       const bool    is_held = node == dealii::numbers::invalid_unsigned_int;
       const double  measure = is_held ? 1. : boundary.nodes[node].measure;
       ContactValues values;
-      for (unsigned int d = 0; d < dim; ++d)
-        values.push_back(is_held ? 0. : verification.displacements[node][d]);
-      for (unsigned int d = 0; d < dim; ++d)
+      for (unsigned int d = 0; d < 3; ++d)
         values.push_back(
-          is_held ? nan : verification.tangential_forces[node][d] / measure);
+          is_held || d >= dim ? 0. : verification.displacements[node][d]);
+      for (unsigned int d = 0; d < 3; ++d)
+        values.push_back(d >= dim ? 0. :
+                         is_held  ? nan :
+                                   verification.tangential_forces[node][d] /
+                                     measure);
       for (const ContactScalar &scalar : contact_scalars)
         values.push_back(is_held ?
                            (scalar.is_displacement ? 0. : nan) :
@@ -320,16 +303,31 @@ namespace Debond
       const ContactValues a = values_of(face.node(simplex_edges[k - dim][0]));
       const ContactValues b = values_of(face.node(simplex_edges[k - dim][1]));
       for (unsigned int c = 0; c < values.size(); ++c)
-        if (c < dim ||
-            (c >= 2 * dim && contact_scalars[c - 2 * dim].is_displacement))
+        if (c < 3 || (c >= 6 && contact_scalars[c - 6].is_displacement))
           values[c] = 0.5 * values[c] + 0.25 * (a[c] + b[c]);
       return values;
     };
 
+    VtuGrid grid = {dim == 2 ? VtuGrid::CellType::line :
+                               VtuGrid::CellType::quadrilateral,
+                    2 * (dim - 1)};
+    grid.at_points = {{"displacement", 3}, {"tangential_force_density", 3}};
+    for (const ContactScalar &scalar : contact_scalars)
+      grid.at_points.push_back({scalar.name});
+    grid.in_cells = {{"bond_state"}};
+    for (const auto &[name, unused] : more)
+      grid.in_cells.push_back({name});
+    const auto add_point = [&grid](const dealii::Point<dim> &position,
+                                   const ContactValues      &values) {
+      grid.cells.push_back(grid.add_point(position));
+      auto value = values.begin();
+      for (VtuGrid::Field &field : grid.at_points)
+        for (unsigned int c = 0; c < field.n_components; ++c)
+          field.numbers.push_back(static_cast<float>(*value++));
+    };
+
     // Each vertex has its share of the face, so that its state can be shown
     // without a transition to that of its neighbours.
-    using Patch = dealii::DataOutBase::Patch<dim - 1, dim>;
-    std::vector<Patch> patches;
     for (unsigned int f = 0; f < boundary.faces.size(); ++f)
       for (const auto &part : parts_of_face<dim>(boundary.degree))
         {
@@ -349,32 +347,6 @@ namespace Debond
 
           for (unsigned int k = 0; k < dim; ++k)
             {
-              ContactValues of_share = {static_cast<double>(
-                face.is_held(part[k]) ?
-                  BondState::held :
-                  verification.nodes[face.node(part[k])].state)};
-              for (const auto &[unused, numbers] : more)
-                of_share.push_back(numbers[f]);
-
-              Patch patch;
-              patch.n_subdivisions = 1;
-              // Without it cells have no type in the file.
-              patch.reference_cell =
-                dealii::ReferenceCells::get_hypercube<dim - 1>();
-              patch.patch_index = static_cast<unsigned int>(patches.size());
-              patch.data.reinit(
-                values[k].size() + of_share.size(),
-                dealii::GeometryInfo<dim - 1>::vertices_per_cell);
-              unsigned int n         = 0;
-              const auto   add_point = [&](const dealii::Point<dim> &position,
-                                         const ContactValues      &at_point) {
-                patch.vertices[n] = position;
-                for (unsigned int c = 0; c < patch.data.size(0); ++c)
-                  patch.data(c, n) = static_cast<float>(
-                    c < at_point.size() ? at_point[c] :
-                                            of_share[c - at_point.size()]);
-                ++n;
-              };
               const auto add_middle = [&](const unsigned int other) {
                 add_point(corners[k] + 0.5 * (corners[other] - corners[k]),
                           mean(values[k], {values[other]}));
@@ -385,39 +357,24 @@ namespace Debond
               add_middle(next);
               if constexpr (dim == 3)
                 {
-                  add_middle(last);
                   add_point(corners[0] + (corners[1] - corners[0]) / 3. +
                               (corners[2] - corners[0]) / 3.,
                             mean(values[k], {values[next], values[last]}));
+                  add_middle(last);
                 }
-              patches.push_back(patch);
+
+              const BondState state =
+                face.is_held(part[k]) ?
+                  BondState::held :
+                  verification.nodes[face.node(part[k])].state;
+              grid.in_cells[0].numbers.push_back(static_cast<float>(state));
+              for (unsigned int m = 0; m < more.size(); ++m)
+                grid.in_cells[m + 1].numbers.push_back(
+                  static_cast<float>(more[m].second[f]));
             }
         }
-
-    std::vector<std::string> names;
-    std::vector<std::tuple<
-      unsigned int,
-      unsigned int,
-      std::string,
-      dealii::DataComponentInterpretation::DataComponentInterpretation>>
-      vectors;
-    for (const char *const name : {"displacement", "tangential_force_density"})
-      {
-        vectors.emplace_back(
-          names.size(),
-          names.size() + dim - 1,
-          name,
-          dealii::DataComponentInterpretation::component_is_part_of_vector);
-        names.insert(names.end(), dim, name);
-      }
-    for (const ContactScalar &scalar : contact_scalars)
-      names.push_back(scalar.name);
-    names.emplace_back("bond_state");
-    for (const auto &[name, unused] : more)
-      names.push_back(name);
-    write_atomically(file_name, [&](std::ostream &out) {
-      dealii::DataOutBase::write_vtu(patches, names, vectors, vtk_flags(), out);
-    });
+    write_atomically(file_name,
+                     [&grid](std::ostream &out) { write_vtu(grid, out); });
   }
 
 

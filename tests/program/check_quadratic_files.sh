@@ -46,6 +46,7 @@ body = Piece(directory + "/body.vtu")
 types, connectivity = body.cells["types"], body.cells["connectivity"]
 assert set(types) == {cell_type}, set(types)
 n_nodes = n_corners + len(edges)
+assert body.n_points == int(sys.argv[5]), body.n_points
 assert body.cells["offsets"][0] == n_nodes
 points, displacement = body.points, body.at_points["displacement"]
 at = lambda field, i: field[3 * i:3 * i + 3]
@@ -79,6 +80,6 @@ SCRIPT
 "$debond" plane.prm >log
 grep -q "^  mesh  *80 triangles, 0.4 x 0.04, quadratic displacements$" log ||
   fail "the log does not say it: $(cat log)"
-python3 check.py output/plane 22 3 "$tests"
+python3 check.py output/plane 22 3 "$tests" 185
 "$debond" solid.prm >/dev/null
-python3 check.py output/solid 24 4 "$tests"
+python3 check.py output/solid 24 4 "$tests" 587

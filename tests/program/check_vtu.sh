@@ -30,10 +30,11 @@ SCENE
 
 cat >check.py <<'SCRIPT'
 import csv, json, math, sys
-sys.path.insert(0, sys.argv[4])
+sys.path.insert(0, sys.argv[2])
 from vtu import Piece
 
-directory, n_cells, n_faces = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+directory, tests = sys.argv[1], sys.argv[2]
+n_cells, n_vertices, n_faces = map(int, sys.argv[3:])
 dim = 3 if directory.endswith("solid") else 2
 
 
@@ -47,7 +48,7 @@ profile = list(csv.DictReader(open(directory + "/contact_profile.csv")))
 body = Piece(directory + "/body.vtu")
 at_points, at_cells = body.at_points, body.in_cells
 assert body.n_cells == n_cells == summary["cells"], body.n_cells
-assert body.n_points == (dim + 1) * n_cells
+assert body.n_points == n_vertices, body.n_points
 near(max(at_cells["von_mises"]), summary["largest_von_mises"])
 u = at_points["displacement"]
 near(max(math.hypot(*u[3 * i:3 * i + 3]) for i in range(len(u) // 3)),
@@ -63,10 +64,11 @@ contact = Piece(directory + "/contact.vtu")
 n, points = contact.n_cells, contact.points
 at_points, at_cells = contact.at_points, contact.in_cells
 assert n == dim * n_faces, n
-assert {"displacement", "tangential_force_density", "u_nu", "gap",
-        "normal_force_density"} <= set(at_points), set(at_points)
-assert {"bond_state", "law_violation", "bond_stiffness", "bond_threshold",
-        "initial_gap", "strain_energy_density"} <= {*at_points, *body.at_points}
+assert {*at_points} == {
+    "displacement", "tangential_force_density", "u_nu", "gap", "normal_force_density",
+    "law_violation", "bond_stiffness", "bond_threshold", "initial_gap"}, at_points
+assert {*at_cells} == {"bond_state"} and {*body.at_points} == {"displacement"}
+assert {"strain_energy_density", "error_density"} <= {*body.in_cells}
 states = ["contact", "bonded", "kink", "broken", "free", "held"]
 state_at = {tuple(round(float(row[x]), 6) for x in "xyz"[:dim]):
             states.index(row["state"]) for row in profile}
@@ -99,11 +101,11 @@ for d in range(dim):
 assert abs(summary["tangential_reaction"][0]) > 1e-3
 near(summary["tangential_reaction"][1], 0., 0.01)
 SCRIPT
-python3 check.py output/bar 80 10 "$tests"
+python3 check.py output/bar "$tests" 80 53 10
 # Fields of more than one block.
 "$debond" bar.prm --set "Mesh/Cells=320, 32" --set Output/Directory=fine >/dev/null
-python3 check.py fine 40960 320 "$tests"
-python3 check.py output/solid 384 64 "$tests"
+python3 check.py fine "$tests" 40960 20833 320
+python3 check.py output/solid "$tests" 384 144 64
 
 # A body that may slide has no such forces.
 "$debond" bar.prm --set "Contact law/Tangential displacement=free" \

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/output/vtu_grid.h>
+
+#include <boost/endian/conversion.hpp>
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <new>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Appends what is left of a block, and returns how much that is.
+    std::size_t
+    deflate_block(const Bytef *const block,
+                  const std::size_t  n_bytes,
+                  const int          strategy,
+                  std::string       &data)
+    {
+      const std::size_t begin = data.size();
+      data.resize(begin + compressBound(n_bytes));
+      z_stream   stream = {};
+      const bool has_begun =
+        deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, 15, 8, strategy) ==
+        Z_OK;
+      stream.next_in   = const_cast<Bytef *>(block);
+      stream.avail_in  = static_cast<uInt>(n_bytes);
+      stream.next_out  = reinterpret_cast<Bytef *>(&data[begin]);
+      stream.avail_out = static_cast<uInt>(data.size() - begin);
+      const bool is_done =
+        has_begun && deflate(&stream, Z_FINISH) == Z_STREAM_END;
+      deflateEnd(&stream);
+      if (!is_done) // for want of memory
+        throw std::bad_alloc();
+      data.resize(begin + stream.total_out);
+      return stream.total_out;
+    }
+
+
+
+    /// Appends the number of blocks, their size, that of the last one if it is
+    /// smaller, and what is left of each, then the blocks.
+    void
+    compress(const Bytef *const numbers,
+             const std::size_t  n_bytes,
+             std::string       &data)
+    {
+      constexpr std::size_t size_of_block = 1 << 20, size_of_sample = 1 << 15;
+      const std::size_t     n_blocks =
+        (n_bytes + size_of_block - 1) / size_of_block;
+      std::vector<std::uint32_t> header = {static_cast<std::uint32_t>(n_blocks),
+                                           size_of_block,
+                                           static_cast<std::uint32_t>(
+                                             n_bytes % size_of_block)};
+      const std::size_t          begin  = data.size();
+      data.resize(begin + (header.size() + n_blocks) * sizeof(header[0]));
+      for (std::size_t done = 0; done < n_bytes; done += size_of_block)
+        {
+          // Where hardly a number comes again, which the beginning of the block
+          // says, looking for repetitions takes three times longer for nothing.
+          const std::size_t size   = std::min(size_of_block, n_bytes - done),
+                            sample = std::min(size_of_sample, size),
+                            first  = data.size();
+          const bool has_repetitions =
+            deflate_block(numbers + done, sample, Z_DEFAULT_STRATEGY, data) <
+            sample / 4 * 3;
+          data.resize(first);
+          header.push_back(static_cast<std::uint32_t>(
+            deflate_block(numbers + done,
+                          size,
+                          has_repetitions ? Z_DEFAULT_STRATEGY : Z_RLE,
+                          data)));
+        }
+      const auto *const bytes = reinterpret_cast<const char *>(header.data());
+      std::copy(bytes,
+                bytes + header.size() * sizeof(header[0]),
+                data.begin() + begin);
+    }
+
+
+
+    void
+    begin_file(const std::string &type, std::ostream &out)
+    {
+      out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"" << type
+          << "\" version=\"1.0\" byte_order=\""
+          << (boost::endian::order::native == boost::endian::order::little ?
+                "LittleEndian" :
+                "BigEndian")
+          << "\" header_type=\"UInt32\" "
+             "compressor=\"vtkZLibDataCompressor\">\n<"
+          << type;
+    }
+
+
+
+    /// Scalars are said to have no number of components: with one some readers
+    /// make columns of them.
+    std::string
+    attributes(const std::string &type, const VtuGrid::Field &field)
+    {
+      return "type=\"" + type + "\" Name=\"" + field.name + '"' +
+             (field.n_components == 1 ?
+                "" :
+                " NumberOfComponents=\"" + std::to_string(field.n_components) +
+                  '"');
+    }
+
+
+
+    /// The description goes to @p out.
+    template <typename Number>
+    void
+    add_array(const std::string         &described,
+              const std::vector<Number> &numbers,
+              std::ostream              &out,
+              std::string               &data)
+    {
+      out << "<DataArray " << described << " format=\"appended\" offset=\""
+          << data.size() << "\"/>\n";
+      compress(reinterpret_cast<const Bytef *>(numbers.data()),
+               numbers.size() * sizeof(Number),
+               data);
+    }
+
+
+
+    void
+    add_fields(const std::string                 &where,
+               const std::vector<VtuGrid::Field> &fields,
+               std::ostream                      &out,
+               std::string                       &data)
+    {
+      out << '<' << where << ">\n";
+      for (const VtuGrid::Field &field : fields)
+        add_array(attributes("Float32", field), field.numbers, out, data);
+      out << "</" << where << ">\n";
+    }
+  } // namespace
+
+
+
+  void
+  write_vtu(const VtuGrid &grid, std::ostream &out)
+  {
+    const std::size_t         n_cells = grid.cells.size() / grid.points_of_cell;
+    std::vector<std::int32_t> ends(n_cells);
+    for (std::size_t cell = 0; cell < n_cells; ++cell)
+      ends[cell] = static_cast<std::int32_t>((cell + 1) * grid.points_of_cell);
+
+    std::string data;
+    begin_file("UnstructuredGrid", out);
+    out << ">\n<Piece NumberOfPoints=\"" << grid.points.numbers.size() / 3
+        << "\" NumberOfCells=\"" << n_cells << "\">\n<Points>\n";
+    add_array(attributes("Float32", grid.points),
+              grid.points.numbers,
+              out,
+              data);
+    out << "</Points>\n<Cells>\n";
+    add_array(attributes("Int32", {"connectivity"}), grid.cells, out, data);
+    add_array(attributes("Int32", {"offsets"}), ends, out, data);
+    add_array(attributes("UInt8", {"types"}),
+              std::vector<std::uint8_t>(n_cells,
+                                        static_cast<std::uint8_t>(grid.type)),
+              out,
+              data);
+    out << "</Cells>\n";
+    add_fields("PointData", grid.at_points, out, data);
+    add_fields("CellData", grid.in_cells, out, data);
+    out << "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_"
+        << data << "\n</AppendedData>\n</VTKFile>\n";
+  }
+
+
+
+  void
+  write_pvtu(const VtuGrid                  &grid,
+             const std::vector<std::string> &pieces,
+             std::ostream                   &out)
+  {
+    const auto declare = [&out](const std::string                 &where,
+                                const std::vector<VtuGrid::Field> &fields) {
+      out << "<P" << where << ">\n";
+      for (const VtuGrid::Field &field : fields)
+        out << "<PDataArray " << attributes("Float32", field) << "/>\n";
+      out << "</P" << where << ">\n";
+    };
+    begin_file("PUnstructuredGrid", out);
+    out << " GhostLevel=\"0\">\n";
+    declare("Points", {{"Points", 3}});
+    declare("PointData", grid.at_points);
+    declare("CellData", grid.in_cells);
+    for (const std::string &piece : pieces)
+      out << "<Piece Source=\"" << piece << "\"/>\n";
+    out << "</PUnstructuredGrid>\n</VTKFile>\n";
+  }
+} // namespace Debond
