@@ -57,11 +57,25 @@ namespace Debond
     unsigned int i = 0;
     for (const auto row : own_rows)
       {
-        double     sum = 0.;
-        const auto end = A.end(row);
-        for (auto entry = A.begin(row); entry != end; ++entry)
-          sum += entry->value() * v[entry->column()];
-        dst.local_element(i++) = sum;
+        // Sums of several terms need not wait for each other.
+        auto       entry = A.begin(row);
+        const auto term  = [&entry, &v]() {
+          const double value = entry->value() * v[entry->column()];
+          ++entry;
+          return value;
+        };
+        double       a = 0., b = 0., c = 0., d = 0.;
+        unsigned int n = A.get_sparsity_pattern().row_length(row);
+        for (; n >= 4; n -= 4)
+          {
+            a += term();
+            b += term();
+            c += term();
+            d += term();
+          }
+        for (; n > 0; --n)
+          a += term();
+        dst.local_element(i++) = (a + b) + (c + d);
       }
   }
 } // namespace Debond

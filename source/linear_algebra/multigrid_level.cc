@@ -64,6 +64,8 @@ namespace Debond
     matrix.n_unknowns = x.size();
     inverse_diagonal =
       std::make_shared<dealii::DiagonalMatrix<SinglePrecisionVector>>(x);
+    for (unsigned int row = 0; row < matrix.n_rows(); ++row)
+      invert_diagonal(row);
   }
 
 
@@ -78,6 +80,7 @@ namespace Debond
                               (matrix.starts[row + 1] - matrix.starts[row]);
         std::copy_n(saved, n, matrix.block(matrix.starts[row]));
         saved += n;
+        invert_diagonal(row);
       }
     changed_rows = change.rows;
     unchanged.clear();
@@ -103,30 +106,36 @@ namespace Debond
                                  change.block(k)[e],
                                  column == row && e % (n + 1) == 0);
           }
+        invert_diagonal(row);
       }
   }
 
 
 
-  double
-  MultigridLevel::make_smoother(const double largest_eigenvalue)
+  void
+  MultigridLevel::invert_diagonal(const unsigned int row)
   {
-    SinglePrecisionVector &inverse = inverse_diagonal->get_vector();
-    const unsigned int     n       = matrix.width;
-    for (unsigned int row = 0; row < matrix.n_rows(); ++row)
-      for (auto k = matrix.starts[row]; k < matrix.starts[row + 1]; ++k)
-        for (unsigned int c = 0; matrix.columns[k] == row && c < n; ++c)
-          inverse.local_element(row * n + c) =
-            1.f / matrix.block(k)[c * (n + 1)];
+    const unsigned int n = matrix.width;
+    for (auto k = matrix.starts[row]; k < matrix.starts[row + 1]; ++k)
+      for (unsigned int c = 0; matrix.columns[k] == row && c < n; ++c)
+        inverse_diagonal->get_vector().local_element(row * n + c) =
+          1.f / matrix.block(k)[c * (n + 1)];
+  }
 
+
+
+  void
+  MultigridLevel::make_smoother(const bool estimate)
+  {
     typename decltype(smoother)::AdditionalData parameters;
     parameters.preconditioner      = inverse_diagonal;
     parameters.degree              = 2;
     parameters.smoothing_range     = 20.;
-    parameters.eig_cg_n_iterations = largest_eigenvalue > 0. ? 0 : 10;
+    parameters.eig_cg_n_iterations = estimate ? 10 : 0;
     parameters.max_eigenvalue      = largest_eigenvalue;
     smoother.initialize(matrix, parameters);
-    return smoother.estimate_eigenvalues(b).max_eigenvalue_estimate;
+    largest_eigenvalue =
+      smoother.estimate_eigenvalues(b).max_eigenvalue_estimate;
   }
 
 

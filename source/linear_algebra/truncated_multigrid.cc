@@ -67,7 +67,7 @@ namespace Debond
     coarsest =
       std::make_unique<CoarsestFactor>(rows, !prolongations.empty(), A.ranks);
     coarsest->factorise({});
-    make_smoothers();
+    make_smoothers(/*is_new=*/true);
   }
 
 
@@ -234,7 +234,7 @@ namespace Debond
         change = nodes.sum_of_ranks(next, false);
         nodes.to_local(change);
       }
-    make_smoothers();
+    make_smoothers(/*is_new=*/false);
   }
 
 
@@ -304,17 +304,15 @@ namespace Debond
 
 
   void
-  TruncatedMultigrid::make_smoothers()
+  TruncatedMultigrid::make_smoothers(const bool is_new)
   {
     for (unsigned int l = 0; l + 1 < levels.size(); ++l)
       {
         // Truncation leaves the modes of an aggregate dependent where it has
-        // few free unknowns, which makes the largest eigenvalue larger; not
-        // on the finest level.
-        const double largest =
-          levels[l]->make_smoother(l == 0 ? finest_eigenvalue : 0.);
-        if (l == 0)
-          finest_eigenvalue = largest;
+        // few free unknowns, which makes the largest eigenvalue larger, but
+        // not where nodes have displacements.
+        MultigridLevel &level = *levels[l];
+        level.make_smoother(is_new || level.matrix.width > n_components);
       }
   }
 

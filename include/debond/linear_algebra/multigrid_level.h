@@ -79,10 +79,10 @@ namespace Debond
     void
     set_change(const NumberedRows &change);
 
-    /// For the matrix as it is now, by an estimate of the largest eigenvalue
-    /// of D^{-1} matrix, which is returned, or by the given one if it is > 0.
-    double
-    make_smoother(const double largest_eigenvalue);
+    /// For the matrix as it is now. The largest eigenvalue of D^{-1} matrix is
+    /// estimated if @p estimate, else it is what it was.
+    void
+    make_smoother(const bool estimate);
 
     /// @p fine is the product of the prolongation with @p coarse.
     void
@@ -103,8 +103,14 @@ namespace Debond
     void
     reinit();
 
+    /// Of an own node.
+    void
+    invert_diagonal(const unsigned int row);
+
     std::shared_ptr<dealii::DiagonalMatrix<SinglePrecisionVector>>
       inverse_diagonal;
+
+    double largest_eigenvalue = 0.; ///< not known yet
 
     /// Of the last change, with their entries without it.
     std::vector<unsigned int> changed_rows;

@@ -136,9 +136,9 @@ namespace Debond
     NumberedRows
     finest_change() const;
 
-    /// For what the matrices are now.
+    /// For what the matrices are now, or if they are new.
     void
-    make_smoothers();
+    make_smoothers(const bool is_new);
 
     /// x of the level for its b.
     void
@@ -149,7 +149,6 @@ namespace Debond
     std::vector<std::unique_ptr<MultigridLevel>> levels;
     std::unique_ptr<CoarsestFactor>              coarsest;
     SinglePrecisionVector                        free; ///< 0 if held, else 1
-    double finest_eigenvalue = 0.; ///< largest of D^{-1}A, 0 if not known yet
 
     // Of finest_blocks().
     mutable std::vector<double>       row_of_A;
