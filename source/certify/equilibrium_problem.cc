@@ -85,8 +85,7 @@ namespace Debond
     CellStresses<dim>   stresses(fields,
                                u,
                                1.,
-                               strain_rule<dim>(fields.unknowns().degree()),
-                               dealii::update_JxW_values);
+                               strain_rule<dim>(fields.unknowns().degree()));
     const auto         &values = stresses.values();
     std::vector<double> result;
     for (const auto &cell :
@@ -285,9 +284,7 @@ namespace Debond
     CellStresses<dim>      stresses(fields,
                                u,
                                1.,
-                               strain_rule<dim>(fields.unknowns().degree()),
-                               dealii::update_values |
-                                 dealii::update_JxW_values);
+                               strain_rule<dim>(fields.unknowns().degree()));
     const auto            &values = stresses.values();
     const Eigen::VectorXd &loads  = mesh.loads_on_sides();
     double                 sum    = 0.;

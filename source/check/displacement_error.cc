@@ -79,10 +79,7 @@ namespace Debond
     CellStresses<dim> cell_stresses(problem.fields(),
                                     displacement,
                                     1.,
-                                    dealii::QGaussSimplex<dim>(3),
-                                    dealii::update_values |
-                                      dealii::update_quadrature_points |
-                                      dealii::update_JxW_values);
+                                    dealii::QGaussSimplex<dim>(3));
     const auto       &values = cell_stresses.values();
 
     ExactDisplacement<dim> known(exact);
@@ -109,10 +106,10 @@ namespace Debond
           known.set_h(1e-3 * cell->minimum_vertex_distance());
           for (const unsigned int q : values.quadrature_point_indices())
             {
-              const dealii::Point<dim> &point  = values.quadrature_point(q);
-              const double              weight = values.JxW(q);
-              dealii::Tensor<1, dim>    exact_value;
-              dealii::Tensor<2, dim>    exact_gradient;
+              const dealii::Point<dim> point  = values.quadrature_point(q);
+              const double             weight = values.JxW(q);
+              dealii::Tensor<1, dim>   exact_value;
+              dealii::Tensor<2, dim>   exact_gradient;
               for (unsigned int d = 0; d < dim; ++d)
                 {
                   exact_value[d]    = known.value(point, d);

@@ -26,23 +26,21 @@ namespace Debond
     Weights
     weights_at(const ElasticUnknowns<dim> &unknowns, const Probe<dim> &probe)
     {
-      const auto           &fe = unknowns.dof_handler().get_fe();
-      dealii::FEValues<dim> fe_values(unknowns.mapping(),
-                                      fe,
-                                      dealii::QGaussSimplex<dim>(1),
-                                      dealii::update_inverse_jacobians);
-      double                least = -std::numeric_limits<double>::max();
+      const auto        &fe = unknowns.dof_handler().get_fe();
+      SimplexValues<dim> values(fe.base_element(0),
+                                dealii::QGaussSimplex<dim>(1));
+      double             least = -std::numeric_limits<double>::max();
       typename dealii::DoFHandler<dim>::active_cell_iterator inside;
       dealii::Point<dim>                                     unit_point;
       for (const auto &cell : owned_cells(unknowns.dof_handler()))
         {
-          fe_values.reinit(cell);
-          const dealii::Point<dim> point(
-            dealii::apply_transformation(fe_values.inverse_jacobian(0),
-                                         probe.point - cell->vertex(0)));
-          double here = 1., sum = 0.;
+          values.reinit(*cell);
+          dealii::Point<dim> point;
+          double             here = 1., sum = 0.;
           for (unsigned int d = 0; d < dim; ++d)
             {
+              point[d] = values.barycentric_gradient(d + 1) *
+                         (probe.point - cell->vertex(0));
               here = std::min(here, point[d]);
               sum += point[d];
             }

@@ -59,8 +59,8 @@ namespace Debond
     CellStresses<dim> cell_stresses(*this,
                                     displacement,
                                     factors,
-                                    strain_rule<dim>(elastic_unknowns.degree()),
-                                    dealii::update_JxW_values);
+                                    strain_rule<dim>(
+                                      elastic_unknowns.degree()));
     const auto       &values = cell_stresses.values();
     for (const auto &cell : owned_cells(elastic_unknowns.dof_handler()))
       {
@@ -70,12 +70,12 @@ namespace Debond
           {
             const dealii::SymmetricTensor<2, dim> sigma =
               values.JxW(q) * cell_stresses.elastic_stress(q);
-            for (unsigned int i = 0; i < dofs.size(); i += dim)
+            for (unsigned int k = 0; k < values.n_nodes(); ++k)
               {
                 const dealii::Tensor<1, dim> force =
-                  sigma * values.shape_grad(i, q);
+                  sigma * values.shape_grad(k, q);
                 for (unsigned int d = 0; d < dim; ++d)
-                  forces(dofs[i + d]) += force[d];
+                  forces(dofs[dim * k + d]) += force[d];
               }
           }
       }
@@ -98,8 +98,8 @@ namespace Debond
     CellStresses<dim> cell_stresses(*this,
                                     displacement,
                                     factors,
-                                    strain_rule<dim>(elastic_unknowns.degree()),
-                                    dealii::update_JxW_values);
+                                    strain_rule<dim>(
+                                      elastic_unknowns.degree()));
     const auto       &values = cell_stresses.values();
     for (const auto &cell : owned_cells(elastic_unknowns.dof_handler()))
       {
@@ -111,10 +111,10 @@ namespace Debond
             double size_gradient = 0.;
             for (unsigned int i = 0; i < dofs.size(); ++i)
               size_gradient += std::abs(displacement(dofs[i])) *
-                               values.shape_grad(i, q).norm();
+                               values.shape_grad(i / dim, q).norm();
             for (unsigned int i = 0; i < dofs.size(); ++i)
               rounding(dofs[i]) += values.JxW(q) * modulus * size_gradient *
-                                   values.shape_grad(i, q).norm();
+                                   values.shape_grad(i / dim, q).norm();
           }
       }
     add_over_ranks(rounding, elastic_unknowns.communicator());
@@ -212,12 +212,9 @@ namespace Debond
     const DofVector displacement = lifted(u, factors);
     const DofVector cartesian =
       elastic_unknowns.cartesian_displacement(u, factors);
-    CellStresses<dim> cell_stresses(*this,
-                                    cartesian,
-                                    factors,
-                                    strain_rule<dim>(elastic_unknowns.degree()),
-                                    dealii::update_JxW_values);
-    const auto       &values = cell_stresses.values();
+    CellStresses<dim> cell_stresses(
+      *this, cartesian, factors, strain_rule<dim>(elastic_unknowns.degree()));
+    const auto &values = cell_stresses.values();
     for (const auto &cell : owned_cells(elastic_unknowns.dof_handler()))
       {
         cell_stresses.reinit(cell);
@@ -238,17 +235,13 @@ namespace Debond
   CellStresses<dim>::CellStresses(const ElasticFields<dim> &fields,
                                   const DofVector  &cartesian_displacement,
                                   const LoadFactors factors,
-                                  const dealii::Quadrature<dim> &rule,
-                                  const dealii::UpdateFlags      flags)
+                                  const dealii::Quadrature<dim> &rule)
     : fields(fields)
     , cartesian_displacement(cartesian_displacement)
     , load_factor(factors.loads)
-    , fe_values(fields.unknowns().mapping(),
-                fields.unknowns().dof_handler().get_fe(),
-                rule,
-                flags | dealii::update_gradients)
-    , cell_dofs(fe_values.dofs_per_cell)
-    , cell_values(fe_values.dofs_per_cell)
+    , shape(fields.unknowns().dof_handler().get_fe().base_element(0), rule)
+    , cell_dofs(dim * shape.n_nodes())
+    , cell_values(cell_dofs.size())
   {}
 
 
@@ -258,7 +251,7 @@ namespace Debond
   CellStresses<dim>::reinit(const Cell &new_cell)
   {
     cell = new_cell;
-    fe_values.reinit(cell);
+    shape.reinit(*cell);
     cell->get_dof_indices(cell_dofs);
     for (unsigned int i = 0; i < cell_dofs.size(); ++i)
       cell_values[i] = cartesian_displacement(cell_dofs[i]);
@@ -272,7 +265,7 @@ namespace Debond
   {
     dealii::Tensor<1, dim> result;
     for (unsigned int i = 0; i < cell_values.size(); ++i)
-      result[i % dim] += cell_values[i] * fe_values.shape_value(i, q);
+      result[i % dim] += cell_values[i] * shape.shape_value(i / dim, q);
     return result;
   }
 
@@ -287,7 +280,7 @@ namespace Debond
     // neighbours' displacements, and a translation rounds nothing away.
     for (unsigned int i = dim; i < cell_values.size(); ++i)
       result[i % dim] +=
-        (cell_values[i] - cell_values[i % dim]) * fe_values.shape_grad(i, q);
+        (cell_values[i] - cell_values[i % dim]) * shape.shape_grad(i / dim, q);
     return result;
   }
 
@@ -308,7 +301,7 @@ namespace Debond
   {
     return elastic_stress(q) -
            load_factor *
-             fields.thermal_stress(cell, fe_values.get_quadrature().point(q)) *
+             fields.thermal_stress(cell, shape.get_quadrature().point(q)) *
              dealii::unit_symmetric_tensor<dim>();
   }
 
@@ -321,7 +314,7 @@ namespace Debond
     return fields.material(cell).solid_stress(
       stress(q),
       load_factor *
-        fields.thermal_stress(cell, fe_values.get_quadrature().point(q)));
+        fields.thermal_stress(cell, shape.get_quadrature().point(q)));
   }
 
 

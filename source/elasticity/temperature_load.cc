@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_simplex_p.h>
-#include <deal.II/fe/fe_values.h>
-#include <deal.II/fe/mapping_fe.h>
 
 #include <debond/base/field_value.h>
 #include <debond/base/owned_cells.h>
@@ -43,28 +41,21 @@ namespace Debond
     if (!loads.temperature_change)
       return stresses;
 
-    const dealii::FE_SimplexP<dim> fe(1);
-    const dealii::MappingFE<dim>   mapping(fe);
-    dealii::FEValues<dim>          fe_values(mapping,
-                                    fe,
-                                    degree == 1 ?
-                                               dealii::QGaussSimplex<dim>(2) :
-                                               strain_rule<dim>(degree),
-                                    dealii::update_quadrature_points);
-    const std::vector<double>     &weights =
-      fe_values.get_quadrature().get_weights();
+    SimplexValues<dim>         values(dealii::FE_SimplexP<dim>(1),
+                              degree == 1 ? dealii::QGaussSimplex<dim>(2) :
+                                                    strain_rule<dim>(degree));
+    const std::vector<double> &weights = values.get_quadrature().get_weights();
     const double volume = std::accumulate(weights.begin(), weights.end(), 0.);
     for (const auto &cell : triangulation.active_cell_iterators())
       {
-        fe_values.reinit(cell);
+        values.reinit(*cell);
         const double stress_of_one =
           materials(cell->material_id()).template thermal_stress<dim>();
         double mean = 0.;
-        for (const unsigned int q : fe_values.quadrature_point_indices())
+        for (const unsigned int q : values.quadrature_point_indices())
           {
             const double stress =
-              stress_of_one *
-              temperature_at(loads, fe_values.quadrature_point(q));
+              stress_of_one * temperature_at(loads, values.quadrature_point(q));
             mean += weights[q] / volume * stress;
             if (degree > 1)
               stresses.push_back(stress);
@@ -85,27 +76,21 @@ namespace Debond
   {
     if (thermal_stresses.empty())
       return;
-    const dealii::MappingFE<dim> mapping(dealii::FE_SimplexP<dim>(1));
-    const auto                  &fe = dof_handler.get_fe();
-    dealii::FEValues<dim>        fe_values(mapping,
-                                    fe,
-                                    strain_rule<dim>(fe.degree),
-                                    dealii::update_gradients |
-                                      dealii::update_JxW_values);
-    const dealii::FEValuesExtractors::Vector     displacement(0);
+    const auto        &fe = dof_handler.get_fe();
+    SimplexValues<dim> values(fe.base_element(0), strain_rule<dim>(fe.degree));
     std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
-    const unsigned int n_points = fe_values.n_quadrature_points;
+    const unsigned int n_points = values.get_quadrature().size();
     for (const auto &cell : owned_cells(dof_handler))
       {
-        fe_values.reinit(cell);
+        values.reinit(*cell);
         cell->get_dof_indices(dofs);
         auto stress =
           thermal_stresses.begin() + cell->active_cell_index() * n_points;
-        for (const unsigned int q : fe_values.quadrature_point_indices())
+        for (const unsigned int q : values.quadrature_point_indices())
           {
             for (unsigned int i = 0; i < dofs.size(); ++i)
-              forces(dofs[i]) += fe_values.JxW(q) * *stress *
-                                 fe_values[displacement].divergence(i, q);
+              forces(dofs[i]) += values.JxW(q) * *stress *
+                                 values.shape_grad(i / dim, q)[i % dim];
             ++stress;
           }
       }

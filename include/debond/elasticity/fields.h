@@ -5,10 +5,10 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
-#include <deal.II/fe/fe_values.h>
 
 #include <debond/base/dof_vector.h>
 #include <debond/elasticity/material.h>
+#include <debond/elasticity/simplex_values.h>
 #include <debond/elasticity/unknowns.h>
 #include <debond/mesh/by_region.h>
 
@@ -173,22 +173,21 @@ namespace Debond
     using Cell = typename ElasticFields<dim>::Cell;
 
     /// Keeps references. @p cartesian_displacement: with @p factors times the
-    /// load; @p flags: what values() are wanted beside gradients.
+    /// load.
     CellStresses(
       const ElasticFields<dim>      &fields,
       const DofVector               &cartesian_displacement,
       const LoadFactors              factors = 1.,
-      const dealii::Quadrature<dim> &rule    = dealii::QGaussSimplex<dim>(1),
-      const dealii::UpdateFlags      flags   = dealii::update_default);
+      const dealii::Quadrature<dim> &rule    = dealii::QGaussSimplex<dim>(1));
 
     void
     reinit(const Cell &cell);
 
-    /// Values, gradients, points and weights in the cell.
-    const dealii::FEValues<dim> &
+    /// In the cell, of each component.
+    const SimplexValues<dim> &
     values() const
     {
-      return fe_values;
+      return shape;
     }
 
     /// Of the cell.
@@ -221,7 +220,7 @@ namespace Debond
     const ElasticFields<dim> &fields;
     const DofVector          &cartesian_displacement;
     const double              load_factor;
-    dealii::FEValues<dim>     fe_values;
+    SimplexValues<dim>        shape;
 
     // Of the cell.
     Cell                                         cell;

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_elasticity_simplex_values_h
+#define debond_elasticity_simplex_values_h
+
+#include <deal.II/base/quadrature.h>
+#include <deal.II/base/std_cxx20/iota_view.h>
+#include <deal.II/fe/fe.h>
+#include <deal.II/grid/tria_accessor.h>
+
+#include <array>
+#include <vector>
+
+namespace Debond
+{
+  /// What dealii::FEValues is for a scalar element, on simplices with straight
+  /// sides: all follows from the gradients of the barycentric coordinates,
+  /// which takes much less time than a mapping that may be curved.
+  template <int dim>
+  class SimplexValues
+  {
+  public:
+    SimplexValues(const dealii::FiniteElement<dim> &element,
+                  const dealii::Quadrature<dim>    &rule);
+
+    void
+    reinit(const dealii::TriaAccessor<dim, dim, dim> &cell);
+
+    const dealii::Quadrature<dim> &
+    get_quadrature() const
+    {
+      return rule;
+    }
+
+    auto
+    quadrature_point_indices() const
+    {
+      return dealii::std_cxx20::ranges::iota_view<unsigned int, unsigned int>(
+        0U, rule.size());
+    }
+
+    /// Of the element.
+    unsigned int
+    n_nodes() const
+    {
+      return nodes;
+    }
+
+    double
+    shape_value(const unsigned int node, const unsigned int q) const
+    {
+      return shape_values[q * nodes + node];
+    }
+
+    const dealii::Tensor<1, dim> &
+    shape_grad(const unsigned int node, const unsigned int q) const
+    {
+      return gradients[q * nodes + node];
+    }
+
+    double
+    JxW(const unsigned int q) const
+    {
+      return jacobian * rule.weight(q);
+    }
+
+    dealii::Point<dim>
+    quadrature_point(const unsigned int q) const;
+
+    /// Of the cell.
+    double
+    measure() const
+    {
+      return jacobian / (dim == 2 ? 2. : 6.);
+    }
+
+    /// Of the barycentric coordinate that is one at a vertex of the cell.
+    const dealii::Tensor<1, dim> &
+    barycentric_gradient(const unsigned int vertex) const
+    {
+      return barycentric[vertex];
+    }
+
+  private:
+    const dealii::Quadrature<dim>       rule;
+    const unsigned int                  nodes;
+    std::vector<double>                 shape_values;
+    std::vector<dealii::Tensor<1, dim>> reference_gradients;
+
+    // Of the cell.
+    std::array<dealii::Point<dim>, dim + 1>     vertices;
+    double                                      jacobian = 0.;
+    std::array<dealii::Tensor<1, dim>, dim + 1> barycentric;
+    std::vector<dealii::Tensor<1, dim>>         gradients;
+  };
+} // namespace Debond
+
+#endif
