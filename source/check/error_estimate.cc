@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <unordered_map>
 
@@ -48,11 +49,11 @@ namespace Debond
     /// Of the gradients of the barycentric coordinates.
     template <int dim>
     double
-    sum_of_squares(const dealii::FEValues<dim> &barycentric)
+    sum_of_squares(const SimplexValues<dim> &of_cell)
     {
       double sum = 0.;
-      for (const unsigned int v : barycentric.dof_indices())
-        sum += barycentric.shape_grad(v, 0).norm_square();
+      for (unsigned int v = 0; v <= dim; ++v)
+        sum += of_cell.barycentric_gradient(v).norm_square();
       return sum;
     }
 
@@ -64,10 +65,11 @@ namespace Debond
     /// b_F of one of them takes.
     template <int dim>
     double
-    bubble_energy(const dealii::FEValues<dim> &barycentric, const double volume)
+    bubble_energy(const SimplexValues<dim> &of_cell)
     {
-      return dim == 2 ? 8. / 3. :
-                        243. / 140. * volume * sum_of_squares(barycentric);
+      return dim == 2 ?
+               8. / 3. :
+               243. / 140. * of_cell.measure() * sum_of_squares(of_cell);
     }
 
 
@@ -76,14 +78,13 @@ namespace Debond
     /// cell, for a force on it that is constant.
     template <int dim>
     double
-    fall_inside(const dealii::FEValues<dim>  &barycentric,
-                const double                  volume,
+    fall_inside(const SimplexValues<dim>     &of_cell,
                 const dealii::Tensor<1, dim> &force,
                 const double                  stiffness)
     {
-      const double mean = dim == 2 ? 1. / 60. : 1. / 840.;
-      const double energy =
-        volume * sum_of_squares(barycentric) / (dim == 2 ? 180. : 15120.);
+      const double mean   = dim == 2 ? 1. / 60. : 1. / 840.;
+      const double energy = of_cell.measure() * sum_of_squares(of_cell) /
+                            (dim == 2 ? 180. : 15120.);
       return 0.5 * mean * mean * force.norm_square() / (stiffness * energy);
     }
 
@@ -144,42 +145,32 @@ namespace Debond
             of.loads.body_force || of.loads.temperature_change ||
             (of.dead_loads != nullptr && of.dead_loads->body_force))
         , largest_s(s.template lpNorm<Eigen::Infinity>())
+        , n_stresses(degree == 2 || of.loads.temperature_change ? dim + 1 : 1)
+        , displacement(of.problem.unknowns().cartesian_displacement(u, factors))
+        , at_points(of.problem.fields(),
+                    displacement,
+                    factors,
+                    stress_points<dim>(degree))
         , fe(1)
-        , barycentric(of.problem.unknowns().mapping(),
-                      fe,
-                      dealii::QGaussSimplex<dim>(has_volume_loads ? 2 : 1),
-                      dealii::update_values | dealii::update_gradients |
-                        dealii::update_quadrature_points |
-                        dealii::update_JxW_values)
+        , at_loads(fe, dealii::QGaussSimplex<dim>(2))
         , on_face(of.problem.unknowns().mapping(),
                   fe,
                   face_rule<dim>(1),
                   dealii::update_values | dealii::update_quadrature_points |
                     dealii::update_normal_vectors | dealii::update_JxW_values)
       {
-        const ElasticUnknowns<dim> &unknowns = of.problem.unknowns();
-        const DofVector             displacement =
-          unknowns.cartesian_displacement(u, factors);
-        const auto        &dofs = unknowns.dof_handler();
+        const auto        &dofs = of.problem.unknowns().dof_handler();
         const unsigned int n    = dofs.get_triangulation().n_active_cells();
         cells.reserve(n);
+        stresses.reserve(std::size_t(n) * n_stresses);
         parts.assign(n, 0.);
         for (unsigned int f = static_cast<unsigned int>(boundary.faces.size());
              f-- > 0;)
           first_contact_face[boundary.faces[f].cell] = f;
-        CellStresses<dim> stresses(of.problem.fields(),
-                                   displacement,
-                                   factors,
-                                   stress_points<dim>(degree));
         for (const auto &cell : dofs.active_cell_iterators())
           {
-            stresses.reinit(cell);
-            barycentric.reinit(
-              typename dealii::Triangulation<dim>::cell_iterator(cell));
-            volume = 0.;
-            for (const unsigned int q : barycentric.quadrature_point_indices())
-              volume += barycentric.JxW(q);
-            add_cell(cell, stresses);
+            at_points.reinit(cell);
+            add_cell(cell);
             // Of cells of other ranks not all faces are here.
             unsigned int n_contact_faces = 0;
             for (unsigned int f = 0; f <= dim; ++f)
@@ -203,20 +194,22 @@ namespace Debond
 
     private:
       /// What the next cells need of one that is done.
-      struct CellStress
+      struct DoneCell
       {
         double mu;
         double lambda;
         double bubble_energy;
 
-        /// At the vertices. Stresses are what shears minus the pressure times
-        /// the identity.
-        std::array<dealii::SymmetricTensor<2, dim>, dim + 1> stresses;
-        std::array<double, dim + 1>                          pressures;
-
         /// int_K (f_0 + div sigma), of which faces bear their share; of degree
         /// 2 zero, for there fall_inside() has it.
         dealii::Tensor<1, dim> force;
+      };
+
+      /// What shears minus the pressure times the identity.
+      struct Stress
+      {
+        dealii::SymmetricTensor<2, dim> whole;
+        double                          pressure;
       };
 
       struct Face
@@ -229,76 +222,94 @@ namespace Debond
         std::array<unsigned int, dim> in_cell;
       };
 
-      /// Of the next cell; @p at_points: at stress_points(). Loads are
-      /// evaluated where load_vector() and thermal_stresses() do it: there they
-      /// are finite.
+      /// Of the next cell. Loads are evaluated where load_vector() and
+      /// thermal_stresses() do it: there they are finite.
       template <typename CellIterator>
       void
-      add_cell(const CellIterator &cell, const CellStresses<dim> &at_points)
+      add_cell(const CellIterator &cell)
       {
-        const Material &material       = of.problem.fields().material(cell);
-        const double    mu             = material.shear_modulus();
-        const double    lambda         = material.template lame_lambda<dim>();
-        const double    part_of_lambda = lambda / (2. * mu + dim * lambda);
-        const double    stress_of_one =
-          of.loads.temperature_change ?
-               load_factor * material.template thermal_stress<dim>() :
-               0.;
-        cells.emplace_back();
-        CellStress &here   = cells.back();
-        here.mu            = mu;
-        here.lambda        = lambda;
-        here.bubble_energy = bubble_energy<dim>(barycentric, volume);
+        const SimplexValues<dim> &of_cell  = at_points.values();
+        const Material           &material = of.problem.fields().material(cell);
+        const double              mu       = material.shear_modulus();
+        const double              lambda = material.template lame_lambda<dim>();
+        const double part_of_lambda      = lambda / (2. * mu + dim * lambda);
+        cells.push_back({mu, lambda, bubble_energy(of_cell), {}});
+        dealii::Tensor<1, dim> &force = cells.back().force;
 
-        // What keeps the cell from expanding: the linear function with the same
-        // mean and moments.
         std::array<double, dim + 1> thermal = {};
-        double                      mean    = 0.;
-        for (const unsigned int q : barycentric.quadrature_point_indices())
+        if (has_volume_loads)
+          thermal = add_volume_loads(cell, force);
+        const double mean =
+          std::accumulate(thermal.begin(), thermal.end(), 0.) / (dim + 1);
+        const dealii::SymmetricTensor<2, dim> in_middle = at_points.stress(0);
+        for (unsigned int v = 0; v < n_stresses; ++v)
           {
-            const double              weight = barycentric.JxW(q) / volume;
-            const dealii::Point<dim> &point  = barycentric.quadrature_point(q);
-            if (of.loads.body_force)
-              here.force +=
-                load_factor * weight * volume * of.loads.force_at(point);
-            if (of.dead_loads != nullptr && of.dead_loads->body_force)
-              here.force += weight * volume * of.dead_loads->force_at(point);
-            if (stress_of_one == 0.)
-              continue;
-            const double pressure =
-              weight * stress_of_one *
-              field_value(*of.loads.temperature_change, point);
-            mean += pressure;
-            for (unsigned int v = 0; v <= dim; ++v)
-              thermal[v] += (dim + 1.) *
-                            ((dim + 2.) * barycentric.shape_value(v, q) - 1.) *
-                            pressure;
-          }
-        for (unsigned int v = 0; v <= dim; ++v)
-          {
-            here.stresses[v] =
-              degree == 2 ?
-                at_points.stress(1 + v) :
-                at_points.stress(0) -
-                  (thermal[v] - mean) * dealii::unit_symmetric_tensor<dim>();
-            here.pressures[v] =
-              thermal[v] - part_of_lambda * (dealii::trace(here.stresses[v]) +
-                                             dim * thermal[v]);
-            here.force +=
-              volume * (here.stresses[v] * barycentric.shape_grad(v, 0));
+            const dealii::SymmetricTensor<2, dim> stress =
+              degree == 2 ? at_points.stress(1 + v) :
+                            in_middle - (thermal[v] - mean) *
+                                          dealii::unit_symmetric_tensor<dim>();
+            stresses.push_back(
+              {stress,
+               thermal[v] -
+                 part_of_lambda * (dealii::trace(stress) + dim * thermal[v])});
+            if (n_stresses > 1)
+              force +=
+                of_cell.measure() * (stress * of_cell.barycentric_gradient(v));
           }
         if (degree == 2)
           {
-            parts[cell->active_cell_index()] =
-              fall_inside<dim>(barycentric, volume, here.force, mu);
-            here.force = 0.;
+            parts[cell->active_cell_index()] = fall_inside(of_cell, force, mu);
+            force                            = 0.;
           }
 
-        const double trace = dealii::trace(at_points.stress(0));
+        const double trace = dealii::trace(in_middle);
         if (cell->is_locally_owned())
-          stress_energy += 0.5 * (1. / (2. * mu)) * volume *
-                           (at_points.stress(0) * at_points.stress(0) -
-                            part_of_lambda * trace * trace);
+          stress_energy +=
+            0.5 * (1. / (2. * mu)) * of_cell.measure() *
+            (in_middle * in_middle - part_of_lambda * trace * trace);
+      }
+
+      /// Adds to the force on a cell. Returns what keeps the cell from
+      /// expanding, at its vertices: the linear function with the same mean and
+      /// moments.
+      template <typename CellIterator>
+      std::array<double, dim + 1>
+      add_volume_loads(const CellIterator &cell, dealii::Tensor<1, dim> &force)
+      {
+        const double stress_of_one =
+          of.loads.temperature_change ?
+            load_factor * of.problem.fields()
+                            .material(cell)
+                            .template thermal_stress<dim>() :
+            0.;
+        std::array<double, dim + 1> thermal = {};
+        at_loads.reinit(*cell);
+        for (const unsigned int q : at_loads.quadrature_point_indices())
+          {
+            const dealii::Point<dim> point = at_loads.quadrature_point(q);
+            if (of.loads.body_force)
+              force += load_factor * at_loads.JxW(q) * of.loads.force_at(point);
+            if (of.dead_loads != nullptr && of.dead_loads->body_force)
+              force += at_loads.JxW(q) * of.dead_loads->force_at(point);
+            if (stress_of_one == 0.)
+              continue;
+            const double pressure =
+              at_loads.JxW(q) / at_loads.measure() * stress_of_one *
+              field_value(*of.loads.temperature_change, point);
+            for (unsigned int v = 0; v <= dim; ++v)
+              thermal[v] += (dim + 1.) *
+                            ((dim + 2.) * at_loads.shape_value(v, q) - 1.) *
+                            pressure;
+          }
+        return thermal;
+      }
+
+      /// At a vertex of a cell that is done.
+      const Stress &
+      stress_at(const unsigned int cell, const unsigned int vertex) const
+      {
+        return stresses[std::size_t(cell) * n_stresses +
+                        std::min(vertex, n_stresses - 1)];
       }
 
       /// Of each face of a cell: asking ReferenceCell for each of them takes
@@ -324,7 +335,8 @@ namespace Debond
         for (const unsigned int vertex : in_cell)
           opposite -= vertex;
         return {cell->active_cell_index(),
-                -dim * volume * barycentric.shape_grad(opposite, 0),
+                -dim * at_points.values().measure() *
+                  at_points.values().barycentric_gradient(opposite),
                 in_cell};
       }
 
@@ -345,8 +357,8 @@ namespace Debond
       {
         const Face         face  = face_of(cell, f);
         const unsigned int other = neighbor->active_cell_index();
-        const CellStress  &here  = cells[face.cell];
-        const CellStress  &there = cells[other];
+        const DoneCell    &here  = cells[face.cell];
+        const DoneCell    &there = cells[other];
         const double       a     = here.bubble_energy;
         const double       b     = there.bubble_energy;
         // At the interface of two materials only tractions have no jump.
@@ -361,13 +373,15 @@ namespace Debond
             const unsigned int own   = face.in_cell[v];
             const unsigned int index = cell->vertex_index(own);
             unsigned int       w     = 0;
-            while (neighbor->vertex_index(w) != index)
+            while (n_stresses > 1 && neighbor->vertex_index(w) != index)
               ++w;
-            r[v] = (there.stresses[w] - here.stresses[own]) * face.area +
+            const Stress &inside  = stress_at(face.cell, own);
+            const Stress &outside = stress_at(other, w);
+            r[v]                  = (outside.whole - inside.whole) * face.area +
                    mean_in_cell * (here.force + there.force);
             if (is_one_material)
               {
-                jumps[v] = here.pressures[own] - there.pressures[w];
+                jumps[v] = inside.pressure - outside.pressure;
                 r[v] -= jumps[v] * face.area;
               }
           }
@@ -396,7 +410,7 @@ namespace Debond
           return;
 
         const Face                   face    = face_of(cell, f);
-        const CellStress            &here    = cells[face.cell];
+        const DoneCell              &here    = cells[face.cell];
         const double                 measure = face.area.norm();
         const dealii::Tensor<1, dim> normal  = face.area / measure;
         on_face.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell),
@@ -412,7 +426,7 @@ namespace Debond
             // Of degree 1 the mean.
             for (unsigned int v = 0; v < dim; ++v)
               r -= (degree == 1 ? 1. / dim : coordinates[v]) *
-                   (here.stresses[face.in_cell[v]] * normal);
+                   (stress_at(face.cell, face.in_cell[v]).whole * normal);
             r += load_factor * of.loads.traction(id, point, normal);
             if (of.dead_loads != nullptr)
               r += of.dead_loads->traction(id, point, normal);
@@ -486,13 +500,16 @@ namespace Debond
       const double                   load_factor;
       const bool                     has_volume_loads;
       const double                   largest_s;
+      const unsigned int             n_stresses; ///< that differ in a cell
+      const DofVector                displacement;
+      CellStresses<dim>              at_points; ///< stress_points()
       const dealii::FE_SimplexP<dim> fe;
-      dealii::FEValues<dim>          barycentric; ///< of the cell
+      SimplexValues<dim>             at_loads;
       dealii::FEFaceValues<dim>      on_face;
-      double                         volume = 0.; ///< of the cell
       const std::array<std::array<unsigned int, dim>, dim + 1> face_vertices =
         make_face_vertices();
-      std::vector<CellStress> cells;
+      std::vector<DoneCell> cells;
+      std::vector<Stress>   stresses; ///< see stress_at()
 
       /// Of each cell that has any.
       std::unordered_map<dealii::types::coarse_cell_id, unsigned int>
