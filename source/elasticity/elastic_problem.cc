@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/full_matrix.h>
 
@@ -9,11 +8,156 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 namespace Debond
 {
+  namespace
+  {
+    /// Of A, the rows of this rank: cells of other ranks around the own ones
+    /// make them complete.
+    template <int dim>
+    dealii::DynamicSparsityPattern
+    pattern_of(const ElasticUnknowns<dim> &unknowns)
+    {
+      // Rows of a node are alike.
+      const auto                    &dofs    = unknowns.dof_handler();
+      const auto                    &own     = dofs.locally_owned_dofs();
+      const unsigned int             n_nodes = unknowns.n_dofs() / dim;
+      dealii::DynamicSparsityPattern neighbors(n_nodes, n_nodes);
+      std::vector<dealii::types::global_dof_index> cell_dofs(
+        dofs.get_fe().dofs_per_cell);
+      std::vector<dealii::types::global_dof_index> nodes(cell_dofs.size() /
+                                                         dim);
+      for (const auto &cell : dofs.active_cell_iterators())
+        {
+          cell->get_dof_indices(cell_dofs);
+          for (unsigned int k = 0; k < nodes.size(); ++k)
+            nodes[k] = cell_dofs[dim * k] / dim;
+          std::sort(nodes.begin(), nodes.end());
+          for (const auto node : nodes)
+            if (own.is_element(dim * node))
+              neighbors.add_entries(node, nodes.begin(), nodes.end(), true);
+        }
+
+      dealii::DynamicSparsityPattern               pattern(unknowns.n_dofs(),
+                                             unknowns.n_dofs(),
+                                             own);
+      std::vector<dealii::types::global_dof_index> columns;
+      for (unsigned int node = 0; node < n_nodes; ++node)
+        {
+          columns.clear();
+          for (unsigned int k = 0; k < neighbors.row_length(node); ++k)
+            for (unsigned int d = 0; d < dim; ++d)
+              if (const auto column =
+                    dim * neighbors.column_number(node, k) + d;
+                  !unknowns.is_constrained(column))
+                columns.push_back(column);
+          for (unsigned int row = dim * node; row < dim * (node + 1); ++row)
+            if (own.is_element(row) && !unknowns.is_constrained(row))
+              pattern.add_entries(row, columns.begin(), columns.end(), true);
+        }
+      return pattern;
+    }
+
+
+
+    /// The matrix of a cell for the Cartesian values at its nodes.
+    template <int dim>
+    void
+    set_products(const SimplexValues<dim>   &values,
+                 const Material             &material,
+                 dealii::FullMatrix<double> &cell_matrix)
+    {
+      const double lambda = material.template lame_lambda<dim>();
+      const double mu     = material.shear_modulus();
+      cell_matrix         = 0.;
+      for (const unsigned int q : values.quadrature_point_indices())
+        for (unsigned int k = 0; k < values.n_nodes(); ++k)
+          for (unsigned int l = 0; l < values.n_nodes(); ++l)
+            {
+              const dealii::Tensor<1, dim> &g = values.shape_grad(k, q);
+              const dealii::Tensor<1, dim>  h =
+                values.JxW(q) * values.shape_grad(l, q);
+              const double product = g * h;
+              for (unsigned int c = 0; c < dim; ++c)
+                {
+                  for (unsigned int d = 0; d < dim; ++d)
+                    cell_matrix(dim * k + c, dim * l + d) +=
+                      lambda * g[c] * h[d] + mu * g[d] * h[c];
+                  cell_matrix(dim * k + c, dim * l + c) += mu * product;
+                }
+            }
+    }
+
+
+
+    /// Of the entries of a row, of which the diagonal one is the first.
+    unsigned int
+    n_columns_below(const dealii::types::global_dof_index column,
+                    const dealii::SparsityPattern        &sparsity,
+                    const dealii::types::global_dof_index row)
+    {
+      unsigned int below = 0, length = sparsity.row_length(row) - 1;
+      while (length > 0)
+        {
+          const unsigned int half = length / 2;
+          const bool         is_below =
+            sparsity.column_number(row, 1 + below + half) < column;
+          below += is_below ? half + 1 : 0;
+          length = is_below ? length - half - 1 : half;
+        }
+      return below + (row < column ? 1 : 0);
+    }
+
+
+
+    /// Adds the matrix of a cell to the rows of this rank. Where a node's
+    /// columns are, is looked for in one row of each other node.
+    template <int dim>
+    void
+    add_to_rows(const dealii::IndexSet                             &own,
+                const std::vector<dealii::types::global_dof_index> &cell_dofs,
+                const std::vector<char>          &is_constrained,
+                const dealii::FullMatrix<double> &cell_matrix,
+                dealii::SparseMatrix<double>     &matrix)
+    {
+      const auto        &sparsity = matrix.get_sparsity_pattern();
+      const unsigned int n        = static_cast<unsigned int>(cell_dofs.size());
+      for (unsigned int k = 0; k < n; k += dim)
+        if (own.is_element(cell_dofs[k]))
+          for (unsigned int l = 0; l < n; l += dim)
+            {
+              unsigned int below = dealii::numbers::invalid_unsigned_int;
+              for (unsigned int i = k; i < k + dim; ++i)
+                {
+                  const auto row = cell_dofs[i];
+                  // The first of the row's, which follow each other.
+                  double *const entries = &matrix.diag_element(row);
+                  if (is_constrained[i])
+                    {
+                      if (k == l)
+                        entries[0] += std::abs(cell_matrix(i, i));
+                      continue;
+                    }
+                  if (below == dealii::numbers::invalid_unsigned_int)
+                    below = n_columns_below(cell_dofs[l], sparsity, row);
+                  unsigned int position = below;
+                  for (unsigned int j = l; j < l + dim; ++j)
+                    if (!is_constrained[j])
+                      {
+                        const unsigned int entry =
+                          j == i ? 0 : position + (cell_dofs[j] < row ? 1 : 0);
+                        entries[entry] += cell_matrix(i, j);
+                        ++position;
+                      }
+                }
+            }
+    }
+  } // namespace
+
+
+
   template <int dim>
   void
   ElasticProblem<dim>::assemble(const ByRegion<Material> &materials,
@@ -75,21 +219,9 @@ namespace Debond
       whole_load = elastic_unknowns.in_frames(applied_forces);
     constraints.set_zero(whole_load);
 
-    // Cells of other ranks around the own ones make own rows complete.
-    dealii::DynamicSparsityPattern               pattern(dofs.n_dofs(),
-                                           dofs.n_dofs(),
-                                           dofs.locally_owned_dofs());
-    std::vector<dealii::types::global_dof_index> cell_dofs(
-      dofs.get_fe().dofs_per_cell);
-    for (const auto &cell : dofs.active_cell_iterators())
-      {
-        cell->get_dof_indices(cell_dofs);
-        constraints.add_entries_local_to_global(
-          cell_dofs, pattern, /*keep_constrained_entries=*/false);
-      }
     system_matrix.clear();
     distributed.reset();
-    sparsity.copy_from(pattern);
+    sparsity.copy_from(pattern_of(elastic_unknowns));
     system_matrix.reinit(sparsity);
     add_cell_matrices(materials);
   }
@@ -100,77 +232,26 @@ namespace Debond
   void
   ElasticProblem<dim>::add_cell_matrices(const ByRegion<Material> &materials)
   {
-    const auto  stiffness = materials.transformed([](const Material &material) {
-      return material.elasticity_tensor<dim>();
-    });
-    const auto &dofs      = elastic_unknowns.dof_handler();
-    dealii::FEValues<dim> fe_values(elastic_unknowns.mapping(),
-                                    dofs.get_fe(),
-                                    strain_rule<dim>(elastic_unknowns.degree()),
-                                    dealii::update_gradients |
-                                      dealii::update_JxW_values);
-    const dealii::FEValuesExtractors::Vector     displacement(0);
-    const unsigned int                           n = fe_values.dofs_per_cell;
-    dealii::FullMatrix<double>                   cell_matrix(n);
+    const auto                &dofs = elastic_unknowns.dof_handler();
+    SimplexValues<dim>         values(dofs.get_fe().base_element(0),
+                              strain_rule<dim>(elastic_unknowns.degree()));
+    const unsigned int         n = dofs.get_fe().dofs_per_cell;
+    dealii::FullMatrix<double> cell_matrix(n);
     std::vector<dealii::types::global_dof_index> cell_dofs(n);
-    std::vector<dealii::SymmetricTensor<2, dim>> strains(n);
-
-    const dealii::IndexSet   &own = dofs.locally_owned_dofs();
-    std::vector<unsigned int> order(n);
-    std::vector<dealii::types::global_dof_index> columns;
-    std::vector<double>                          values;
+    std::vector<char>                            is_constrained(n);
     for (const auto &cell : dofs.active_cell_iterators())
       {
-        fe_values.reinit(cell);
+        values.reinit(*cell);
         cell->get_dof_indices(cell_dofs);
-        cell_matrix = 0.;
-        for (const unsigned int q : fe_values.quadrature_point_indices())
-          {
-            for (unsigned int i = 0; i < n; ++i)
-              strains[i] = fe_values[displacement].symmetric_gradient(i, q);
-            for (unsigned int i = 0; i < n; ++i)
-              {
-                const dealii::SymmetricTensor<2, dim> weighted_stress =
-                  fe_values.JxW(q) *
-                  (stiffness(cell->material_id()) * strains[i]);
-                for (unsigned int j = 0; j < n; ++j)
-                  cell_matrix(i, j) += weighted_stress * strains[j];
-              }
-          }
-        elastic_unknowns.to_unknowns(cell_dofs, cell_matrix);
-
-        // As AffineConstraints does it, but for rows of other ranks.
-        std::iota(order.begin(), order.end(), 0U);
-        std::sort(order.begin(),
-                  order.end(),
-                  [&](const unsigned int a, const unsigned int b) {
-                    return cell_dofs[a] < cell_dofs[b];
-                  });
-        columns.clear();
-        for (const unsigned int j : order)
-          if (!elastic_unknowns.is_constrained(cell_dofs[j]))
-            columns.push_back(cell_dofs[j]);
         for (unsigned int i = 0; i < n; ++i)
-          {
-            const auto row = cell_dofs[i];
-            if (!own.is_element(row))
-              continue;
-            if (elastic_unknowns.is_constrained(row))
-              {
-                system_matrix.add(row, row, std::abs(cell_matrix(i, i)));
-                continue;
-              }
-            values.clear();
-            for (const unsigned int j : order)
-              if (!elastic_unknowns.is_constrained(cell_dofs[j]))
-                values.push_back(cell_matrix(i, j));
-            system_matrix.add(row,
-                              static_cast<unsigned int>(columns.size()),
-                              columns.data(),
-                              values.data(),
-                              /*elide_zero_values=*/false,
-                              /*col_indices_are_sorted=*/true);
-          }
+          is_constrained[i] = elastic_unknowns.is_constrained(cell_dofs[i]);
+        set_products(values, materials(cell->material_id()), cell_matrix);
+        elastic_unknowns.to_unknowns(cell_dofs, cell_matrix);
+        add_to_rows<dim>(dofs.locally_owned_dofs(),
+                         cell_dofs,
+                         is_constrained,
+                         cell_matrix,
+                         system_matrix);
       }
   }
 

@@ -9,6 +9,7 @@
 #include <debond/base/text.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/load_vector.h>
+#include <debond/elasticity/simplex_values.h>
 
 #include <algorithm>
 #include <array>
@@ -195,9 +196,11 @@ namespace Debond
       for (const auto &cell : owned_cells(dof_handler))
         for (const unsigned int f : cell->face_indices())
           {
+            if (!cell->at_boundary(f))
+              continue;
             const auto face       = cell->face(f);
             const auto loads_here = loads.tractions.find(face->boundary_id());
-            if (!face->at_boundary() || loads_here == loads.tractions.end())
+            if (loads_here == loads.tractions.end())
               continue;
             fe_values.reinit(cell, f);
             cell->get_dof_indices(dofs);
@@ -272,28 +275,21 @@ namespace Debond
                    const Loads<dim>              &loads,
                    DofVector                     &forces)
     {
-      const dealii::MappingFE<dim> mapping(dealii::FE_SimplexP<dim>(1));
-      const auto                  &fe = dof_handler.get_fe();
-      dealii::FEValues<dim>        fe_values(mapping,
-                                      fe,
-                                      dealii::QGaussSimplex<dim>(fe.degree + 1),
-                                      dealii::update_values |
-                                        dealii::update_quadrature_points |
-                                        dealii::update_JxW_values);
-
+      const auto                                  &fe = dof_handler.get_fe();
+      SimplexValues<dim>                           values(fe.base_element(0),
+                                dealii::QGaussSimplex<dim>(fe.degree + 1));
       std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
       for (const auto &cell : owned_cells(dof_handler))
         {
-          fe_values.reinit(cell);
+          values.reinit(*cell);
           cell->get_dof_indices(dofs);
-          for (const unsigned int q : fe_values.quadrature_point_indices())
+          for (const unsigned int q : values.quadrature_point_indices())
             {
               const dealii::Tensor<1, dim> force =
-                fe_values.JxW(q) *
-                loads.force_at(fe_values.quadrature_point(q));
+                values.JxW(q) * loads.force_at(values.quadrature_point(q));
               for (unsigned int i = 0; i < dofs.size(); ++i)
-                forces(dofs[i]) += fe_values.shape_value(i, q) *
-                                   force[fe.system_to_component_index(i).first];
+                forces(dofs[i]) +=
+                  values.shape_value(i / dim, q) * force[i % dim];
             }
         }
     }

@@ -6,6 +6,7 @@
 
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
+#include <boost/container_hash/hash.hpp>
 #include <boost/crc.hpp>
 #include <boost/serialization/string.hpp>
 #include <boost/serialization/utility.hpp>
@@ -199,7 +200,7 @@ namespace Debond
             numbers.push_back(cell->vertex(v)[d]);
         for (const auto &face : cell->face_iterators())
           numbers.push_back(face->boundary_id());
-        sum += checksum_of(numbers.data(), numbers.size() * sizeof(double));
+        sum += boost::hash_range(numbers.begin(), numbers.end());
       }
     return dealii::Utilities::MPI::sum(sum, scene.ranks());
   }
