@@ -43,6 +43,7 @@ namespace Debond
     , phi(nonsmooth)
     , contact(problem)
     , contact_block(contact.block_of(problem.matrix()))
+    , rows_of_contact(A.rows_of(problem.unknowns().contact().normals()))
     , cycle(multigrid_cycle)
     , u(start)
     , active(contact.size())
@@ -146,11 +147,10 @@ namespace Debond
           force_s(entry.row()) += (old_s(i) - s(i)) * entry.value();
       }
     contact.set(s, u);
-    Vector step(u), image(u);
+    Vector step(u);
     step = 0.;
     contact.set(s - old_s, step);
-    A.vmult(image, step);
-    force -= image;
+    A.subtract(rows_of_contact, A.at_columns(step), force);
     const Eigen::VectorXd of_bonds = E * (old_s - s);
     contact.add(of_bonds, force);
   }

@@ -50,32 +50,72 @@ namespace Debond
 
 
 
+  double
+  DistributedMatrix::product(const unsigned int         row,
+                             const std::vector<double> &v) const
+  {
+    // Sums of several terms need not wait for each other.
+    auto       entry = A.begin(row);
+    const auto term  = [&entry, &v]() {
+      const double value = entry->value() * v[entry->column()];
+      ++entry;
+      return value;
+    };
+    double       a = 0., b = 0., c = 0., d = 0.;
+    unsigned int n = A.get_sparsity_pattern().row_length(row);
+    for (; n >= 4; n -= 4)
+      {
+        a += term();
+        b += term();
+        c += term();
+        d += term();
+      }
+    for (; n > 0; --n)
+      a += term();
+    return (a + b) + (c + d);
+  }
+
+
+
   void
   DistributedMatrix::multiply(DistributedVector         &dst,
                               const std::vector<double> &v) const
   {
     unsigned int i = 0;
     for (const auto row : own_rows)
+      dst.local_element(i++) = product(row, v);
+  }
+
+
+
+  std::vector<unsigned int>
+  DistributedMatrix::rows_of(const std::vector<unsigned int> &columns) const
+  {
+    std::vector<bool> is_meant(A.n(), false);
+    for (const unsigned int column : columns)
+      is_meant[column] = true;
+    std::vector<unsigned int> result;
+    for (const auto row : own_rows)
       {
-        // Sums of several terms need not wait for each other.
-        auto       entry = A.begin(row);
-        const auto term  = [&entry, &v]() {
-          const double value = entry->value() * v[entry->column()];
-          ++entry;
-          return value;
-        };
-        double       a = 0., b = 0., c = 0., d = 0.;
-        unsigned int n = A.get_sparsity_pattern().row_length(row);
-        for (; n >= 4; n -= 4)
-          {
-            a += term();
-            b += term();
-            c += term();
-            d += term();
-          }
-        for (; n > 0; --n)
-          a += term();
-        dst.local_element(i++) = (a + b) + (c + d);
+        const auto last = A.end(row);
+        for (auto entry = A.begin(row); entry != last; ++entry)
+          if (is_meant[entry->column()])
+            {
+              result.push_back(row);
+              break;
+            }
       }
+    return result;
+  }
+
+
+
+  void
+  DistributedMatrix::subtract(const std::vector<unsigned int> &rows,
+                              const std::vector<double>       &v,
+                              DistributedVector               &dst) const
+  {
+    for (const unsigned int row : rows)
+      dst(row) -= product(row, v);
   }
 } // namespace Debond

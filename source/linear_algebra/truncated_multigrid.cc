@@ -82,22 +82,27 @@ namespace Debond
     BlockRows<float>          rows;
     std::vector<unsigned int> columns;
     rows.height = rows.width = n;
-    for (unsigned int i = 0; i < nodes.n_own(); ++i)
-      {
-        columns.clear();
-        for (unsigned int row = nodes.global(i) * n;
-             row < (nodes.global(i) + 1) * n;
-             ++row)
-          for (auto entry = A.A.begin(row); entry != A.A.end(row); ++entry)
-            if (const unsigned int column = entry->column() / n;
-                columns.empty() || columns.back() != column)
-              columns.push_back(column);
-        std::sort(columns.begin(), columns.end());
-        rows.columns.insert(rows.columns.end(),
-                            columns.begin(),
-                            std::unique(columns.begin(), columns.end()));
-        rows.end_row();
-      }
+    with_sizes(n, n, [&](const auto size, const auto) {
+      constexpr unsigned int n_rows = decltype(size)::value;
+      for (unsigned int i = 0; i < nodes.n_own(); ++i)
+        {
+          columns.clear();
+          for (unsigned int c = 0; c < n_rows; ++c)
+            {
+              const unsigned int row  = nodes.global(i) * n_rows + c;
+              const auto         last = A.A.end(row);
+              for (auto entry = A.A.begin(row); entry != last; ++entry)
+                if (const unsigned int column = entry->column() / n_rows;
+                    columns.empty() || columns.back() != column)
+                  columns.push_back(column);
+            }
+          std::sort(columns.begin(), columns.end());
+          rows.columns.insert(rows.columns.end(),
+                              columns.begin(),
+                              std::unique(columns.begin(), columns.end()));
+          rows.end_row();
+        }
+    });
     nodes.set_ghosts(rows.columns);
     for (unsigned int &column : rows.columns)
       column = nodes.local(column);
@@ -125,19 +130,26 @@ namespace Debond
   {
     const dealii::SparseMatrix<double> &A     = finest.A.A;
     const SharedNodes                  &nodes = levels.front()->nodes;
-    const unsigned int                  n     = n_components;
     const std::size_t                   begin = pattern.starts[node];
     const std::size_t                   end   = pattern.starts[node + 1];
     for (std::size_t k = begin; k < end; ++k)
       places[pattern.columns[k]] = static_cast<unsigned int>(k - begin);
-    row_of_A.assign((end - begin) * n * n, 0.);
-    for (unsigned int c = 0; c < n; ++c)
-      {
-        const unsigned int row = nodes.global(node) * n + c;
-        for (auto entry = A.begin(row); entry != A.end(row); ++entry)
-          row_of_A[(places[nodes.local(entry->column() / n)] * n + c) * n +
-                   entry->column() % n] = entry->value();
-      }
+    row_of_A.assign((end - begin) * pattern.n_entries_of_block(), 0.);
+    // Quotients by constants take no division.
+    with_sizes(n_components, n_components, [&](const auto size, const auto) {
+      constexpr unsigned int n     = decltype(size)::value;
+      const unsigned int     first = nodes.global(node) * n;
+      for (unsigned int c = 0; c < n; ++c)
+        {
+          const auto last = A.end(first + c);
+          for (auto entry = A.begin(first + c); entry != last; ++entry)
+            {
+              const unsigned int column = entry->column();
+              row_of_A[(places[nodes.local(column / n)] * n + c) * n +
+                       column % n]      = entry->value();
+            }
+        }
+    });
     return row_of_A.data();
   }
 

@@ -72,7 +72,8 @@ namespace Debond
     const Vector                      diagonal; ///< of A
     const PiecewiseQuadratic         &phi;
     const ContactUnknowns             contact;
-    const Eigen::SparseMatrix<double> contact_block; ///< of A
+    const Eigen::SparseMatrix<double> contact_block;   ///< of A
+    const std::vector<unsigned int>   rows_of_contact; ///< that couple to it
     TruncatedMultigrid               &cycle;
     Vector                           &u;
 

@@ -31,7 +31,22 @@ namespace Debond
     void
     multiply(DistributedVector &dst, const std::vector<double> &values) const;
 
+    /// The own rows that couple to one of these unknowns of the whole.
+    std::vector<unsigned int>
+    rows_of(const std::vector<unsigned int> &columns) const;
+
+    /// dst -= A v at these own rows alone, where @p values is that of v by
+    /// at_columns().
+    void
+    subtract(const std::vector<unsigned int> &rows,
+             const std::vector<double>       &values,
+             DistributedVector               &dst) const;
+
   private:
+    /// Of a row with the values.
+    double
+    product(const unsigned int row, const std::vector<double> &values) const;
+
     mutable DistributedVector   with_ghosts;
     mutable std::vector<double> values; ///< of the size of the whole
   };
