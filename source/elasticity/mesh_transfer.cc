@@ -79,7 +79,7 @@ namespace Debond
                                 of_cells);
 
     const ElasticUnknowns<dim>           &unknowns  = target.unknowns();
-    const std::vector<dealii::Point<dim>> positions = unknowns.positions();
+    const std::vector<dealii::Point<dim>> positions = unknowns.node_positions();
     const dealii::IndexSet &own = unknowns.dof_handler().locally_owned_dofs();
     DofVector               result(unknowns.n_dofs());
     std::vector<bool>       is_done(result.size(), false);
@@ -105,7 +105,7 @@ namespace Debond
               continue;
             is_done[cell_dofs[i]] = true;
             const dealii::Point<dim> point(to_unit *
-                                           (positions[cell_dofs[i]] - origin));
+                                           (positions[cell_dofs[i] / dim] - origin));
             for (unsigned int j = i % dim; j < n; j += dim)
               result(cell_dofs[i]) += fe.shape_value(j, point) * values[j];
           }
@@ -123,12 +123,12 @@ namespace Debond
                            const ElasticProblem<dim> &target)
   {
     const ElasticUnknowns<dim>           &unknowns  = target.unknowns();
-    const std::vector<dealii::Point<dim>> positions = unknowns.positions();
+    const std::vector<dealii::Point<dim>> positions = unknowns.node_positions();
     const dealii::IndexSet &own = unknowns.dof_handler().locally_owned_dofs();
     std::vector<dealii::Point<dim>> nodes;
     for (const auto i : own)
       if (i % dim == 0)
-        nodes.push_back(positions[i]);
+        nodes.push_back(positions[i / dim]);
     const std::vector<dealii::Tensor<1, dim>> values =
       body.interpolate(source.unknowns().dof_handler().get_triangulation(),
                        vertex_displacements(source, u),

@@ -223,10 +223,9 @@ namespace Debond
     finer.begin = own.n_elements() == 0 ? 0 : own.nth_index_in_set(0) / dim;
     finer.end   = finer.begin + own.n_elements() / dim;
 
-    const std::vector<dealii::Point<dim>> of_unknowns = unknowns.positions();
-    std::vector<dealii::Point<dim>>       points;
-    for (unsigned int node = finer.begin; node < finer.end; ++node)
-      points.push_back(of_unknowns[node * dim]);
+    const std::vector<dealii::Point<dim>> nodes = unknowns.node_positions();
+    const std::vector<dealii::Point<dim>> points(nodes.begin() + finer.begin,
+                                                 nodes.begin() + finer.end);
 
     std::vector<Prolongation> result;
     NodeFrames<dim>           fine = node_frames(unknowns);

@@ -152,11 +152,11 @@ namespace Debond
 
   template <int dim>
   std::vector<dealii::Point<dim>>
-  ElasticUnknowns<dim>::positions() const
+  ElasticUnknowns<dim>::node_positions() const
   {
     const std::vector<dealii::Point<dim>> &points =
       fe.get_unit_support_points();
-    std::vector<double> coordinates(n_dofs() * std::size_t{dim});
+    std::vector<double>                          coordinates(n_dofs());
     std::vector<dealii::types::global_dof_index> cell_dofs(fe.dofs_per_cell);
     const dealii::IndexSet &own = dofs.locally_owned_dofs();
     for (const auto &cell : owned_cells(dofs))
@@ -165,7 +165,7 @@ namespace Debond
         // functions at each point.
         const dealii::Point<dim> origin = cell->vertex(0);
         cell->get_dof_indices(cell_dofs);
-        for (unsigned int i = 0; i < cell_dofs.size(); ++i)
+        for (unsigned int i = 0; i < cell_dofs.size(); i += dim)
           if (own.is_element(cell_dofs[i]))
             {
               dealii::Point<dim> point = origin;
@@ -173,14 +173,13 @@ namespace Debond
                 point += points[i][d] * (cell->vertex(d + 1) - origin);
               std::copy(point.begin_raw(),
                         point.end_raw(),
-                        coordinates.begin() + std::size_t(dim) * cell_dofs[i]);
+                        coordinates.begin() + cell_dofs[i]);
             }
       }
     dealii::Utilities::MPI::sum(coordinates, communicator(), coordinates);
-    std::vector<dealii::Point<dim>> result(n_dofs());
-    for (std::size_t i = 0; i < result.size(); ++i)
-      for (unsigned int d = 0; d < dim; ++d)
-        result[i][d] = coordinates[dim * i + d];
+    std::vector<dealii::Point<dim>> result(n_dofs() / dim);
+    for (unsigned int i = 0; i < coordinates.size(); ++i)
+      result[i / dim][i % dim] = coordinates[i];
     return result;
   }
 
@@ -315,7 +314,7 @@ namespace Debond
   {
     constexpr unsigned int n_rotations = dim * (dim - 1) / 2;
     std::vector<DofVector> modes(dim + n_rotations, DofVector(dofs.n_dofs()));
-    const std::vector<dealii::Point<dim>> places = positions();
+    const std::vector<dealii::Point<dim>> places = node_positions();
     for (unsigned int i = 0; i < n_dofs(); i += dim)
       {
         for (unsigned int d = 0; d < dim; ++d)
@@ -325,8 +324,8 @@ namespace Debond
         for (unsigned int d = 0; d < dim; ++d)
           for (unsigned int e = d + 1; e < dim; ++e, ++rotation)
             {
-              modes[rotation][i + d] = -places[i][e];
-              modes[rotation][i + e] = places[i][d];
+              modes[rotation][i + d] = -places[i / dim][e];
+              modes[rotation][i + e] = places[i / dim][d];
             }
       }
     for (DofVector &mode : modes)

@@ -27,12 +27,21 @@ namespace Debond
             for (auto k = M.starts[i]; k < M.starts[i + 1]; ++k, block += h * w)
               {
                 const std::size_t j = std::size_t(M.columns[k]) * w;
+                if (transposed)
+                  {
+                    for (unsigned int c = 0; c < h; ++c)
+                      for (unsigned int d = 0; d < w; ++d)
+                        y[j + d] += block[c * w + d] * row[c];
+                    continue;
+                  }
+                // The sum of a block need not wait for those before it.
                 for (unsigned int c = 0; c < h; ++c)
-                  for (unsigned int d = 0; d < w; ++d)
-                    if (transposed)
-                      y[j + d] += block[c * w + d] * row[c];
-                    else
-                      row[c] += block[c * w + d] * x[j + d];
+                  {
+                    float sum = block[c * w] * x[j];
+                    for (unsigned int d = 1; d < w; ++d)
+                      sum += block[c * w + d] * x[j + d];
+                    row[c] += sum;
+                  }
               }
             if (!transposed)
               for (unsigned int c = 0; c < h; ++c)

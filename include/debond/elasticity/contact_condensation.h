@@ -121,7 +121,7 @@ namespace Debond
     const Eigen::Index n      = static_cast<Eigen::Index>(motions.size());
     WorkOfLoads        work{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
     const std::vector<dealii::Point<dim>> positions =
-      problem.unknowns().positions();
+      problem.unknowns().node_positions();
     for (unsigned int i = 0; i < forces.size(); i += dim)
       {
         dealii::Tensor<1, dim> force;
@@ -129,7 +129,7 @@ namespace Debond
           force[d] = forces(i + d);
         for (Eigen::Index k = 0; k < n; ++k)
           {
-            const dealii::Tensor<1, dim> way = motions[k](positions[i]);
+            const dealii::Tensor<1, dim> way = motions[k](positions[i / dim]);
             work.along[k] += force * way;
             work.largest[k] += force.norm() * way.norm();
           }

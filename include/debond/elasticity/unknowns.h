@@ -118,9 +118,10 @@ namespace Debond
     to_unknowns(const std::vector<dealii::types::global_dof_index> &cell_dofs,
                 dealii::FullMatrix<double> &cell_matrix) const;
 
-    /// Where the degrees of freedom are. To be called by all ranks.
+    /// Where the nodes are, each of which has dim successive degrees of
+    /// freedom. To be called by all ranks.
     std::vector<dealii::Point<dim>>
-    positions() const;
+    node_positions() const;
 
     /// For each degree of freedom the number that it has on one rank, for
     /// files. To be called by all ranks.
