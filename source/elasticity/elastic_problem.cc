@@ -22,7 +22,6 @@ namespace Debond
     {
       // Rows of a node are alike.
       const auto                    &dofs    = unknowns.dof_handler();
-      const auto                    &own     = dofs.locally_owned_dofs();
       const unsigned int             n_nodes = unknowns.n_dofs() / dim;
       dealii::DynamicSparsityPattern neighbors(n_nodes, n_nodes);
       std::vector<dealii::types::global_dof_index> cell_dofs(
@@ -36,26 +35,27 @@ namespace Debond
             nodes[k] = cell_dofs[dim * k] / dim;
           std::sort(nodes.begin(), nodes.end());
           for (const auto node : nodes)
-            if (own.is_element(dim * node))
-              neighbors.add_entries(node, nodes.begin(), nodes.end(), true);
+            neighbors.add_entries(node, nodes.begin(), nodes.end(), true);
         }
 
-      dealii::DynamicSparsityPattern               pattern(unknowns.n_dofs(),
-                                             unknowns.n_dofs(),
-                                             own);
+      const dealii::IndexSet        &own = dofs.locally_owned_dofs();
+      dealii::DynamicSparsityPattern pattern(own.size(), own.size(), own);
       std::vector<dealii::types::global_dof_index> columns;
-      for (unsigned int node = 0; node < n_nodes; ++node)
+      for (const auto row : own)
         {
-          columns.clear();
-          for (unsigned int k = 0; k < neighbors.row_length(node); ++k)
-            for (unsigned int d = 0; d < dim; ++d)
-              if (const auto column =
-                    dim * neighbors.column_number(node, k) + d;
-                  !unknowns.is_constrained(column))
-                columns.push_back(column);
-          for (unsigned int row = dim * node; row < dim * (node + 1); ++row)
-            if (own.is_element(row) && !unknowns.is_constrained(row))
-              pattern.add_entries(row, columns.begin(), columns.end(), true);
+          if (row % dim == 0)
+            {
+              columns.clear();
+              const auto node = row / dim;
+              for (unsigned int k = 0; k < neighbors.row_length(node); ++k)
+                for (unsigned int d = 0; d < dim; ++d)
+                  if (const auto column =
+                        dim * neighbors.column_number(node, k) + d;
+                      !unknowns.is_constrained(column))
+                    columns.push_back(column);
+            }
+          if (!unknowns.is_constrained(row))
+            pattern.add_entries(row, columns.begin(), columns.end(), true);
         }
       return pattern;
     }
@@ -79,20 +79,18 @@ namespace Debond
               const dealii::Tensor<1, dim> &g = values.shape_grad(k, q);
               const dealii::Tensor<1, dim>  h =
                 values.JxW(q) * values.shape_grad(l, q);
-              const double product = g * h;
+              const double product = mu * (g * h);
               for (unsigned int c = 0; c < dim; ++c)
-                {
-                  for (unsigned int d = 0; d < dim; ++d)
-                    cell_matrix(dim * k + c, dim * l + d) +=
-                      lambda * g[c] * h[d] + mu * g[d] * h[c];
-                  cell_matrix(dim * k + c, dim * l + c) += mu * product;
-                }
+                for (unsigned int d = 0; d < dim; ++d)
+                  cell_matrix(dim * k + c, dim * l + d) +=
+                    lambda * g[c] * h[d] + mu * g[d] * h[c] +
+                    (c == d ? product : 0.);
             }
     }
 
 
 
-    /// Of the entries of a row, of which the diagonal one is the first.
+    /// In a row, of which the diagonal entry is the first one.
     unsigned int
     n_columns_below(const dealii::types::global_dof_index column,
                     const dealii::SparsityPattern        &sparsity,
@@ -108,51 +106,6 @@ namespace Debond
           length = is_below ? length - half - 1 : half;
         }
       return below + (row < column ? 1 : 0);
-    }
-
-
-
-    /// Adds the matrix of a cell to the rows of this rank. Where a node's
-    /// columns are, is looked for in one row of each other node.
-    template <int dim>
-    void
-    add_to_rows(const dealii::IndexSet                             &own,
-                const std::vector<dealii::types::global_dof_index> &cell_dofs,
-                const std::vector<char>          &is_constrained,
-                const dealii::FullMatrix<double> &cell_matrix,
-                dealii::SparseMatrix<double>     &matrix)
-    {
-      const auto        &sparsity = matrix.get_sparsity_pattern();
-      const unsigned int n        = static_cast<unsigned int>(cell_dofs.size());
-      for (unsigned int k = 0; k < n; k += dim)
-        if (own.is_element(cell_dofs[k]))
-          for (unsigned int l = 0; l < n; l += dim)
-            {
-              unsigned int below = dealii::numbers::invalid_unsigned_int;
-              for (unsigned int i = k; i < k + dim; ++i)
-                {
-                  const auto row = cell_dofs[i];
-                  // The first of the row's, which follow each other.
-                  double *const entries = &matrix.diag_element(row);
-                  if (is_constrained[i])
-                    {
-                      if (k == l)
-                        entries[0] += std::abs(cell_matrix(i, i));
-                      continue;
-                    }
-                  if (below == dealii::numbers::invalid_unsigned_int)
-                    below = n_columns_below(cell_dofs[l], sparsity, row);
-                  unsigned int position = below;
-                  for (unsigned int j = l; j < l + dim; ++j)
-                    if (!is_constrained[j])
-                      {
-                        const unsigned int entry =
-                          j == i ? 0 : position + (cell_dofs[j] < row ? 1 : 0);
-                        entries[entry] += cell_matrix(i, j);
-                        ++position;
-                      }
-                }
-            }
     }
   } // namespace
 
@@ -238,20 +191,49 @@ namespace Debond
     const unsigned int         n = dofs.get_fe().dofs_per_cell;
     dealii::FullMatrix<double> cell_matrix(n);
     std::vector<dealii::types::global_dof_index> cell_dofs(n);
-    std::vector<char>                            is_constrained(n);
+    std::vector<char>                            is_free(n);
     for (const auto &cell : dofs.active_cell_iterators())
       {
         values.reinit(*cell);
         cell->get_dof_indices(cell_dofs);
         for (unsigned int i = 0; i < n; ++i)
-          is_constrained[i] = elastic_unknowns.is_constrained(cell_dofs[i]);
+          is_free[i] = !elastic_unknowns.is_constrained(cell_dofs[i]);
         set_products(values, materials(cell->material_id()), cell_matrix);
         elastic_unknowns.to_unknowns(cell_dofs, cell_matrix);
-        add_to_rows<dim>(dofs.locally_owned_dofs(),
-                         cell_dofs,
-                         is_constrained,
-                         cell_matrix,
-                         system_matrix);
+
+        // Where a node's columns are in one row is where they are in all of
+        // another node, but for the diagonal entries. Of constrained rows only
+        // these are asked for.
+        for (unsigned int k = 0; k < n; k += dim)
+          {
+            if (!dofs.locally_owned_dofs().is_element(cell_dofs[k]))
+              continue;
+            unsigned int a_row = k;
+            while (!is_free[a_row] && a_row + 1 < k + dim)
+              ++a_row;
+            for (unsigned int l = 0; l < n; l += dim)
+              {
+                const unsigned int below =
+                  n_columns_below(cell_dofs[l], sparsity, cell_dofs[a_row]);
+                for (unsigned int i = k; i < k + dim; ++i)
+                  {
+                    // What follows is the rest of the row.
+                    double *const entries =
+                      &system_matrix.diag_element(cell_dofs[i]);
+                    unsigned int position = below;
+                    for (unsigned int j = l; j < l + dim; ++j)
+                      {
+                        if (i == j)
+                          entries[0] += cell_matrix(i, i);
+                        else if (is_free[i] && is_free[j])
+                          entries[position +
+                                  (cell_dofs[j] < cell_dofs[i] ? 1 : 0)] +=
+                            cell_matrix(i, j);
+                        position += is_free[j];
+                      }
+                  }
+              }
+          }
       }
   }
 

@@ -26,40 +26,20 @@ namespace Debond
   void
   SimplexValues<dim>::reinit(const dealii::TriaAccessor<dim, dim, dim> &cell)
   {
-    for (unsigned int v = 0; v <= dim; ++v)
-      vertices[v] = cell.vertex(v);
-    dealii::Tensor<2, dim> edges;
+    origin = cell.vertex(0);
     for (unsigned int d = 0; d < dim; ++d)
-      edges[d] = vertices[d + 1] - vertices[0];
-    jacobian                             = std::abs(dealii::determinant(edges));
-    const dealii::Tensor<2, dim> inverse = dealii::invert(edges);
-    barycentric[0]                       = 0.;
+      edges[d] = cell.vertex(d + 1) - origin;
+    jacobian = std::abs(dealii::determinant(edges));
+    const dealii::Tensor<2, dim> inverse =
+      dealii::transpose(dealii::invert(edges));
+    barycentric[0] = 0.;
     for (unsigned int d = 0; d < dim; ++d)
       {
-        for (unsigned int c = 0; c < dim; ++c)
-          barycentric[d + 1][c] = inverse[c][d];
-        barycentric[0] -= barycentric[d + 1];
+        barycentric[d + 1] = inverse[d];
+        barycentric[0] -= inverse[d];
       }
     for (unsigned int i = 0; i < gradients.size(); ++i)
-      {
-        dealii::Tensor<1, dim> sum;
-        for (unsigned int d = 0; d < dim; ++d)
-          sum += reference_gradients[i][d] * barycentric[d + 1];
-        gradients[i] = sum;
-      }
-  }
-
-
-
-  template <int dim>
-  dealii::Point<dim>
-  SimplexValues<dim>::quadrature_point(const unsigned int q) const
-  {
-    const dealii::Point<dim> &unit_point = rule.point(q);
-    dealii::Point<dim>        result     = vertices[0];
-    for (unsigned int d = 0; d < dim; ++d)
-      result += unit_point[d] * (vertices[d + 1] - vertices[0]);
-    return result;
+      gradients[i] = reference_gradients[i] * inverse;
   }
 
 

@@ -64,7 +64,10 @@ namespace Debond
     }
 
     dealii::Point<dim>
-    quadrature_point(const unsigned int q) const;
+    quadrature_point(const unsigned int q) const
+    {
+      return origin + rule.point(q) * edges;
+    }
 
     /// Of the cell.
     double
@@ -87,7 +90,8 @@ namespace Debond
     std::vector<dealii::Tensor<1, dim>> reference_gradients;
 
     // Of the cell.
-    std::array<dealii::Point<dim>, dim + 1>     vertices;
+    dealii::Point<dim>                          origin;
+    dealii::Tensor<2, dim>                      edges; ///< from the origin
     double                                      jacobian = 0.;
     std::array<dealii::Tensor<1, dim>, dim + 1> barycentric;
     std::vector<dealii::Tensor<1, dim>>         gradients;
