@@ -7,7 +7,6 @@
 #include <debond/elasticity/temperature_load.h>
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace Debond
@@ -201,9 +200,9 @@ namespace Debond
         set_products(values, materials(cell->material_id()), cell_matrix);
         elastic_unknowns.to_unknowns(cell_dofs, cell_matrix);
 
-        // Where a node's columns are in one row is where they are in all of
-        // another node, but for the diagonal entries. Of constrained rows only
-        // these are asked for.
+        // Where the columns of a node are in one row of another one they are in
+        // all its rows, but for the diagonal entry, which is the first and in
+        // constrained rows the only one.
         for (unsigned int k = 0; k < n; k += dim)
           {
             if (!dofs.locally_owned_dofs().is_element(cell_dofs[k]))
