@@ -12,11 +12,52 @@
 
 namespace Debond
 {
+  namespace
+  {
+    using LapackInteger = dealii::types::blas_int;
+
+    /// Not zero, as LAPACK wants it.
+    LapackInteger
+    leading_dimension(const Eigen::MatrixXd &A)
+    {
+      return static_cast<LapackInteger>(std::max<Eigen::Index>(1, A.rows()));
+    }
+
+
+
+    /// The lower triangle becomes the factor. Returns whether A is positive
+    /// definite.
+    bool
+    factorise(Eigen::MatrixXd &A)
+    {
+      const LapackInteger n   = static_cast<LapackInteger>(A.rows());
+      const LapackInteger lda = leading_dimension(A);
+      LapackInteger       info;
+      dealii::potrf("L", &n, A.data(), &lda, &info);
+      AssertThrow(info >= 0, dealii::ExcInternalError());
+      return info == 0;
+    }
+  } // namespace
+
+
+
   void
   UpdatableCholesky::reserve(const unsigned int capacity)
   {
     factor.resize(capacity, capacity);
     n = 0;
+  }
+
+
+
+  bool
+  UpdatableCholesky::compute(const Eigen::MatrixXd &K)
+  {
+    Eigen::MatrixXd    lower = K;
+    const bool         exists = factorise(lower);
+    n = exists ? static_cast<unsigned int>(K.rows()) : 0;
+    factor.topLeftCorner(n, n) = lower.topLeftCorner(n, n);
+    return exists;
   }
 
 
@@ -130,30 +171,10 @@ namespace Debond
 
 
 
-  namespace
-  {
-    using LapackInteger = dealii::types::blas_int;
-
-    /// Not zero, as LAPACK wants it.
-    LapackInteger
-    leading_dimension(const Eigen::MatrixXd &A)
-    {
-      return static_cast<LapackInteger>(std::max<Eigen::Index>(1, A.rows()));
-    }
-  } // namespace
-
-
-
   DenseCholesky::DenseCholesky(Eigen::MatrixXd A)
     : factor(std::move(A))
-  {
-    const LapackInteger n   = static_cast<LapackInteger>(factor.rows());
-    const LapackInteger lda = leading_dimension(factor);
-    LapackInteger       info;
-    dealii::potrf("L", &n, factor.data(), &lda, &info);
-    AssertThrow(info >= 0, dealii::ExcInternalError());
-    exists = info == 0;
-  }
+    , exists(factorise(factor))
+  {}
 
 
 

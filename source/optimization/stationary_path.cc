@@ -23,7 +23,9 @@ namespace Debond
     , r(load - S * s)
     , ds(Eigen::VectorXd::Zero(s.size()))
     , dr(Eigen::VectorXd::Zero(s.size()))
+    , in_factor(s.size(), 0)
   {
+    factor.reserve(static_cast<unsigned int>(s.size()));
     for (unsigned int i = 0; i < s.size(); ++i)
       {
         // What has no bonds is on one piece, whichever.
@@ -93,27 +95,64 @@ namespace Debond
 
 
 
+  double
+  StationaryPath::stiffness(const unsigned int i) const
+  {
+    const Bond &bond = bonds[i];
+    return S(i, i) + bond.energy / (bond.stretch * bond.stretch) *
+                       f[(segments[i] - 1) / 2].curvature;
+  }
+
+
+
   bool
   StationaryPath::factorise()
   {
-    free.clear();
+    std::vector<unsigned int> others;
     for (unsigned int i = 0; i < s.size(); ++i)
-      if (is_free(i))
-        free.push_back(i);
-    const Eigen::Index n = static_cast<Eigen::Index>(free.size());
-    Eigen::MatrixXd    M(n, n);
-    for (Eigen::Index k = 0; k < n; ++k)
+      if (in_factor[i] != (is_free(i) ? segments[i] : 0))
+        others.push_back(i);
+    // A change takes about as long as three rows of a new factor.
+    if (3 * others.size() < free.size())
+      for (const unsigned int i : others)
+        {
+          if (in_factor[i] != 0)
+            {
+              const auto place = std::find(free.begin(), free.end(), i);
+              factor.remove(static_cast<unsigned int>(place - free.begin()));
+              free.erase(place);
+              in_factor[i] = 0;
+            }
+          if (!is_free(i))
+            continue;
+          if (!(factor.append(S.col(i)(free),
+                              stiffness(i),
+                              Tolerance::condition_on_path) >
+                Tolerance::condition_on_path))
+            return false;
+          free.push_back(i);
+          in_factor[i] = segments[i];
+        }
+    else
       {
-        const unsigned int i    = free[k];
-        const Bond        &bond = bonds[i];
-        for (Eigen::Index l = 0; l < n; ++l)
-          M(k, l) = S(i, free[l]);
-        M(k, k) += bond.energy / (bond.stretch * bond.stretch) *
-                   f[(segments[i] - 1) / 2].curvature;
+        free.clear();
+        for (unsigned int i = 0; i < s.size(); ++i)
+          {
+            in_factor[i] = is_free(i) ? segments[i] : 0;
+            if (is_free(i))
+              free.push_back(i);
+          }
+        Eigen::MatrixXd M = S(free, free);
+        for (unsigned int k = 0; k < free.size(); ++k)
+          M(k, k) = stiffness(free[k]);
+        if (!factor.compute(M))
+          {
+            free.clear();
+                std::fill(in_factor.begin(), in_factor.end(), 0);
+            return false;
+          }
       }
-    factor.compute(M);
-    return n == 0 || (factor.info() == Eigen::Success &&
-                      factor.rcond() >= Tolerance::condition_on_path);
+    return factor.condition_bound() >= Tolerance::condition_on_path;
   }
 
 
@@ -123,28 +162,22 @@ namespace Debond
   {
     // Of s at t: S s + r = load + (t - first_t) slope, r known by s_i on
     // pieces.
-    const Eigen::Index n = static_cast<Eigen::Index>(free.size());
-    Eigen::MatrixXd    right(n, 2);
-    Eigen::VectorXd    held = s;
-    for (const unsigned int i : free)
-      held(i) = 0.;
-    const Eigen::VectorXd rest =
-      load + (parameter - first_t) * slope - S * held;
-    for (Eigen::Index k = 0; k < n; ++k)
+    Eigen::VectorXd rest = load + (parameter - first_t) * slope;
+    for (unsigned int i = 0; i < s.size(); ++i)
+      if (!is_free(i) && s(i) != 0.)
+        rest -= s(i) * S.col(i);
+    Eigen::VectorXd speeds = slope(free), point = rest(free);
+    for (unsigned int k = 0; k < free.size(); ++k)
       {
-        const unsigned int i    = free[k];
-        const Bond        &bond = bonds[i];
-        right(k, 0)             = slope(i);
-        right(k, 1) =
-          rest(i) - bond.energy / bond.stretch * f[(segments[i] - 1) / 2].slope;
+        const Bond &bond = bonds[free[k]];
+        point(k) -=
+          bond.energy / bond.stretch * f[(segments[free[k]] - 1) / 2].slope;
       }
-    const Eigen::MatrixXd x = factor.solve(right);
+    factor.solve_in_place(speeds);
+    factor.solve_in_place(point);
     ds.setZero();
-    for (Eigen::Index k = 0; k < n; ++k)
-      {
-        ds(free[k]) = x(k, 0);
-        s(free[k])  = x(k, 1);
-      }
+    ds(free) = speeds;
+    s(free)  = point;
     dr         = slope - S * ds;
     r          = load + (parameter - first_t) * slope - S * s;
     largest_ds = ds.lpNorm<Eigen::Infinity>();
@@ -217,8 +250,9 @@ namespace Debond
         if (steps[i] <= tie)
           changes.push_back(
             {i, direction * opening(i) > 0., segments[i], bonds[i].least});
+    s += direction * step * ds;
+    r += direction * step * dr;
     parameter = reaches_end ? end : parameter + direction * step;
-    solve();
     if (reaches_end)
       {
         // What changes there has come to its change.

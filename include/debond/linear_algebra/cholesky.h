@@ -30,6 +30,21 @@ namespace Debond
       return n;
     }
 
+    /// Of a whole matrix, whose lower triangle is read. Returns whether it is
+    /// positive definite; if not the factor is empty.
+    bool
+    compute(const Eigen::MatrixXd &K);
+
+    /// At least 1 / (|K| |K^{-1}|) of the factor in the 2-norm, at most 1.
+    double
+    condition_bound() const
+    {
+      const auto diagonal = factor.diagonal().head(n);
+      const double ratio =
+        n == 0 ? 1. : diagonal.minCoeff() / diagonal.maxCoeff();
+      return ratio * ratio;
+    }
+
     /// Appends a row and column to K: @p column holds the new entries of K
     /// next to the existing rows, @p diagonal the new diagonal entry. Returns
     /// the part of the diagonal that is independent of the existing rows,

@@ -4,9 +4,8 @@
 
 #include <debond/base/tolerances.h>
 #include <debond/base/views.h>
+#include <debond/linear_algebra/cholesky.h>
 #include <debond/optimization/branch_minimum.h>
-
-#include <Eigen/Cholesky>
 
 #include <cmath>
 #include <vector>
@@ -139,10 +138,14 @@ namespace Debond
     void
     change(const Change &change);
 
-    /// The free part of S with its pieces. Returns whether it is definite
-    /// enough.
+    /// The free part of S with its pieces, by what has changed in it. Returns
+    /// whether it is definite enough.
     bool
     factorise();
+
+    /// The diagonal entry of a free s_i in it.
+    double
+    stiffness(const unsigned int i) const;
 
     /// s, r and their velocities.
     void
@@ -162,12 +165,15 @@ namespace Debond
     std::vector<Change>       changes;        ///< at the point
     double                    direction = 1.; ///< of t
     bool                      had_kink  = false;
-    std::vector<unsigned int> free;
     Eigen::VectorXd           ds, dr; ///< by t
     double                    largest_ds = 0.;
     double                    largest_dr = 0.; ///< of the terms of dr
 
-    Eigen::LLT<Eigen::MatrixXd> factor;
+    // The factor of the free part, the s_i in its order, and for each s_i the
+    // piece that it has there, 0 if none.
+    UpdatableCholesky         factor;
+    std::vector<unsigned int> free;
+    std::vector<Segment>      in_factor;
   };
 } // namespace Debond
 
