@@ -99,11 +99,13 @@ namespace
       , mu(mu)
     {}
 
-    void
-    vector_value(const dealii::Point<2> &p, DofVector &values) const override
+    double
+    value(const dealii::Point<2> &p,
+          const unsigned int      component) const override
     {
-      values(0) = -mu * (g_2(p[0]) * g_1(p[1]) + g(p[0]) * g_3(p[1]));
-      values(1) = mu * (g_3(p[0]) * g(p[1]) + g_1(p[0]) * g_2(p[1]));
+      return component == 0 ?
+               -mu * (g_2(p[0]) * g_1(p[1]) + g(p[0]) * g_3(p[1])) :
+               mu * (g_3(p[0]) * g(p[1]) + g_1(p[0]) * g_2(p[1]));
     }
 
   private:

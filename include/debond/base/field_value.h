@@ -5,7 +5,6 @@
 #include <deal.II/base/function.h>
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
-#include <deal.II/lac/vector.h>
 
 #include <algorithm>
 #include <cmath>
@@ -77,18 +76,9 @@ namespace Debond
                const dealii::Point<dim>    &point)
   {
     AssertDimension(field.n_components, dim);
-    dealii::Vector<double> values(dim);
-    try
-      {
-        field.vector_value(point, values);
-      }
-    catch (const std::exception &)
-      {
-        values = std::numeric_limits<double>::quiet_NaN();
-      }
     dealii::Tensor<1, dim> result;
     for (unsigned int d = 0; d < dim; ++d)
-      result[d] = finite(values[d], point);
+      result[d] = field_value(field, point, d);
     return result;
   }
 
