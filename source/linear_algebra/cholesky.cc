@@ -53,9 +53,9 @@ namespace Debond
   bool
   UpdatableCholesky::compute(const Eigen::MatrixXd &K)
   {
-    Eigen::MatrixXd    lower = K;
-    const bool         exists = factorise(lower);
-    n = exists ? static_cast<unsigned int>(K.rows()) : 0;
+    Eigen::MatrixXd lower  = K;
+    const bool      exists = factorise(lower);
+    n                      = exists ? static_cast<unsigned int>(K.rows()) : 0;
     factor.topLeftCorner(n, n) = lower.topLeftCorner(n, n);
     return exists;
   }

@@ -148,7 +148,7 @@ namespace Debond
         if (!factor.compute(M))
           {
             free.clear();
-                std::fill(in_factor.begin(), in_factor.end(), 0);
+            std::fill(in_factor.begin(), in_factor.end(), 0);
             return false;
           }
       }
@@ -176,8 +176,8 @@ namespace Debond
     factor.solve_in_place(speeds);
     factor.solve_in_place(point);
     ds.setZero();
-    ds(free) = speeds;
-    s(free)  = point;
+    ds(free)   = speeds;
+    s(free)    = point;
     dr         = slope - S * ds;
     r          = load + (parameter - first_t) * slope - S * s;
     largest_ds = ds.lpNorm<Eigen::Infinity>();

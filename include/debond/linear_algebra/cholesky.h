@@ -39,7 +39,7 @@ namespace Debond
     double
     condition_bound() const
     {
-      const auto diagonal = factor.diagonal().head(n);
+      const auto   diagonal = factor.diagonal().head(n);
       const double ratio =
         n == 0 ? 1. : diagonal.minCoeff() / diagonal.maxCoeff();
       return ratio * ratio;

@@ -158,16 +158,16 @@ namespace Debond
     std::vector<Bond>     bonds;
     const bool            returns;
 
-    double                    parameter;
-    Eigen::VectorXd           s;
-    Eigen::VectorXd           r;
-    std::vector<Segment>      segments;
-    std::vector<Change>       changes;        ///< at the point
-    double                    direction = 1.; ///< of t
-    bool                      had_kink  = false;
-    Eigen::VectorXd           ds, dr; ///< by t
-    double                    largest_ds = 0.;
-    double                    largest_dr = 0.; ///< of the terms of dr
+    double               parameter;
+    Eigen::VectorXd      s;
+    Eigen::VectorXd      r;
+    std::vector<Segment> segments;
+    std::vector<Change>  changes;        ///< at the point
+    double               direction = 1.; ///< of t
+    bool                 had_kink  = false;
+    Eigen::VectorXd      ds, dr; ///< by t
+    double               largest_ds = 0.;
+    double               largest_dr = 0.; ///< of the terms of dr
 
     // The factor of the free part, the s_i in its order, and for each s_i the
     // piece that it has there, 0 if none.
