@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/tolerances.h>
+#include <debond/optimization/majorise/bound_qp.h>
 #include <debond/optimization/stationary_path.h>
 #include <debond/solve/bond_change.h>
 
@@ -58,6 +59,31 @@ namespace Debond
           }
       return changes ? std::optional<double>(first * last.factors.loads) :
                        std::nullopt;
+    }
+
+
+
+    /// From rest, where all nodes are about to leave contact or to press on it,
+    /// the state grows in proportion until bonds change.
+    template <int dim>
+    std::optional<double>
+    change_from_rest(const CondensedScene<dim>   &scene,
+                     const AdhesionIntegral<dim> &bonds,
+                     const PathPoint             &last,
+                     const LoadFactors            next)
+    {
+      const Eigen::VectorXd zero      = Eigen::VectorXd::Zero(last.s.size());
+      Eigen::MatrixXd       stiffness = scene.condensed.schur_complement();
+      stiffness += bonds.curvature(zero);
+      ActiveSet           active(last.s.size(), 1);
+      const BoundQPResult at_next =
+        solve_bound_qp(stiffness, scene.load(next), zero, active);
+      if (at_next.status != SolverStatus::success)
+        return {};
+      const double part = bonds.first_change(zero, at_next.x, 1.);
+      return part == 1. ?
+               std::nullopt :
+               std::make_optional(factor_between(last.factors, next, part));
     }
 
 
@@ -132,12 +158,16 @@ namespace Debond
     const bool                  is_proportional =
       last.factors.loads != 0. && !has_slope && !unknowns.has_gap() &&
       load_path.displacement_factors.empty() && load_path.dead_loads.empty();
+    const bool is_at_rest =
+      !has_slope && last.s.isZero(0.) && scene.load(last.factors).isZero(0.);
     if (!bonds.is_separable())
       {
         // What is prescribed on the contact boundary changes the springs'
         // forces.
         if (!unknowns.contact().boundary().held_vertices.empty())
           return {};
+        if (is_at_rest)
+          return change_from_rest(scene, bonds, last, next);
         if (!is_proportional)
           return change_between_nodes(scene, bonds, last, next, may_go_on);
         const double          whole = next.loads / last.factors.loads - 1.;
@@ -147,6 +177,8 @@ namespace Debond
                  std::nullopt :
                  std::make_optional(factor_between(last.factors, next, part));
       }
+    if (is_at_rest)
+      return change_from_rest(scene, bonds, last, next);
     if (is_proportional)
       return proportional_change(branches, bonds, last, next.loads);
 
