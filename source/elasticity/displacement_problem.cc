@@ -46,6 +46,7 @@ namespace Debond
     , rows_of_contact(A.rows_of(problem.unknowns().contact().normals()))
     , cycle(multigrid_cycle)
     , u(start)
+    , internal(start)
     , active(contact.size())
   {
     const Eigen::VectorXd s = contact.trace(u);
@@ -58,7 +59,6 @@ namespace Debond
   MajorantProblem::State
   DisplacementProblem::evaluate()
   {
-    Vector internal(u);
     A.vmult(internal, u);
     const Eigen::VectorXd s  = contact.trace(u);
     const Eigen::VectorXd xi = phi.subgradient(s);
@@ -111,17 +111,6 @@ namespace Debond
              Tolerance::same_majorant * (E_s.norm() + b_c.norm()) ||
            curvature_norm(E - previous_E) >
              Tolerance::same_majorant * curvature_norm(E);
-  }
-
-
-
-  void
-  DisplacementProblem::majorant_force(Vector &force) const
-  {
-    A.vmult(force, u);
-    force.sadd(-1., 1., f);
-    const Eigen::VectorXd E_s = E * contact.trace(u);
-    contact.add(b_c - E_s, force);
   }
 
 
@@ -202,7 +191,11 @@ namespace Debond
       u             = previous_u;
       return result;
     };
-    majorant_force(force);
+    // Minus the majorant's gradient at u.
+    force = f;
+    force -= internal;
+    const Eigen::VectorXd bond_forces = b_c - E * contact.trace(u);
+    contact.add(bond_forces, force);
     while (result.active_set_steps < maximum_line_steps &&
            result.linear_iterations < maximum_linear_iterations)
       {

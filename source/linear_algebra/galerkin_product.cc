@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/linear_algebra/galerkin_product.h>
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -99,34 +101,8 @@ namespace Debond
 
 
 
-    /// C += A B, or A'B, all stored row by row.
-    template <unsigned int n,
-              unsigned int m,
-              unsigned int l,
-              typename A,
-              typename B>
-    void
-    add_product(double *C, const A *a, const B *b)
-    {
-      for (unsigned int i = 0; i < n; ++i)
-        for (unsigned int k = 0; k < m; ++k)
-          for (unsigned int j = 0; j < l; ++j)
-            C[i * l + j] += a[i * m + k] * static_cast<double>(b[k * l + j]);
-    }
-
-    template <unsigned int n,
-              unsigned int m,
-              unsigned int l,
-              typename A,
-              typename B>
-    void
-    add_transposed_product(double *C, const A *a, const B *b)
-    {
-      for (unsigned int k = 0; k < m; ++k)
-        for (unsigned int i = 0; i < n; ++i)
-          for (unsigned int j = 0; j < l; ++j)
-            C[i * l + j] += static_cast<double>(a[k * n + i]) * b[k * l + j];
-    }
+    template <typename Number, int n, int m>
+    using Block = Eigen::Matrix<Number, n, m, Eigen::RowMajor>;
   } // namespace
 
 
@@ -144,10 +120,10 @@ namespace Debond
     for (unsigned int i = 0; i < C.rows.size(); ++i)
       row_of[C.rows[i]] = i;
 
+    using Eigen::Map;
     with_sizes(P.height, P.width, [&](const auto fine, const auto coarse) {
-      constexpr unsigned int n = decltype(fine)::value,
-                             m = decltype(coarse)::value;
-      NumberSet           found(n_columns);
+      constexpr int n = decltype(fine)::value, m = decltype(coarse)::value;
+      NumberSet     found(n_columns);
       std::vector<double> MP; // of a row
       for (unsigned int r = 0; r < rows.size(); ++r)
         {
@@ -167,9 +143,10 @@ namespace Debond
                 const std::size_t place = found.insert(P.columns[l]);
                 if (place * n * m == MP.size())
                   MP.resize(MP.size() + n * m, 0.);
-                add_product<n, n, m>(MP.data() + place * n * m,
-                                     block,
-                                     P.block(l));
+                Map<Block<double, n, m>>(MP.data() + place * n * m).noalias() +=
+                  Map<const Block<double, n, n>>(block) *
+                  Map<const Block<float, n, m>>(P.block(l))
+                    .template cast<double>();
               }
           for (std::size_t l = begin; l < end; ++l)
             {
@@ -180,10 +157,12 @@ namespace Debond
                 {
                   const auto k =
                     std::lower_bound(first, last, found.numbers[place]);
-                  add_transposed_product<m, n, m>(C.block(k -
-                                                          C.columns.begin()),
-                                                  P.block(l),
-                                                  MP.data() + place * n * m);
+                  Map<Block<double, m, m>>(C.block(k - C.columns.begin()))
+                    .noalias() +=
+                    Map<const Block<float, n, m>>(P.block(l))
+                      .transpose()
+                      .template cast<double>() *
+                    Map<const Block<double, n, m>>(MP.data() + place * n * m);
                 }
             }
         }

@@ -75,27 +75,29 @@ namespace Debond
   void
   TruncatedMultigrid::add_finest()
   {
-    const DistributedMatrix &A = finest.A;
-    const unsigned int       n = n_components;
-    SharedNodes              nodes(A.own_rows.n_elements() / n, n, A.ranks);
-    // The unknowns of a node have the same columns but for constrained ones.
+    const DistributedMatrix  &A = finest.A;
+    const unsigned int        n = n_components;
+    SharedNodes               nodes(A.own_rows.n_elements() / n, n, A.ranks);
     BlockRows<float>          rows;
     std::vector<unsigned int> columns;
+    const auto               &sparsity = A.A.get_sparsity_pattern();
     rows.height = rows.width = n;
     with_sizes(n, n, [&](const auto size, const auto) {
       constexpr unsigned int n_rows = decltype(size)::value;
       for (unsigned int i = 0; i < nodes.n_own(); ++i)
         {
-          columns.clear();
-          for (unsigned int c = 0; c < n_rows; ++c)
-            {
-              const unsigned int row  = nodes.global(i) * n_rows + c;
-              const auto         last = A.A.end(row);
-              for (auto entry = A.A.begin(row); entry != last; ++entry)
-                if (const unsigned int column = entry->column() / n_rows;
-                    columns.empty() || columns.back() != column)
-                  columns.push_back(column);
-            }
+          // Those of the longest row: others are constrained.
+          const unsigned int first = nodes.global(i) * n_rows;
+          unsigned int       row   = first;
+          for (unsigned int c = 1; c < n_rows; ++c)
+            if (sparsity.row_length(first + c) > sparsity.row_length(row))
+              row = first + c;
+          columns.assign(1, nodes.global(i));
+          const auto last = A.A.end(row);
+          for (auto entry = A.A.begin(row); entry != last; ++entry)
+            if (const unsigned int column = entry->column() / n_rows;
+                columns.back() != column)
+              columns.push_back(column);
           std::sort(columns.begin(), columns.end());
           rows.columns.insert(rows.columns.end(),
                               columns.begin(),

@@ -17,10 +17,10 @@ namespace Debond
   {
     /// Below, the choice hardly matters, and with a factorisation the search is
     /// on all contact nodes.
-    constexpr double seconds_that_matter = 3.;
+    constexpr double seconds_that_matter = 1.;
 
     /// The estimates are not better than that.
-    constexpr double factor_that_matters = 2.;
+    constexpr double factor_that_matters = 1.3;
 
 
 
@@ -37,12 +37,18 @@ namespace Debond
     /// For each unknown.
     constexpr double bytes_of_mesh_and_matrix = 600.;
 
-    /// On one core as of 2024: fronts of bodies in 3D are dense, those of plane
-    /// bodies small.
+    /// Of a solve with @p n unknowns and @p n_c contact nodes: of a node, of an
+    /// operation with dense fronts, of S, which is factorised a few times, and
+    /// of the search. Measured, see doc/reference/tolerances.md.
     double
-    seconds_per_operation(const unsigned int dim)
+    seconds_with_factorisation(const unsigned int      dim,
+                               const FactorisationCost cost,
+                               const double            n,
+                               const double            n_c)
     {
-      return dim == 2 ? 1.5e-10 : 4e-11;
+      return (dim == 2 ? 2.5e-6 : 6e-6) * n +
+             1.4e-11 * (cost.operations + 3. * std::pow(n_c, 3)) +
+             5e-7 * n_c * n_c;
     }
 
 
@@ -77,7 +83,8 @@ namespace Debond
                           lengths.begin() + problem.dimension) /
         *std::min_element(lengths.begin(), lengths.begin() + problem.dimension);
       if (has_levels)
-        return (problem.dimension == 2 ? 0.3 + 4e-6 * n : 1.5 + 1.2e-5 * n) *
+        return (problem.dimension == 2 ? 0.03 + 2.2e-6 * n :
+                                         0.05 + 4.6e-6 * n) *
                more_cycles(problem) * std::max(1., slenderness / 50.);
       if (problem.dimension == 2)
         return 5e-6 * n;
@@ -296,10 +303,8 @@ namespace Debond
         direct_bytes = 8. * cost.entries + 300. * n + 4. * 8. * n_c * n_c;
         if (choice.linear_solver == LinearSolver::automatic)
           {
-            // S is factorised a few times.
             const double direct_seconds =
-              seconds_per_operation(dim) *
-              (cost.operations + 3. * std::pow(n_c, 3));
+              seconds_with_factorisation(dim, cost, n, n_c);
             const double multigrid_seconds =
               seconds_with_multigrid(problem, has_levels, n) *
               (direct_seconds > seconds_that_matter ?

@@ -51,10 +51,6 @@ namespace Debond
   private:
     using Vector = DistributedVector;
 
-    /// Minus the majorant's gradient at u: a force for each unknown.
-    void
-    majorant_force(Vector &force) const;
-
     /// Minimises the majorant in one normal displacement after the other.
     void
     smooth_contact(Vector &force);
@@ -78,6 +74,7 @@ namespace Debond
     Vector                           &u;
 
     /// As of the last evaluate().
+    Vector internal;            ///< A u
     double largest_force  = 0.; ///< what residuals are relative to
     double force_rounding = 0.; ///< what rounding leaves in A u
 
