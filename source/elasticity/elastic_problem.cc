@@ -16,8 +16,9 @@ namespace Debond
     /// Of A, the rows of this rank: cells of other ranks around the own ones
     /// make them complete.
     template <int dim>
-    dealii::DynamicSparsityPattern
-    pattern_of(const ElasticUnknowns<dim> &unknowns)
+    void
+    make_pattern(const ElasticUnknowns<dim> &unknowns,
+                 dealii::SparsityPattern    &pattern)
     {
       // Rows of a node are alike.
       const auto                    &dofs    = unknowns.dof_handler();
@@ -37,8 +38,12 @@ namespace Debond
             neighbors.add_entries(node, nodes.begin(), nodes.end(), true);
         }
 
-      const dealii::IndexSet        &own = dofs.locally_owned_dofs();
-      dealii::DynamicSparsityPattern pattern(own.size(), own.size(), own);
+      const dealii::IndexSet   &own = dofs.locally_owned_dofs();
+      std::vector<unsigned int> lengths(own.size(), 1);
+      for (const auto row : own)
+        if (!unknowns.is_constrained(row))
+          lengths[row] = dim * neighbors.row_length(row / dim);
+      pattern.reinit(own.size(), own.size(), lengths);
       std::vector<dealii::types::global_dof_index> columns;
       for (const auto row : own)
         {
@@ -56,7 +61,7 @@ namespace Debond
           if (!unknowns.is_constrained(row))
             pattern.add_entries(row, columns.begin(), columns.end(), true);
         }
-      return pattern;
+      pattern.compress();
     }
 
 
@@ -173,7 +178,7 @@ namespace Debond
 
     system_matrix.clear();
     distributed.reset();
-    sparsity.copy_from(pattern_of(elastic_unknowns));
+    make_pattern(elastic_unknowns, sparsity);
     system_matrix.reinit(sparsity);
     add_cell_matrices(materials);
   }

@@ -39,7 +39,7 @@ namespace Debond
 
     /// Of a solve with @p n unknowns and @p n_c contact nodes: of a node, of an
     /// operation with dense fronts, of S, which is factorised a few times, and
-    /// of the search. Measured, see doc/reference/tolerances.md.
+    /// of the search, as measured for doc/notes/speed.md.
     double
     seconds_with_factorisation(const unsigned int      dim,
                                const FactorisationCost cost,
