@@ -104,8 +104,8 @@ namespace Debond
             if (is_done[cell_dofs[i]] || !own.is_element(cell_dofs[i]))
               continue;
             is_done[cell_dofs[i]] = true;
-            const dealii::Point<dim> point(to_unit *
-                                           (positions[cell_dofs[i] / dim] - origin));
+            const dealii::Point<dim> point(
+              to_unit * (positions[cell_dofs[i] / dim] - origin));
             for (unsigned int j = i % dim; j < n; j += dim)
               result(cell_dofs[i]) += fe.shape_value(j, point) * values[j];
           }

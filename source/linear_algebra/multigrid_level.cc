@@ -164,8 +164,9 @@ namespace Debond
 
 
 
-  void MultigridLevel::restrict(SinglePrecisionVector       &coarse,
-                                const SinglePrecisionVector &fine) const
+  void
+  MultigridLevel::restrict_to_coarser(SinglePrecisionVector       &coarse,
+                                      const SinglePrecisionVector &fine) const
   {
     coarse = 0.f;
     add_product<true>(prolongation,

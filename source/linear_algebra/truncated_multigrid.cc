@@ -364,7 +364,7 @@ namespace Debond
     fine.r.sadd(-1.f, 1.f, fine.b);
     // b, x and r are zero at held unknowns, so only corrections may not be.
     const MultigridLevel &coarse = *levels[l + 1];
-    fine.restrict(coarse.b, fine.r);
+    fine.restrict_to_coarser(coarse.b, fine.r);
     cycle(l + 1);
     fine.prolongate(fine.r, coarse.x);
     if (l == 0)

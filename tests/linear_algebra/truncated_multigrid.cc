@@ -276,7 +276,7 @@ namespace
       for (const unsigned int i : held)
         v(i) = 0.f;
     fine.matrix.vmult(B_v, v);
-    fine.restrict(expected, B_v);
+    fine.restrict_to_coarser(expected, B_v);
     coarse.matrix.vmult(found, x);
     const float largest = expected.linfty_norm();
     for (const auto i : found.locally_owned_elements())

@@ -90,8 +90,9 @@ namespace Debond
                const SinglePrecisionVector &coarse) const;
 
     /// With its transpose.
-    void restrict(SinglePrecisionVector       &coarse,
-                  const SinglePrecisionVector &fine) const;
+    void
+    restrict_to_coarser(SinglePrecisionVector       &coarse,
+                        const SinglePrecisionVector &fine) const;
 
     SharedNodes      nodes;
     LevelMatrix      matrix;
