@@ -94,7 +94,7 @@ namespace Debond
       const double bending = problem.tangential_displacement_fixed ?
                                1. :
                                std::max(1., slenderness / 1.5);
-      return 1e-4 * n * bending;
+      return 3e-5 * n * bending;
     }
 
 
@@ -168,8 +168,8 @@ namespace Debond
     double
     memory_with_multigrid(const unsigned int dim, const bool has_levels)
     {
-      return has_levels ? (dim == 2 ? 900. : 1300.) :
-                          (dim == 2 ? 1200. : 3700.);
+      return has_levels ? (dim == 2 ? 300. : 400.) :
+                          (dim == 2 ? 1200. : 3000.);
     }
 
 
