@@ -168,8 +168,7 @@ namespace Debond
     double
     memory_with_multigrid(const unsigned int dim, const bool has_levels)
     {
-      return has_levels ? (dim == 2 ? 300. : 400.) :
-                          (dim == 2 ? 1200. : 3000.);
+      return has_levels ? (dim == 2 ? 300. : 400.) : (dim == 2 ? 1200. : 3000.);
     }
 
 
