@@ -7,6 +7,7 @@
 #include <debond/linear_algebra/multigrid_level.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <vector>
 
 namespace Debond
@@ -39,7 +40,10 @@ namespace Debond
         }
     now.diagonal() *= larger_diagonal;
     solver.factorize(now);
-    AssertThrow(solver.info() == Eigen::Success, dealii::ExcInternalError());
+    if (solver.info() != Eigen::Success)
+      throw std::runtime_error(
+        "multigrid: the matrix of the coarsest level is singular; try "
+        "Solver/Linear solver = direct");
   }
 
 

@@ -20,7 +20,8 @@ namespace Debond
                    const bool          may_be_singular,
                    const MPI_Comm      ranks);
 
-    /// The matrix and a change, by numbers of the whole, in its pattern.
+    /// The matrix and a change, by numbers of the whole, in its pattern. Throws
+    /// std::runtime_error on all ranks if that is singular.
     void
     factorise(const NumberedRows &change);
 

@@ -5,7 +5,6 @@
 #include <debond/linear_algebra/distributed_vector.h>
 #include <debond/linear_algebra/matrix_on_ranks.h>
 
-#include <memory>
 #include <vector>
 
 namespace Debond

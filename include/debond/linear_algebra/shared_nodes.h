@@ -23,7 +23,8 @@ namespace Debond
    * Ghosts are nodes of other ranks that this rank needs. In local numbers own
    * nodes come first, then ghosts, both in the order of the whole.
    *
-   * All ranks call the functions together, but for those that are const.
+   * All ranks call set_ghosts(), append_rows_of_ghosts() and sum_of_ranks()
+   * together.
    */
   class SharedNodes
   {

@@ -81,7 +81,8 @@ namespace Debond
     /// E symmetric and positive semidefinite, Q leaving out the @p held
     /// unknowns, D the diagonal of A. Each rank gives what it has of E and the
     /// held ones, by their numbers in the whole; entries may occur repeatedly.
-    /// Throws dealii::ExceptionBase if an entry is not in the pattern of A.
+    /// Throws dealii::ExceptionBase if an entry is not in the pattern of A,
+    /// std::runtime_error as CoarsestFactor does.
     void
     truncate(const std::vector<Entry>        &E,
              const std::vector<unsigned int> &held);
