@@ -62,8 +62,10 @@ def write(rows, directory):
                       "contact / the quickest linear solve", "x")
     for study in dict.fromkeys(row["study"] for row in rows):
         own = [row for row in rows if row["study"] == study]
-        plot.add(study, [row["unknowns"] for row in own],
-                 [row["contact / best"] for row in own], "o-")
+        unknowns = [row["unknowns"] for row in own]
+        # One body on finer and finer meshes, or several bodies.
+        plot.add(study, unknowns, [row["contact / best"] for row in own],
+                 "o-" if unknowns == sorted(unknowns) else "o")
     plot.axes.axhline(1, color="k", lw=0.7)
     plot.save(directory)
     print(f"Written: {path}.md")
