@@ -41,6 +41,15 @@ def scene_text(base, settings):
     return "\n".join(lines) + "\n"
 
 
+def sawteeth(stiffnesses, thresholds):
+    """Contact law/Curve of springs that break in steps."""
+    points = ["0:0"]
+    for k, (a, M) in enumerate(zip(stiffnesses, thresholds)):
+        softer = stiffnesses[k + 1] if k + 1 < len(stiffnesses) else 0.
+        points += [f"{M!r}:{a * M!r}", f"{M!r}:{softer * M!r}"]
+    return ", ".join(points)
+
+
 class Strand(threading.Thread):
     """Goes through a check, and waits wherever the check needs a scene solved."""
 

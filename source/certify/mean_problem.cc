@@ -78,7 +78,7 @@ namespace Debond
         return {Quadratic{factor * nearest.curvature,
                           factor * nearest.slope,
                           factor * static_cast<double>(nearest.constant)},
-                BranchMinimum({{0., 0., 0.L, ""}}),
+                BranchMinimum::zero(),
                 0.};
       if (first == 0 && last + 1 == whole.size())
         return in_whole();
@@ -238,7 +238,7 @@ namespace Debond
     result.shifts   = D;
     result.constant = condensed->energy_at_zero();
     std::vector<BranchMinimum> kept_laws;
-    const BranchMinimum        zero({{0., 0., 0.L, ""}});
+    const BranchMinimum        zero = BranchMinimum::zero();
     for (unsigned int i = 0; i < n; ++i)
       {
         const double             length = sides[i].measure;

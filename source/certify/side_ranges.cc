@@ -108,18 +108,15 @@ namespace Debond
 
 
 
-    /// The two parts of a node on both sides of a kink.
+    /// The two parts of a node.
     std::array<ProofNode, 2>
-    halves(const ProofNode         &node,
-           const NodeResult        &result,
-           const SeparableBranches &phi)
+    halves(const ProofNode &node, const NodeResult &result)
     {
       const unsigned int       i     = *result.unknown;
-      const double             kink  = phi.f[i][result.piece].upper;
       std::array<ProofNode, 2> parts = {{node, node}};
-      parts[0].lower(i)              = kink;
+      parts[0].lower(i)              = result.split;
       parts[0].number                = 2 * node.number + 1;
-      parts[1].upper(i)              = kink;
+      parts[1].upper(i)              = result.split;
       parts[1].number                = 2 * node.number + 2;
       return parts;
     }
@@ -181,7 +178,7 @@ namespace Debond
                 }
             continue;
           }
-        for (ProofNode &half : halves(node, result, *problem.phi))
+        for (ProofNode &half : halves(node, result))
           open.push_back(std::move(half));
       }
     for (unsigned int i = 0; i < ranges.size(); ++i)

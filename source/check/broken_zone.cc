@@ -112,7 +112,7 @@ namespace Debond
   {
     const unsigned int last = law.branches().size() - 1;
     // Bonds that hold at any distance are never broken.
-    if (last == 0 && !law.is_loose(0))
+    if (!law.is_loose(last))
       return 0.;
 
     if (adhesion.has_broken_points())
@@ -168,7 +168,7 @@ namespace Debond
   {
     std::vector<dealii::Point<dim>> result;
     const unsigned int              last = law.branches().size() - 1;
-    if (dim != 2 || last == 0)
+    if (dim != 2 || last == 0 || !law.is_loose(last))
       return result;
     // Bonds next to a vertex: 0 if there are none, 2 if they hold.
     std::map<double, std::map<double, unsigned int>> grips;

@@ -469,9 +469,13 @@ namespace Debond
         node.normal_force     = -normal_residual(i);
         node.allowed_force    = unbounded_above_if(s(i) >= 0., forces[i]);
         const BondScale bonds = adhesion.bonds_at(i);
-        node.bond_stiffness =
-          law.curvature(0.) * bonds.energy / (bonds.stretch * bonds.stretch);
-        node.bond_threshold    = law.bond_threshold() * bonds.stretch;
+        node.bond_stiffness   = std::max(0., law.second_derivative(0.)) *
+                              bonds.energy / (bonds.stretch * bonds.stretch);
+        node.bond_threshold = law.bond_threshold() * bonds.stretch;
+        node.damage =
+          bonds.energy == 0. ?
+            0. :
+            law.damage(std::min(adhesion.reached(i), s(i) / bonds.stretch));
         result.largest_opening = std::max(result.largest_opening, -s(i));
         result.nodes.push_back(node);
         result.penetration = std::max(result.penetration, s(i));

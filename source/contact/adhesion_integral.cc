@@ -113,28 +113,27 @@ namespace Debond
   {
     if (!quadrature.is_nodal())
       {
-        broken.points.resize(point_list.size(), 0);
-        broken.nodes.assign(boundary.nodes.size(), law.branches().size() - 1);
+        broken.points.resize(point_list.size(), 0.);
+        broken.nodes.assign(boundary.nodes.size(),
+                            -std::numeric_limits<double>::max());
         for (unsigned int q = 0; q < point_list.size(); ++q)
           {
-            const Point  &point = point_list[q];
-            unsigned int &least = broken.points[q];
-            least               = std::max(least,
-                             law.branches().index(point.trace(s) /
-                                                  point.bonds.stretch));
+            const Point &point   = point_list[q];
+            double      &reached = broken.points[q];
+            reached = std::min(reached, point.trace(s) / point.bonds.stretch);
             for (unsigned int k = 0; k < point.n_nodes; ++k)
               broken.nodes[point.nodes[k]] =
-                std::min(broken.nodes[point.nodes[k]], least);
+                std::max(broken.nodes[point.nodes[k]], reached);
           }
         update_points();
         return;
       }
 
-    broken.nodes.resize(boundary.nodes.size(), 0);
-    broken.held.resize(boundary.held_vertices.size(), 0);
+    broken.nodes.resize(boundary.nodes.size(), 0.);
+    broken.held.resize(boundary.held_vertices.size(), 0.);
     const auto raise =
-      [this](const double trace, const BondScale &bonds, unsigned int &piece) {
-        piece = std::max(piece, law.branches().index(trace / bonds.stretch));
+      [](const double trace, const BondScale &bonds, double &reached) {
+        reached = std::min(reached, trace / bonds.stretch);
       };
     for (unsigned int i = 0; i < s.size(); ++i)
       raise(s(i), bonds_at(i), broken.nodes[i]);
@@ -160,32 +159,32 @@ namespace Debond
 
 
   template <int dim>
-  unsigned int
-  AdhesionIntegral<dim>::least_piece_at(
+  double
+  AdhesionIntegral<dim>::reached_at(
     const typename ContactBoundary<dim>::Face &face,
     const unsigned int                         vertex) const
   {
     if (!face.is_held(vertex))
-      return least_piece(face.nodes[vertex]);
-    return broken.held.empty() ? 0 : broken.held[face.held[vertex]];
+      return reached(face.nodes[vertex]);
+    return broken.held.empty() ? 0. : broken.held[face.held[vertex]];
   }
 
 
 
   template <int dim>
-  unsigned int
-  AdhesionIntegral<dim>::least_piece_at(
+  double
+  AdhesionIntegral<dim>::reached_at(
     const typename ContactBoundary<dim>::Face &face,
     const std::array<double, dim>             &barycentric) const
   {
     if (broken.nodes.empty())
-      return 0;
+      return 0.;
     if (quadrature.is_nodal())
-      return least_piece_at(face,
-                            static_cast<unsigned int>(
-                              std::max_element(barycentric.begin(),
-                                               barycentric.end()) -
-                              barycentric.begin()));
+      return reached_at(face,
+                        static_cast<unsigned int>(
+                          std::max_element(barycentric.begin(),
+                                           barycentric.end()) -
+                          barycentric.begin()));
     const auto  &points  = quadrature.points();
     unsigned int nearest = 0;
     double       least   = std::numeric_limits<double>::infinity();
@@ -216,10 +215,9 @@ namespace Debond
     for (const Point &point : point_list)
       {
         const double trace = point.trace(s) / point.bonds.stretch;
-        if (trace < 0. &&
-            (point.bonds.energy == 0. ||
-             std::max(point.least_piece, branches.index(trace)) + 1 ==
-               branches.size()))
+        if (trace < 0. && (point.bonds.energy == 0. ||
+                           branches.index(std::min(point.reached, trace)) + 1 ==
+                             branches.size()))
           sum += point.weight;
       }
     return sum;
@@ -241,17 +239,13 @@ namespace Debond
           const double trace = point.trace(s) / point.bonds.stretch;
           const double speed =
             (point.trace(ds) - point.offset) / point.bonds.stretch;
-          const unsigned int k =
-            std::max(point.least_piece, branches.index(trace));
-          const bool changes = speed < 0. ? k + 1 < branches.size() :
-                                            speed > 0. && k > point.least_piece;
+          const BranchMinimum::Piece piece =
+            branches.piece_at(trace, point.reached);
+          const double end = speed < 0. ? piece.lower : piece.upper;
+          const bool   changes =
+            speed < 0. ? std::isfinite(end) : speed > 0. && end < 0.;
           if (changes)
-            first = std::min(first,
-                             std::max(0.,
-                                      ((speed < 0. ? branches[k].lower :
-                                                     branches[k].upper) -
-                                       trace) /
-                                        speed));
+            first = std::min(first, std::max(0., (end - trace) / speed));
         }
     return first;
   }
@@ -265,8 +259,7 @@ namespace Debond
     double sum = 0.;
     if (!broken.nodes.empty())
       for (const Point &point : point_list)
-        sum +=
-          point.weight * point.bonds.energy * law.value(0., point.least_piece);
+        sum += point.weight * point.bonds.energy * law.value(0., point.reached);
     return sum;
   }
 
@@ -313,7 +306,7 @@ namespace Debond
     double sum = 0.;
     for (const Point &point : point_list)
       sum += point.weight * point.bonds.energy *
-             law.value(point.trace(s) / point.bonds.stretch, point.least_piece);
+             law.value(point.trace(s) / point.bonds.stretch, point.reached);
     return sum;
   }
 
@@ -328,8 +321,7 @@ namespace Debond
       {
         const double force =
           point.weight * point.bonds.energy / point.bonds.stretch *
-          law.derivative(point.trace(s) / point.bonds.stretch,
-                         point.least_piece);
+          law.derivative(point.trace(s) / point.bonds.stretch, point.reached);
         for (unsigned int k = 0; k < point.n_nodes; ++k)
           xi(point.nodes[k]) += point.shape[k] * force;
       }
@@ -342,13 +334,70 @@ namespace Debond
   Eigen::SparseMatrix<double>
   AdhesionIntegral<dim>::curvature(const VectorView &s) const
   {
+    return matrix(s, [this](const double trace, const Point &point) {
+      return law.curvature(trace, point.reached);
+    });
+  }
+
+
+
+  template <int dim>
+  Eigen::SparseMatrix<double>
+  AdhesionIntegral<dim>::second_derivative(const VectorView &s) const
+  {
+    return matrix(s, [this](const double trace, const Point &point) {
+      return law.second_derivative(trace, point.reached);
+    });
+  }
+
+
+
+  template <int dim>
+  Eigen::SparseMatrix<double>
+  AdhesionIntegral<dim>::least_second_derivative(const VectorView &s,
+                                                 const double      part) const
+  {
+    return matrix(s, [this, part](const double trace, const Point &point) {
+      return std::min(law.second_derivative((1. + part) * trace, point.reached),
+                      law.second_derivative((1. - part) * trace,
+                                            point.reached));
+    });
+  }
+
+
+
+  template <int dim>
+  bool
+  AdhesionIntegral<dim>::is_at_drop(const VectorView &s,
+                                    const double      part) const
+  {
+    const std::vector<double> drops = law.branches().drops();
+    return std::any_of(
+      point_list.begin(), point_list.end(), [&](const Point &point) {
+        const double trace = point.trace(s) / point.bonds.stretch;
+        return point.bonds.energy > 0. &&
+               std::any_of(drops.begin(), drops.end(), [&](const double drop) {
+                 return drop <= point.reached &&
+                        std::abs(trace - drop) <= part * std::abs(trace);
+               });
+      });
+  }
+
+
+
+  template <int dim>
+  template <typename Curvature>
+  Eigen::SparseMatrix<double>
+  AdhesionIntegral<dim>::matrix(const VectorView &s,
+                                const Curvature  &of_law) const
+  {
     std::vector<Eigen::Triplet<double>> entries;
     for (const Point &point : point_list)
       {
-        const double stretch = point.bonds.stretch;
-        const double curvature =
-          point.weight * point.bonds.energy / (stretch * stretch) *
-          law.curvature(point.trace(s) / stretch, point.least_piece);
+        const double stretch   = point.bonds.stretch;
+        const double curvature = point.weight * point.bonds.energy /
+                                 (stretch * stretch) *
+                                 of_law(point.trace(s) / stretch, point);
         if (curvature != 0.)
           for (unsigned int k = 0; k < point.n_nodes; ++k)
             for (unsigned int l = 0; l < point.n_nodes; ++l)
@@ -381,7 +430,7 @@ namespace Debond
             const Interval     traction =
               law.goldstein_interval(trace,
                                      delta[node] / stretch,
-                                     point.least_piece);
+                                     point.reached);
             const double measure =
               point.weight * point.shape[k] * point.bonds.energy / stretch;
             forces[node].lower += measure * traction.lower;
@@ -424,11 +473,11 @@ namespace Debond
             for (unsigned int k = 0; k < dim; ++k)
               if (quadrature_point.barycentric[k] == 1.)
                 {
-                  point.bonds       = bonds_at(face, k);
-                  point.least_piece = least_piece_at(face, k);
+                  point.bonds   = bonds_at(face, k);
+                  point.reached = reached_at(face, k);
                 }
             if (!broken.points.empty())
-              point.least_piece = broken.points[point_list.size()];
+              point.reached = broken.points[point_list.size()];
             for (unsigned int k = 0; k < n_face_nodes; ++k)
               if (face.is_held(k))
                 point.offset += shape[k] * held_trace(face, k);
@@ -489,13 +538,13 @@ namespace Debond
     for (unsigned int node = 0; node < weights.size(); ++node)
       if (weights[node] > 0.)
         {
-          Point point       = {};
-          point.n_nodes     = 1;
-          point.nodes[0]    = node;
-          point.shape[0]    = 1.;
-          point.weight      = weights[node];
-          point.bonds       = bonds[node];
-          point.least_piece = least_piece(node);
+          Point point    = {};
+          point.n_nodes  = 1;
+          point.nodes[0] = node;
+          point.shape[0] = 1.;
+          point.weight   = weights[node];
+          point.bonds    = bonds[node];
+          point.reached  = reached(node);
           point_list.push_back(point);
         }
   }
@@ -572,7 +621,7 @@ namespace Debond
     const BondScale bonds = bonds_of(face, barycentric);
     return bonds.energy / bonds.stretch *
            law.derivative(trace(face, barycentric, s) / bonds.stretch,
-                          least_piece_at(face, barycentric));
+                          reached_at(face, barycentric));
   }
 
 
@@ -603,18 +652,18 @@ namespace Debond
             double      at_point = 0.;
             for (unsigned int k = 0; k < n_face_nodes; ++k)
               at_point += shape[k] * trace[k];
-            unsigned int least = 0;
+            double reached = 0.;
             for (unsigned int k = 0; k < dim; ++k)
               if (point.barycentric[k] == 1.)
                 {
-                  bonds = bonds_at(face, k);
-                  least = least_piece_at(face, k);
+                  bonds   = bonds_at(face, k);
+                  reached = reached_at(face, k);
                 }
             if (!broken.points.empty())
-              least = broken.points[index++];
+              reached = broken.points[index++];
             const double force =
               point.weight * face.measure * bonds.energy / bonds.stretch *
-              law.derivative(at_point / bonds.stretch, least);
+              law.derivative(at_point / bonds.stretch, reached);
             for (unsigned int k = 0; k < n_face_nodes; ++k)
               if (face.is_held(k))
                 forces[face.held_at(k)] += shape[k] * force;

@@ -1,151 +1,122 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
 #include <debond/base/parameter_table.h>
 #include <debond/base/text.h>
 #include <debond/contact/law.h>
+#include <debond/contact/laws/curve.h>
 #include <debond/contact/laws/none.h>
-#include <debond/contact/laws/stepped.h>
+#include <debond/contact/laws/softening.h>
 #include <debond/contact/laws/winkler.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace Debond
 {
-  AdhesiveLaw::AdhesiveLaw(const std::vector<ConvexBranch> &branches)
-    : minimum(branches)
+  AdhesiveLaw::AdhesiveLaw(const std::vector<EnergyPiece> &pieces)
+    : minimum(pieces)
   {
-    for (unsigned int k = 0; k < minimum.size(); ++k)
-      names.push_back(branches[minimum[k].branch].name);
+    for (const EnergyPiece &piece : pieces)
+      names.push_back(piece.name);
   }
 
 
 
   double
-  AdhesiveLaw::value(const double s) const
+  AdhesiveLaw::value(const double s, const double reached) const
   {
-    if (s > 0.)
-      return 0.;
-    // A bond that does not pull keeps the energy that the branch before it has
-    // at the kink, to the last digit: the constant is rounded otherwise, which
-    // the bundle method amplifies.
-    const unsigned int k = minimum.index(s);
-    return k > 0 && is_loose(k) ? minimum[k - 1].value(minimum[k].upper) :
-                                  minimum[k].value(s);
-  }
-
-
-
-  bool
-  AdhesiveLaw::is_before(const double s, const unsigned int least) const
-  {
-    return least > 0 && minimum.index(s) < least;
+    return s > 0. && reached == 0. ? 0. : minimum.piece_at(s, reached).value(s);
   }
 
 
 
   double
-  AdhesiveLaw::value(const double s, const unsigned int least) const
+  AdhesiveLaw::derivative(const double s, const double reached) const
   {
-    if (!is_before(s, least))
-      return value(s);
-    // As value() has it at the kink.
-    const double kink = minimum[least].upper;
-    return minimum[least - 1].value(kink) + minimum[least].value(s) -
-           minimum[least].value(kink);
+    return s > 0. && reached == 0. ? 0. :
+                                     minimum.piece_at(s, reached).derivative(s);
   }
 
 
 
   double
-  AdhesiveLaw::derivative(const double s, const unsigned int least) const
+  AdhesiveLaw::curvature(const double s, const double reached) const
   {
-    return is_before(s, least) ? minimum[least].derivative(s) : derivative(s);
+    return s > 0. && reached == 0. ? 0. :
+                                     minimum.majorant_curvature(s, reached);
   }
 
 
 
   double
-  AdhesiveLaw::curvature(const double s, const unsigned int least) const
+  AdhesiveLaw::second_derivative(const double s, const double reached) const
   {
-    return is_before(s, least) ? minimum[least].curvature : curvature(s);
+    return s > 0. && reached == 0. ?
+             0. :
+             minimum.piece_at(s, reached).second_derivative(s);
   }
 
 
 
   Interval
-  AdhesiveLaw::clarke_interval(const double s, const unsigned int least) const
+  AdhesiveLaw::clarke_interval(const double s, const double reached) const
   {
-    if (!is_before(s, least))
-      return clarke_interval(s);
-    const double force = minimum[least].derivative(s);
-    return {force, force};
-  }
-
-
-
-  Interval
-  AdhesiveLaw::clarke_interval(const double s) const
-  {
-    if (s > 0.)
+    if (s > 0. && reached == 0.)
       return {0., 0.};
-    const unsigned int k     = minimum.index(s);
-    const double       force = minimum[k].derivative(s);
+    const BranchMinimum::Piece piece = minimum.piece_at(s, reached);
+    const double               force = piece.derivative(s);
     // The other side, if s is a kink.
     const double other =
-      s == 0. ? 0. :
-                (s == minimum[k].lower ? minimum[k + 1].derivative(s) : force);
+      s == 0. && reached == 0. ? 0. :
+      s == piece.lower         ? minimum[piece.branch + 1].derivative(s) :
+                                 force;
     return {std::min(force, other), std::max(force, other)};
   }
 
 
 
-  double
-  AdhesiveLaw::derivative(const double s) const
-  {
-    return s > 0. ? 0. : minimum[minimum.index(s)].derivative(s);
-  }
-
-
-
-  double
-  AdhesiveLaw::curvature(const double s) const
-  {
-    return s > 0. ? 0. : minimum[minimum.index(s)].curvature;
-  }
-
-
-
   Interval
-  AdhesiveLaw::goldstein_interval(const double s, const double delta) const
+  AdhesiveLaw::goldstein_interval(const double s,
+                                  const double delta,
+                                  const double reached) const
   {
-    return goldstein_interval(s, delta, 0);
-  }
-
-
-
-  Interval
-  AdhesiveLaw::goldstein_interval(const double       s,
-                                  const double       delta,
-                                  const unsigned int least) const
-  {
-    Interval hull = clarke_interval(s, least);
+    Interval hull = clarke_interval(s, reached);
     if (!(delta > 0.))
       return hull;
 
     const auto extend = [&](const double t) {
-      const Interval interval = clarke_interval(t, least);
+      const Interval interval = clarke_interval(t, reached);
       hull.lower              = std::min(hull.lower, interval.lower);
       hull.upper              = std::max(hull.upper, interval.upper);
     };
 
-    // The derivative is linear between the kinks, so its extremes are at the
+    // The derivative is monotone between the kinks, so its extremes are at the
     // ends and at the kinks, whose intervals hold both one-sided values.
     extend(s - delta);
     extend(s + delta);
     for (const double kink : kinks())
       if (std::abs(kink - s) <= delta)
         extend(kink);
+    if (reached < 0. && std::abs(reached - s) <= delta)
+      extend(reached);
     return hull;
+  }
+
+
+
+  double
+  AdhesiveLaw::damage(const double reached) const
+  {
+    const BranchMinimum::Piece first = minimum[0];
+    const double pull = minimum.piece_at(reached, 0.).derivative(reached);
+    if (!(reached < 0.) || first.is_flat())
+      return 0.;
+    const double lost = first.slope == 0. ?
+                          1. - pull / (first.curvature * reached) :
+                          1. - pull / first.slope;
+    return std::min(1., std::max(0., lost));
   }
 
 
@@ -182,7 +153,7 @@ namespace Debond
   bool
   AdhesiveLaw::is_loose(const unsigned int piece) const
   {
-    return minimum[piece].curvature == 0. && minimum[piece].slope == 0.;
+    return minimum[piece].is_flat();
   }
 
 
@@ -208,11 +179,26 @@ namespace Debond
 
   namespace
   {
+    /// Of a list with commas.
+    std::set<std::string>
+    names_in(const std::string &list)
+    {
+      std::set<std::string> names;
+      for (const std::string &name :
+           dealii::Utilities::split_string_list(list, ','))
+        names.insert(name);
+      return names;
+    }
+
+
+
     const std::vector<LawKind> &
     kinds()
     {
       static const std::vector<LawKind> all = {winkler_kind(),
-                                               stepped_kind(),
+                                               bilinear_kind(),
+                                               exponential_kind(),
+                                               curve_kind(),
                                                no_adhesion_kind()};
       return all;
     }
@@ -257,16 +243,22 @@ namespace Debond
   ContactLawParameters
   LawSection::make_law(ParameterTable &table) const
   {
-    // Without adhesion on purpose.
+    // What the law has in common with others is its own. Without adhesion on
+    // purpose.
+    std::set<std::string> own;
     for (const LawKind &kind : kinds())
-      if (kind.name != name)
-        table.without_effect(kind.entries,
-                             "it belongs to Contact law/Law = " + kind.name +
-                               ", the law is " + name +
-                               (name == "stepped" ?
-                                  "; bonds by place: Stepped/Factor" :
-                                  ""),
-                             name == "none" ? "" : "Contact law/Law");
+      if (kind.name == name)
+        own = names_in(kind.entries);
+    std::map<std::string, std::vector<std::string>> laws_of;
+    for (const LawKind &kind : kinds())
+      for (const std::string &entry : names_in(kind.entries))
+        if (own.count(entry) == 0)
+          laws_of[entry].push_back(kind.name);
+    for (const auto &[entry, laws] : laws_of)
+      table.without_effect(entry,
+                           "it belongs to Contact law/Law = " +
+                             join(laws, " or ") + ", the law is " + name,
+                           name == "none" ? "" : "Contact law/Law");
     return makers.at(name)(table);
   }
 } // namespace Debond

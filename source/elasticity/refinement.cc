@@ -98,9 +98,11 @@ namespace Debond
         const Eigen::VectorXd s = to_foundation().template cast<double>();
         const Eigen::SparseMatrix<double> previous_E   = E;
         const Eigen::VectorXd             previous_b_c = b_c;
-        E                                              = phi.curvature(s);
-        const Eigen::VectorXd E_s                      = E * s;
-        b_c = E_s - phi.subgradient(s);
+        // What is next to a minimum comes to it by Newton steps where Phi
+        // softens, and majorants do not.
+        E                         = phi.second_derivative(s);
+        const Eigen::VectorXd E_s = E * s;
+        b_c                       = E_s - phi.subgradient(s);
         // Without contact nodes the first one looks like none.
         if (!has_majorant)
           return has_majorant = true;

@@ -132,7 +132,7 @@ namespace Debond
     table.bind(
       "Load path/Bonds heal",
       load_path.bonds_heal,
-      "Whether bonds hold again when they come back: false leaves each bond (with a stepped law each of its steps) broken for the rest of the path. Needs nodal, midpoint or gauss N quadrature, whose bonds stay where they are, and leaves out the global branch");
+      "Whether bonds hold again when they come back: false leaves each bond with what it has lost at its largest opening for the rest of the path: one that broke never holds again. Needs nodal, midpoint or gauss N quadrature, whose bonds stay where they are, and leaves out the global branch");
     table.bind_choice(
       "Load path/Global branch",
       load_path.global_branch,

@@ -309,6 +309,32 @@ namespace Debond
 
 
 
+    /// What is for bonds that break at once.
+    void
+    check_softening(const Parameters &p, ParameterTable &table)
+    {
+      if (p.law.pieces.empty() || !AdhesiveLaw(p.law.pieces).softens())
+        return;
+      const std::string breaks =
+        "needs bonds whose traction does not fall but at once, these soften";
+      const std::string quadratic =
+        "needs a law of straight lines, not Law = exponential";
+      const bool decays =
+        !AdhesiveLaw(p.law.pieces).branches().is_piecewise_quadratic();
+      refuse({{p.solver.prove && decays, "Solver/Prove", quadratic},
+              {p.load_path.global_branch == GlobalBranch::prove && decays,
+               "Load path/Global branch",
+               quadratic},
+              {p.load_path.arc, "Load path/Arc", breaks},
+              {p.certificate.kind != CertificateKind::none,
+               "Certificate/Kind",
+               breaks}},
+             {"Contact law/Law"},
+             table);
+    }
+
+
+
     void
     check_exact_displacement(const Parameters &p, ParameterTable &table)
     {
@@ -380,6 +406,7 @@ namespace Debond
     check_bonds(p, *this);
     check_certificate(p, *this);
     check_degree(p, *this);
+    check_softening(p, *this);
     check_exact_displacement(p, *this);
     check_accuracy(p, *this);
     note_entries_without_effect(p, body, *this);

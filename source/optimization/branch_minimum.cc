@@ -107,6 +107,97 @@ namespace Debond
 
 
 
+  namespace
+  {
+    using Piece = BranchMinimum::Piece;
+
+    /// The curvatures of quadratics that touch @p own at @p s and meet @p other
+    /// where it holds: with more than the largest they are nowhere below.
+    Interval
+    curvatures_that_meet(const Piece &own, const double s, const Piece &other)
+    {
+      // It is below its tangent, which what comes before it has taken care of.
+      if (other.decay > 0.)
+        return {0., 0.};
+      // Of other less the tangent of own at s, h + b x + c/2 x^2: about 0, as
+      // brittle bonds are next to 0, seen from far.
+      const long double force =
+        own.decay > 0. ?
+          static_cast<long double>(own.derivative(s)) :
+          own.slope + own.curvature * static_cast<long double>(s);
+      const long double at_zero = own.decay > 0. ?
+                                    own.value(s) - force * s :
+                                    own.constant - 0.5L * own.curvature * s * s;
+      const long double h = other.constant - at_zero, b = other.slope - force,
+                        c   = other.curvature;
+      const auto difference = [&](const long double x) {
+        return h + x * (b + 0.5L * c * x);
+      };
+      Interval   result = {infinity, -infinity};
+      const auto meet   = [&](const long double curvature) {
+        result = hull(result,
+                      {static_cast<double>(curvature),
+                       static_cast<double>(curvature)});
+      };
+      // At an end that both have it is that of own.
+      for (const double end : {other.lower, other.upper})
+        if (std::isinf(end))
+          meet(c);
+        else if (end != own.lower && end != own.upper)
+          {
+            const long double distance = static_cast<long double>(end) - s;
+            meet(2.L * difference(end) / (distance * distance));
+          }
+      const long double at_s = difference(s), slope = b + c * s;
+      const long double extreme  = s - 2.L * at_s / slope;
+      const long double rounding = 4.L * Tolerance::epsilon * std::abs(s);
+      if (slope != 0.L && at_s != 0.L && extreme >= other.lower - rounding &&
+          extreme <= other.upper + rounding)
+        meet((2.L * c * h - b * b) / (2.L * at_s));
+      return result;
+    }
+
+
+
+    /// Whether the parabola of @p own is nowhere below @p other, where that
+    /// holds, but for rounding.
+    bool
+    is_nowhere_below(const Piece &own, const Piece &other)
+    {
+      if (other.decay > 0.)
+        return own.curvature > 0. || own.is_flat();
+      // Of own less other, from the upper end of other.
+      const long double s = other.upper,
+                        A = static_cast<long double>(own.curvature) -
+                            other.curvature,
+                        B = static_cast<long double>(own.slope) - other.slope +
+                            A * s,
+                        C = own.constant - other.constant +
+                            s * (static_cast<long double>(own.slope) -
+                                 other.slope + 0.5L * A * s);
+      const long double rounding =
+        Tolerance::rounding_of_data *
+        (std::abs(own.value(other.upper)) + std::abs(other.value(other.upper)));
+      const auto is_above = [&](const long double distance) {
+        return C + distance * (B + 0.5L * A * distance) >= -rounding;
+      };
+      if (std::isinf(other.lower))
+        {
+          if (A < 0.L || (A == 0.L && B > 0.L))
+            return false;
+        }
+      else if (!is_above(static_cast<long double>(other.lower) - s))
+        return false;
+      // The least value between the ends.
+      const long double stationary = A > 0.L ? -B / A : 0.L;
+      return is_above(0.L) &&
+             (!(stationary < 0.L && s + stationary > other.lower) ||
+              is_above(stationary));
+    }
+  } // namespace
+
+
+
   BranchMinimum::BranchMinimum(const std::vector<ConvexBranch> &branches)
   {
     if (branches.empty())
@@ -168,12 +259,181 @@ namespace Debond
 
 
 
+  BranchMinimum::BranchMinimum(const std::vector<EnergyPiece> &given)
+  {
+    double upper = 0., largest = 0.;
+    for (const EnergyPiece &piece : given)
+      {
+        if (std::isfinite(piece.end))
+          largest =
+            std::max({largest,
+                      std::abs(piece.curvature * upper + piece.slope),
+                      std::abs(piece.curvature * piece.end + piece.slope)});
+        upper = piece.end;
+      }
+    const double rounding   = Tolerance::rounding_of_data * largest;
+    const auto   require_of = [](const bool         holds,
+                               const EnergyPiece &piece,
+                               const std::string &reason) {
+      if (!holds)
+        throw std::invalid_argument("The piece \"" + piece.name + "\" " +
+                                    reason);
+    };
+    if (given.empty())
+      throw std::invalid_argument("A law needs a piece");
+    upper = 0.;
+    for (const EnergyPiece &piece : given)
+      {
+        const bool is_last = &piece == &given.back();
+        require_of(std::isfinite(piece.curvature) &&
+                     std::isfinite(piece.slope) && piece.decay >= 0. &&
+                     std::isfinite(piece.decay),
+                   piece,
+                   "is not finite");
+        require_of(piece.end < upper && (is_last ? piece.end == -infinity :
+                                                   std::isfinite(piece.end)),
+                   piece,
+                   "does not end below its beginning, the last one at minus "
+                   "infinity");
+        pieces.push_back({piece.curvature,
+                          piece.slope,
+                          0.L,
+                          piece.end,
+                          upper,
+                          static_cast<unsigned int>(pieces.size()),
+                          piece.decay,
+                          upper});
+        const Piece &here = pieces.back();
+        require_of(here.derivative(upper) <= rounding &&
+                     (is_last ? here.curvature >= 0. || here.decay > 0. :
+                                here.derivative(piece.end) <= rounding),
+                   piece,
+                   "pushes");
+        require_of(pieces.size() == 1 ||
+                     here.derivative(upper) >=
+                       pieces[pieces.size() - 2].derivative(upper) - rounding,
+                   piece,
+                   "pulls more where it begins than the one before");
+        upper = piece.end;
+      }
+    connect();
+    for (Piece &own : pieces)
+      for (const Piece &other : pieces)
+        own.is_above = own.is_above && own.curvature >= 0. && own.decay == 0. &&
+                       is_nowhere_below(own, other);
+  }
+
+
+
+  bool
+  BranchMinimum::softens() const
+  {
+    return !std::all_of(pieces.begin(), pieces.end(), [](const Piece &piece) {
+      return piece.is_above;
+    });
+  }
+
+
+
+  bool
+  BranchMinimum::is_piecewise_quadratic() const
+  {
+    return std::all_of(pieces.begin(), pieces.end(), [](const Piece &piece) {
+      return piece.decay == 0.;
+    });
+  }
+
+
+
+  BranchMinimum::Piece
+  BranchMinimum::piece_at(const double s, const double reached) const
+  {
+    const unsigned int m     = index(reached);
+    const unsigned int k     = index(s);
+    Piece              piece = pieces[std::max(k, m)];
+    if (returns_on_a_piece(reached))
+      {
+        if (k <= m)
+          piece.upper = 0.;
+        return piece;
+      }
+    if (s <= reached)
+      {
+        piece.upper = std::min(piece.upper, reached);
+        return piece;
+      }
+    const double force = pieces[m].derivative(reached);
+    const auto   taken = static_cast<long double>(pieces[m].value(reached)) -
+                       0.5L * force * reached;
+    return {force / reached, 0., taken, reached, 0., pieces[m].branch};
+  }
+
+
+
+  double
+  BranchMinimum::majorant_curvature(const double s, const double reached) const
+  {
+    const Piece own        = piece_at(s, reached);
+    const bool  has_secant = !returns_on_a_piece(reached);
+    if (own.is_above && (own.is_flat() || !has_secant))
+      return own.curvature;
+    const bool is_on_secant = has_secant && s > reached;
+    double     curvature    = std::max(0., own.second_derivative(s));
+    const auto stay_above   = [&](const Piece &other) {
+      curvature =
+        std::max(curvature, curvatures_that_meet(own, s, other).upper);
+    };
+    if (has_secant && !is_on_secant)
+      stay_above(piece_at(0., reached));
+    for (Piece other : pieces)
+      if (other.lower < reached && (is_on_secant || other.branch != own.branch))
+        {
+          if (has_secant)
+            other.upper = std::min(other.upper, reached);
+          stay_above(other);
+        }
+    return curvature;
+  }
+
+
+
+  double
+  BranchMinimum::needed_convexity(const double s) const
+  {
+    const Piece own       = piece_at(s, 0.);
+    double      convexity = std::max(0., -own.curvature);
+    for (const Piece &other : pieces)
+      if (other.branch != own.branch)
+        convexity =
+          std::max(convexity, -curvatures_that_meet(own, s, other).lower);
+    return convexity;
+  }
+
+
+
+  std::vector<double>
+  BranchMinimum::drops() const
+  {
+    std::vector<double> result;
+    for (unsigned int k = 1; k < pieces.size(); ++k)
+      {
+        const double s    = pieces[k].upper;
+        const double pull = pieces[k - 1].derivative(s);
+        if (pieces[k].derivative(s) - pull >
+            Tolerance::rounding_of_data * -pull)
+          result.push_back(s);
+      }
+    return result;
+  }
+
+
+
   BranchMinimum
   BranchMinimum::with_first_curvature(const double curvature,
                                       const double stretch) const
   {
     if (curvature == 0.)
-      return BranchMinimum({{0., 0., 0.L, ""}});
+      return BranchMinimum::zero();
     BranchMinimum result;
     result.pieces      = pieces;
     const double first = pieces[0].curvature;
@@ -181,6 +441,8 @@ namespace Debond
       {
         piece.curvature = piece.curvature / first * curvature;
         piece.slope     = piece.slope / first * curvature * stretch;
+        piece.decay /= stretch;
+        piece.begin *= stretch;
         piece.lower *= stretch;
         piece.upper *= stretch;
       }
@@ -204,9 +466,11 @@ namespace Debond
   double
   BranchMinimum::largest_value() const
   {
-    // The last piece rises as s falls, or it is flat.
+    // The last piece rises as s falls, for ever unless it decays, or is flat.
     const Piece &last = pieces.back();
-    if (last.curvature != 0. || last.slope != 0.)
+    if (last.decay > 0.)
+      return last.value(-infinity);
+    if (!last.is_flat())
       return infinity;
     double largest = 0.;
     for (const Piece &piece : pieces)
@@ -232,6 +496,12 @@ namespace Debond
       {
         const Piece      &last = pieces[k - 1];
         const long double s    = last.lower;
+        // To the last digit, which the bundle method amplifies.
+        if (pieces[k].is_flat() || pieces[k].decay > 0.)
+          {
+            pieces[k].constant = last.value(last.lower);
+            continue;
+          }
         pieces[k].constant =
           last.constant +
           (static_cast<long double>(last.slope) - pieces[k].slope) * s +

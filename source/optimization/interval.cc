@@ -42,6 +42,8 @@ namespace Debond
   {
     if (interval.is_empty())
       return std::numeric_limits<double>::infinity();
+    if (!(curvature > 0.))
+      return std::min(value(interval.lower), value(interval.upper));
     return value(std::min(std::max(x - slope / curvature, interval.lower),
                           interval.upper));
   }
@@ -53,6 +55,9 @@ namespace Debond
   {
     if (least(interval) > level)
       return {1., -1.};
+    // What is concave is low at the ends.
+    if (!(curvature > 0.))
+      return interval;
     const double centre = -slope / curvature;
     const double radius =
       std::sqrt(

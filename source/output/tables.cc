@@ -41,6 +41,7 @@ namespace Debond
                 [d](const auto &force) { return force[d]; });
     add("bond_stiffness", &ContactNodeState::bond_stiffness);
     add("bond_threshold", &ContactNodeState::bond_threshold);
+    add("damage", &ContactNodeState::damage);
     add_of_node("initial_gap", [](const auto &node) { return node.gap; });
     table.write(file_name);
   }

@@ -166,6 +166,7 @@ namespace Debond
        [](const auto &node, const double) { return node.bond_stiffness; }},
       {"bond_threshold",
        [](const auto &node, const double) { return node.bond_threshold; }},
+      {"damage", [](const auto &node, const double) { return node.damage; }},
       {"initial_gap",
        [](const auto &node, const double) { return node.u_nu - node.s; }}};
 

@@ -37,7 +37,7 @@ namespace Debond
     std::string
     title_of(const std::string &content)
     {
-      return "Debond run state 2, checksum " +
+      return "Debond run state 3, checksum " +
              std::to_string(checksum_of(content.data(), content.size()));
     }
 

@@ -103,7 +103,7 @@ namespace Debond
       const Eigen::SparseMatrix<double> springs   = bonds.curvature(last.s);
       Eigen::MatrixXd                   stiffness = problem.S;
       stiffness += springs;
-      const BranchMinimum no_law({{0., 0., 0., ""}});
+      const BranchMinimum no_law = BranchMinimum::zero();
       problem.load += springs * last.s - bonds.subgradient(last.s);
       StationaryPath path({stiffness,
                            problem.load,
@@ -146,7 +146,8 @@ namespace Debond
                     const std::function<bool()> &may_go_on)
   {
     const BranchMinimum &branches = scene.scene.law().branches();
-    if (branches.size() == 1)
+    // Bonds that soften change by and by.
+    if (branches.size() == 1 || branches.softens())
       return {};
     bool has_slope = false;
     for (unsigned int k = 0; k < branches.size(); ++k)

@@ -300,7 +300,8 @@ namespace Debond
 
     // Where nothing else holds the body J may fall without end.
     if (can_be_verified(result.status) && !is_held)
-      result.minimum.kind = kind_without_search(scene.adhesion(), s);
+      result.minimum.kind =
+        kind_without_search(scene.adhesion(), s, &condensed);
     else if (can_be_verified(result.status))
       {
         SolverParameters limited = parameters;

@@ -18,6 +18,7 @@
 #include <iomanip>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 namespace Debond
@@ -271,18 +272,23 @@ namespace Debond
                                    {steps.back().factors(), points.back()},
                                    factors,
                                    may_go_on);
-        const Eigen::VectorXd s = solver->point();
-        if (!parameters.bonds_heal)
-          bonds.break_for_good(s);
-        progress.memory = bonds.memory();
         Refined refined;
         progress.u = solver->displacement(factors, bonds, may_go_on, refined);
         note(refined);
+        const Eigen::VectorXd s = solver->point();
+        if (!parameters.bonds_heal)
+          bonds.break_for_good(scene.contact_trace(progress.u));
+        progress.memory = bonds.memory();
         const Verification<dim> verification =
           verify(factors, bonds, progress.u);
         step.state  = state_of(scene, bonds, factors, progress.u, verification);
         step.status = to_string(minimum.status);
-        kinds.push_back(kind_without_search(bonds, s));
+        // Only bonds that soften ask for S and g there.
+        std::optional<Condensation> at_step;
+        if (condensed != nullptr && bonds.softens())
+          at_step = CondensedScene<dim>{scene, *condensed}.at(factors);
+        kinds.push_back(
+          kind_without_search(bonds, s, at_step ? &*at_step : nullptr));
         if (!can_be_verified(minimum.status))
           step.message = result.message = location(step) + minimum.message;
         else if (!is_verified(verification))

@@ -108,7 +108,8 @@ namespace Debond
     {
       const LoadPathParameters &path = scene.parameters().load_path;
       return method == SolverMethod::energy_bundle || solver.prove ||
-             solver.search == BondSearchChoice::full || path.arc ||
+             scene.law().softens() || solver.search == BondSearchChoice::full ||
+             path.arc ||
              (!path.factors.empty() &&
               path.global_branch == GlobalBranch::prove) ||
              !scene.problem().unknowns().held_by_contact().motions.empty();

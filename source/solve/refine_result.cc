@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/tolerances.h>
 #include <debond/solve/refine_result.h>
 
 namespace Debond
@@ -43,9 +44,12 @@ namespace Debond
     // The search knows other bonds than the result has.
     const Eigen::VectorXd after =
       scene.problem().unknowns().contact().trace(result.u);
-    if (after.size() > 0 && (has_failed || (scene.adhesion().curvature(after) -
-                                            scene.adhesion().curvature(before))
-                                               .norm() > 0.))
+    const auto curvature = [&](const Eigen::VectorXd &s) {
+      return scene.adhesion().second_derivative(s);
+    };
+    if (after.size() > 0 &&
+        (has_failed || (curvature(after) - curvature(before)).norm() >
+                         Tolerance::same_curvature * curvature(after).norm()))
       result.minimum.kind = kind_without_search(scene.adhesion(), after);
     result.parts["refinement"] = timer.wall_time();
     return !note.empty();

@@ -229,7 +229,7 @@ namespace Debond
   void
   Scene<dim>::add_contact()
   {
-    adhesive_law = std::make_unique<AdhesiveLaw>(given.law.branches);
+    adhesive_law = std::make_unique<AdhesiveLaw>(given.law.pieces);
     quadrature =
       std::make_unique<ContactQuadrature<dim>>(given.quadrature, given.degree);
     if (given.law.has_field())

@@ -6,6 +6,7 @@
 #include <debond/contact/boundary_graph.h>
 #include <debond/input/bad_input.h>
 #include <debond/optimization/global/branch_search.h>
+#include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/global_branch.h>
@@ -118,7 +119,7 @@ namespace Debond
           !has_work_left() && result.kind != MinimumKind::global;
         if (is_cut || (result.kind != MinimumKind::best_known &&
                        result.kind != MinimumKind::global))
-          result.kind = kind_without_search(adhesion, s);
+          result.kind = kind_without_search(adhesion, s, &condensed);
         if (!is_cut || !may_go_on())
           return;
         if (result.proof_status == ProofStatus::interrupted)
@@ -272,7 +273,7 @@ namespace Debond
       bool
       is_proved_at_start()
       {
-        if (!adhesion.is_separable())
+        if (!adhesion.is_separable() || !lumped.is_piecewise_quadratic())
           return false;
         BranchAndBoundParameters no_nodes = proof_limits();
         no_nodes.maximum_nodes            = 0;
@@ -361,17 +362,32 @@ namespace Debond
   template <int dim>
   MinimumKind
   kind_without_search(const AdhesionIntegral<dim> &adhesion,
-                      const VectorView            &s)
+                      const VectorView            &s,
+                      const Condensation          *condensed)
   {
     if (adhesion.adhesive_law().branches().size() == 1 || s.size() == 0)
       return MinimumKind::global;
-
-    // No quadrature point is so close to the kink that it changes its branch.
-    const Eigen::SparseMatrix<double> difference =
-      adhesion.curvature((1. + Tolerance::at_kink) * s) -
-      adhesion.curvature((1. - Tolerance::at_kink) * s);
-    return difference.norm() == 0. ? MinimumKind::local_minimum :
-                                     MinimumKind::stationary;
+    // So close to a drop of the traction bonds may be on either side.
+    if (adhesion.is_at_drop(s, Tolerance::at_kink))
+      return MinimumKind::stationary;
+    if (!adhesion.softens())
+      return MinimumKind::local_minimum;
+    if (condensed == nullptr)
+      return MinimumKind::stationary;
+    // What touches the foundation without pressing on it is free, too.
+    const Eigen::MatrixXd S = condensed->schur_complement();
+    const Eigen::VectorXd pressure =
+      condensed->load() - S * s - adhesion.subgradient(s);
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index i = 0; i < s.size(); ++i)
+      if (s(i) < 0. || pressure(i) <= Tolerance::at_kink *
+                                        condensed->load().cwiseAbs().maxCoeff())
+        free.push_back(i);
+    Eigen::MatrixXd A = S;
+    A += adhesion.least_second_derivative(s, Tolerance::at_kink);
+    return is_safely_positive_definite(A(free, free)) ?
+             MinimumKind::local_minimum :
+             MinimumKind::stationary;
   }
 
 
@@ -385,13 +401,13 @@ namespace Debond
                       Eigen::VectorXd             &s)
   {
     WhichMinimum result;
-    result.kind         = kind_without_search(adhesion, s);
+    result.kind         = kind_without_search(adhesion, s, &condensed);
     const bool searches = wants_search(parameters);
     if (result.kind == MinimumKind::global || !(searches || parameters.prove))
       return result;
 
     // The nodes' multiples of the law are known by their curvature at 0.
-    if (adhesion.adhesive_law().curvature(0.) == 0.)
+    if (!(adhesion.adhesive_law().second_derivative(0.) > 0.))
       {
         const std::string reason = "needs a law with a curvature at 0";
         if (parameters.prove)

@@ -299,17 +299,16 @@ namespace
     const std::string law = random.choice(
       is_solid ?
         Names{"unbreakable", "unbreakable", "none", "broken", "winkler"} :
-        Names{
-          "winkler", "winkler", "winkler", "stepped", "none", "unbreakable"});
+        Names{"winkler", "winkler", "winkler", "curve", "none", "unbreakable"});
     scene.values.push_back(
       "Contact law/Law=" +
       (law == "unbreakable" || law == "broken" ? "winkler" : law));
-    if (law == "stepped")
+    if (law == "curve")
       scene.values =
-        scene.values + Values{"Contact law/Stepped/Stiffnesses=" + text(a) +
-                                ',' + text(a / 3.),
-                              "Contact law/Stepped/Thresholds=" + text(M) +
-                                ',' + text(2. * M)};
+        scene.values +
+        Values{"Contact law/Curve=0:0, " + text(M) + ':' + text(a * M) + ", " +
+               text(M) + ':' + text(a * M / 3.) + ", " + text(2. * M) + ':' +
+               text(a * M * 2. / 3.) + ", " + text(2. * M) + ":0"};
     else if (law != "none")
       scene.values =
         scene.values + Values{"Contact law/Bond stiffness=" +

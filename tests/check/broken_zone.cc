@@ -70,7 +70,7 @@ namespace
   test()
   {
     const ContactBoundary<dim>   boundary = one_face<dim>();
-    const AdhesiveLaw            law(winkler_law(5., M).branches);
+    const AdhesiveLaw            law(winkler_law(5., M).pieces);
     const ContactQuadrature<dim> nodal({});
     std::mt19937                 random(7);
     double                       error = 0., error_for_good = 0.;

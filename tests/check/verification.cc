@@ -93,7 +93,7 @@ namespace
               const std::string &rule = "nodal") const
     {
       const AdhesiveLaw law(
-        (name == "none" ? no_adhesion() : winkler_law(a, M)).branches);
+        (name == "none" ? no_adhesion() : winkler_law(a, M)).pieces);
       const ContactQuadrature<dim> quadrature(
         ContactQuadratureParameters::parse(rule));
       const AdhesionIntegral<dim> adhesion(

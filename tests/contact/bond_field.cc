@@ -73,7 +73,7 @@ main(int argc, char **)
 {
   print_figures                     = argc > 1;
   const ContactBoundary<2> boundary = two_faces();
-  const AdhesiveLaw        law(winkler_law(a_1, M_1).branches);
+  const AdhesiveLaw        law(winkler_law(a_1, M_1).pieces);
   const BondField<2>       two = field(a_2, M_2), equal = field(a_1, M_1);
   const auto               rule = [&](const std::string &name) {
     return ContactQuadrature<2>(ContactQuadratureParameters::parse(name));

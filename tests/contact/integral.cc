@@ -219,7 +219,7 @@ test_integral(const unsigned int degree,
 {
   const double                 a = 69., M = 0.002;
   const ContactBoundary<dim>   boundary = make_boundary<dim>(degree);
-  const AdhesiveLaw            law(winkler_law(a, M).branches);
+  const AdhesiveLaw            law(winkler_law(a, M).pieces);
   const ContactQuadrature<dim> quadrature(
     ContactQuadratureParameters::parse(rule), degree);
   const AdhesionIntegral<dim> integral(boundary, law, quadrature);
@@ -308,7 +308,7 @@ test_touching_kink()
 {
   const double               a = 69., M = 0.002;
   ContactBoundary<2>         boundary = make_boundary<2>();
-  const AdhesiveLaw          law(winkler_law(a, M).branches);
+  const AdhesiveLaw          law(winkler_law(a, M).pieces);
   const ContactQuadrature<2> quadrature(
     ContactQuadratureParameters::parse("gauss 8"), 2);
   const AdhesionIntegral<2> integral(boundary, law, quadrature);
@@ -337,7 +337,7 @@ test_broken_zone_of_triangle()
 {
   const double               M        = 0.002;
   ContactBoundary<3>         boundary = make_boundary<3>();
-  const AdhesiveLaw          law(winkler_law(69., M).branches);
+  const AdhesiveLaw          law(winkler_law(69., M).pieces);
   const ContactQuadrature<3> quadrature(
     ContactQuadratureParameters::parse("gauss 5"), 2);
   const AdhesionIntegral<3> integral(boundary, law, quadrature);

@@ -4,8 +4,9 @@
 // closed formulas and differences.
 
 #include <debond/base/parameter_table.h>
+#include <debond/contact/laws/curve.h>
 #include <debond/contact/laws/none.h>
-#include <debond/contact/laws/stepped.h>
+#include <debond/contact/laws/softening.h>
 #include <debond/contact/laws/winkler.h>
 #include <debond/contact/quadrature.h>
 
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <iostream>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 #include "../check.h"
@@ -35,70 +37,62 @@ namespace
 
 
 
-  /// The law of that name with the default values of its parameters, its
-  /// energies in a unit that is smaller by a factor.
+  /// Laws with numbers for the entries that they need.
+  const std::vector<std::pair<std::string, std::vector<std::string>>> scenes = {
+    {"none", {}},
+    {"winkler", {}},
+    {"bilinear",
+     {"Bond stiffness=100", "Bond strength=1", "Fracture energy=0.02"}},
+    {"exponential",
+     {"Bond stiffness=100", "Bond strength=1", "Fracture energy=0.02"}},
+    {"curve", {"Curve=0:0, 0.1:3, 0.1:2, 0.2:4, 0.2:0.8, 0.5:2, 0.5:0"}},
+    {"curve", {"Curve=0:1.1, 1.6363636363636365:0"}},
+    {"curve", {"Curve=0:0, 1:1, 2:3, 3:3, 5:2, 5:1, 6:1.5, 8:0.5"}}};
+
+  /// Such a law, its energies in a unit that is smaller by a factor.
   AdhesiveLaw
-  default_law(const std::string &name, const double factor)
+  law_of(const std::string              &name,
+         const std::vector<std::string> &entries,
+         const double                    factor)
   {
     LawSection     section;
     ParameterTable table;
     section.bind(table);
     table.assign("Contact law/Law=" + name);
-    std::vector<ConvexBranch> branches = section.make_law(table).branches;
-    for (ConvexBranch &branch : branches)
+    for (const std::string &entry : entries)
+      table.assign("Contact law/" + entry);
+    std::vector<EnergyPiece> pieces = section.make_law(table).pieces;
+    for (const std::string &line : table.errors)
+      std::cout << line << std::endl;
+    for (EnergyPiece &piece : pieces)
       {
-        branch.curvature *= factor;
-        branch.slope *= factor;
-        branch.constant *= factor;
+        piece.curvature *= factor;
+        piece.slope *= factor;
       }
-    return AdhesiveLaw(branches);
+    return AdhesiveLaw(pieces);
   }
 
 
 
   /// What every law promises, by differences on a grid that has the kinks:
-  /// value, interval, curvature and kinks fit together, and for s <= 0 the law
-  /// is the least of its convex quadratic branches.
+  /// value, interval, second derivative and kinks fit together.
   void
-  test_conformance(const std::string &name, const double factor)
+  test_conformance(const std::string &name, const AdhesiveLaw &law)
   {
-    const AdhesiveLaw law       = default_law(name, factor);
-    const bool        has_bonds = law.bond_threshold() > 0.;
-    const double      a =
-      has_bonds ? law.bond_strength() / law.bond_threshold() : factor;
+    const bool   has_bonds = law.bond_threshold() > 0.;
+    const double a =
+      has_bonds ? law.bond_strength() / law.bond_threshold() : 1.;
     const double M      = has_bonds ? law.bond_threshold() : 1.;
     const double energy = a * M * M, strength = a * M, h = 1e-4 * M;
     const auto   kinks = law.kinks();
 
-    // A quadratic by its value, slope and curvature at a point.
-    struct Branch
-    {
-      double centre, value, slope, curvature;
-
-      double
-      operator()(const double s) const
-      {
-        const double d = s - centre;
-        return value + slope * d + curvature / 2. * d * d;
-      }
-    };
-
     std::vector<double> ends = kinks;
     ends.insert(ends.begin(), -5. * M);
     ends.push_back(3. * M);
-    double slope_error = 0., curvature_error = 0., outside = 0., negative = 0.;
-    double least_curvature = 0., largest_force = 0.;
-    std::vector<Branch> branches;
+    double slope_error = 0., curvature_error = 0., negative = 0.;
+    double largest_force = 0.;
     for (unsigned int k = 0; k + 1 < ends.size(); ++k)
       {
-        const double centre = (ends[k] + ends[k + 1]) / 2.;
-        const Branch branch = {centre,
-                               law.value(centre),
-                               law.clarke_interval(centre).lower,
-                               law.curvature(centre)};
-        if (ends[k] < 0.)
-          branches.push_back(branch);
-        least_curvature = std::min(least_curvature, branch.curvature / a);
         for (unsigned int i = 1; i < 40; ++i)
           {
             const double s    = ends[k] + (ends[k + 1] - ends[k]) * i / 40.;
@@ -111,8 +105,8 @@ namespace
                         std::abs(interval.lower - slope) / strength,
                         std::abs(interval.upper - slope) / strength});
             raise(curvature_error,
-                  std::abs(law.curvature(s) - difference / (h * h)) / a);
-            raise(outside, std::abs(branch(s) - law.value(s)) / energy);
+                  std::abs(law.second_derivative(s) - difference / (h * h)) /
+                    a);
             raise(negative, -law.value(s) / energy);
             raise(largest_force, std::abs(interval.lower));
           }
@@ -161,16 +155,6 @@ namespace
                               std::abs(slopes.upper - found.upper) / strength});
       }
 
-    double above_least = 0.;
-    for (unsigned int i = 0; i <= 500; ++i)
-      {
-        const double s     = -0.01 * i * M;
-        double       least = std::numeric_limits<double>::infinity();
-        for (const Branch &branch : branches)
-          least = std::min(least, branch(s));
-        raise(above_least, std::abs(least - law.value(s)) / energy);
-      }
-
     section("Every law: ", name);
     check("kinks in ascending order, the first one at the threshold",
           std::is_sorted(kinks.begin(), kinks.end()) &&
@@ -183,23 +167,79 @@ namespace
           1e-8);
     check("Clarke interval at the kinks against differences", at_kinks, 1e-8);
     check("Goldstein interval against the differences nearby", goldstein, 5e-3);
-    check("curvature against differences", curvature_error, 1e-4);
-    check("concavity of a branch", -least_curvature, 0.);
-    check("distance to one quadratic between kinks", outside, 1e-13);
-    check("distance to the least of the branches", above_least, 1e-13);
+    check("second derivative against differences", curvature_error, 1e-4);
     check("strength and largest force differ by",
           std::abs(largest_force - law.bond_strength()) / strength,
-          1e-13);
+          1e-2);
+  }
+
+
+
+  /// The quadratic that touches at s with the slope and curvature of the law is
+  /// above it, and a flatter one is not, with and without memory; with a memory
+  /// the law is the secant up to it, and what it was beyond.
+  void
+  test_majorants(const std::string &name, const AdhesiveLaw &law)
+  {
+    const double M      = law.bond_threshold() > 0. ? law.bond_threshold() : 1.;
+    const double energy = std::max(law.value(-4. * M), 1e-300);
+    double       below = 0., too_steep = 0., off_secant = 0., off_law = 0.;
+    bool         is_convex = true;
+    for (const double reached : {0., -0.1 * M, -0.45 * M, -0.83 * M, -2. * M})
+      {
+        const double taken = law.value(0., reached);
+        for (unsigned int i = 1; i <= 200; ++i)
+          {
+            const double s = -0.0201 * i * M, value = law.value(s, reached);
+            if (s > reached)
+              off_secant =
+                std::max({off_secant,
+                          std::abs(law.derivative(s, reached) -
+                                   law.derivative(reached) * (s / reached)) *
+                            M / energy,
+                          std::abs(value - taken -
+                                   0.5 * s * law.derivative(s, reached)) /
+                            energy});
+            else
+              raise(off_law, std::abs(value - law.value(s)) / energy);
+            const double slope     = law.derivative(s, reached),
+                         curvature = law.curvature(s, reached);
+            is_convex              = is_convex && curvature >= 0.;
+            // The least curvature that is enough, on a fine grid.
+            double needed = std::max(0., law.second_derivative(s, reached));
+            for (unsigned int k = 0; k <= 4000; ++k)
+              {
+                const double t = -0.0025 * k * M, d = t - s;
+                const double excess = law.value(t, reached) - value - slope * d;
+                raise(below, (excess - 0.5 * curvature * d * d) / energy);
+                if (std::abs(d) > 1e-3 * M)
+                  raise(needed, 2. * excess / (d * d));
+              }
+            raise(too_steep, (curvature - needed) * M * M / energy);
+          }
+      }
+    section("Majorants and memory: ", name);
+    check("curvatures are not negative", is_convex);
+    check("the law above the quadratic", below, 1e-13);
+    check("a flatter one would do", too_steep, 2e-2);
+    check("distance to the secant below what was reached", off_secant, 1e-13);
+    check("distance to the law beyond", off_law, 0.);
   }
 
 
 
   void
-  test_stepped()
+  test_curve()
   {
-    section("Stepped law");
-    const AdhesiveLaw law(
-      stepped_law({30., 20., 4.}, {0.1, 0.2, 0.5}).branches);
+    section("Curve with drops");
+    const AdhesiveLaw law(curve_law({{0., 0.},
+                                     {0.1, 3.},
+                                     {0.1, 2.},
+                                     {0.2, 4.},
+                                     {0.2, 0.8},
+                                     {0.5, 2.},
+                                     {0.5, 0.}})
+                            .pieces);
     // Areas below the sawteeth.
     check("energy of three steps is the area below the force",
           std::abs(law.value(-0.1) / 0.15 - 1.) < 1e-14 &&
@@ -221,23 +261,49 @@ namespace
     check("Goldstein interval across two steps",
           equal(law.goldstein_interval(-0.15, 0.1), -4., -0.8, 1.));
 
-    const AdhesiveLaw one(stepped_law({69.}, {0.002}).branches);
-    const AdhesiveLaw winkler(winkler_law(69., 0.002).branches);
+    const AdhesiveLaw one(
+      curve_law({{0., 0.}, {0.002, 0.138}, {0.002, 0.}}).pieces);
+    const AdhesiveLaw winkler(winkler_law(69., 0.002).pieces);
     bool              same = one.kinks() == winkler.kinks();
     for (unsigned int i = 0; i < 100; ++i)
-      same &= one.value(-5e-5 * i) == winkler.value(-5e-5 * i);
+      same &= std::abs(one.value(-5e-5 * i) - winkler.value(-5e-5 * i)) <=
+              1e-15 * winkler.value(-1.);
     check("one step is Winkler's law", same);
+  }
 
-    LawSection     section;
-    ParameterTable table;
-    section.bind(table);
-    for (const std::string entry : {"Law=stepped",
-                                    "Stepped/Stiffnesses=69, 70",
-                                    "Stepped/Thresholds=1, 2"})
-      table.assign("Contact law/" + entry);
-    section.make_law(table);
-    for (const std::string &line : table.errors)
-      std::cout << line << std::endl;
+
+
+  /// Energies and damage by hand.
+  void
+  test_softening()
+  {
+    section("Softening laws");
+    const AdhesiveLaw bilinear(bilinear_law({100., 1., 0.02}).pieces);
+    check("the strength is at strength / stiffness, nothing at 2 energy / "
+          "strength",
+          bilinear.derivative(-0.01) == -1. &&
+            bilinear.branches()[2].upper == -0.04 && bilinear.is_loose(2));
+    check("half of the traction half way down",
+          std::abs(bilinear.derivative(-0.025) + 0.5) < 1e-15);
+    check("all bonds take the fracture energy",
+          std::abs(bilinear.value(-1.) / 0.02 - 1.) < 1e-14);
+    check("damage 1 - secant / stiffness",
+          bilinear.damage(-0.01) == 0. &&
+            std::abs(bilinear.damage(-0.025) - 0.8) < 1e-14 &&
+            bilinear.damage(-0.05) == 1.);
+    const AdhesiveLaw exponential(exponential_law({100., 1., 0.02}).pieces);
+    // strength exp(-(opening - 0.01) / 0.015), 0.015 = 0.02 - 0.005.
+    check("the traction falls to 1/e at an opening of 0.025",
+          std::abs(exponential.derivative(-0.025) + std::exp(-1.)) < 1e-15);
+    check("exponential bonds take it in the end, and are not quite broken",
+          std::abs(exponential.value(-10.) / 0.02 - 1.) < 1e-14 &&
+            !exponential.is_loose(1) && exponential.damage(-0.025) < 1.);
+    check("energy at 1/e",
+          std::abs(exponential.value(-0.025) /
+                     (0.005 + 0.015 * (1. - std::exp(-1.))) -
+                   1.) < 1e-14);
+    print_error([] { bilinear_law({100., 1., 0.004}); });
+    print_error([] { exponential_law({100., 0., 0.004}); });
   }
 
 
@@ -245,40 +311,45 @@ namespace
   void
   test_laws()
   {
-    for (const std::string &name : law_names())
-      for (const double factor : {1., 1e9})
-        test_conformance(name, factor);
+    std::set<std::string> names;
+    for (const auto &[name, entries] : scenes)
+      {
+        names.insert(name);
+        for (const double factor : {1., 1e9})
+          {
+            const AdhesiveLaw law = law_of(name, entries, factor);
+            test_conformance(name, law);
+            test_majorants(name, law);
+          }
+      }
+    check("all kinds of laws are among them",
+          names.size() == law_names().size());
 
-    test_stepped();
+    test_curve();
+    test_softening();
     section("Other laws");
-    const AdhesiveLaw none(no_adhesion().branches);
+    const AdhesiveLaw none(no_adhesion().pieces);
     check("without adhesion there is no force",
           none.value(-1.) == 0. && none.value(1.) == 0. &&
             equal(none.goldstein_interval(-1., 5.), 0., 0., 1e-300) &&
             none.curvature(-1.) == 0. && none.kinks().empty() &&
             none.bond_threshold() == 0. && none.bond_strength() == 0.);
-    const AdhesiveLaw loose(winkler_law(0., 0.002).branches);
+    const AdhesiveLaw loose(winkler_law(0., 0.002).pieces);
     check("bonds without stiffness count as no adhesion",
           loose.bond_threshold() == 0. && loose.bond_strength() == 0.);
-
-    // Three meet at the kink, of which one is nowhere the least.
-    const AdhesiveLaw three({{0., 0., 2.L, "far"},
-                             {4., 0., 0.L, "near"},
-                             {0., 0., 3.L, "above"},
-                             {0., -1., 1.L, "line"}});
-    check("branches by name, in their order from 0",
-          three.branches().size() == 2 && three.name(0) == "near" &&
-            three.name(1) == "far" && three.branches()[1].upper == -1.);
 
     print_error([] { winkler_law(-1., 0.002); });
     print_error([] { winkler_law(69., 0.); });
     print_error([] { winkler_law(std::nan(""), 1.); });
     print_error([] { winkler_law(69., INFINITY); });
     print_error([] { AdhesiveLaw({}); });
-    print_error([] { AdhesiveLaw({{-5., 0., 0.L, "softening"}}); });
-    print_error([] { AdhesiveLaw({{1., INFINITY, 0.L, "steep"}}); });
-    print_error([] { AdhesiveLaw({{1., 0., 1.L, "high"}}); });
-    print_error([] { AdhesiveLaw({{1., 0.5, 0.L, "pushing"}}); });
+    print_error([] { AdhesiveLaw({{-5., 0., no_end, "falling"}}); });
+    print_error([] { AdhesiveLaw({{1., INFINITY, no_end, "steep"}}); });
+    print_error([] { AdhesiveLaw({{1., 0., -1., "short"}}); });
+    print_error([] { AdhesiveLaw({{1., 0.5, no_end, "pushing"}}); });
+    print_error([] {
+      AdhesiveLaw({{1., 0., -1., "soft"}, {2., 0., no_end, "stiff"}});
+    });
   }
 
 

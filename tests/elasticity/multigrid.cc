@@ -131,7 +131,7 @@ namespace
     const DistributedMatrix &A = body.problem->distributed_matrix();
     TruncatedMultigrid cycle(A, dim, aggregated_prolongations(A, dim, modes));
     DistributedVector  u = distributed(body.problem->load());
-    const AdhesiveLaw  law(winkler_law(69., 0.002).branches);
+    const AdhesiveLaw  law(winkler_law(69., 0.002).pieces);
     for (const std::string rule : {"nodal", "gauss 2"})
       {
         const ContactQuadrature<dim> quadrature(

@@ -6,7 +6,6 @@
 
 #include <deal.II/lac/full_matrix.h>
 
-#include <debond/contact/laws/stepped.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/global/convex_envelope.h>
@@ -58,15 +57,19 @@ namespace
   BranchList
   stepped(Random &random, const unsigned int n_steps)
   {
-    std::vector<double> stiffnesses, thresholds;
-    double              a = std::pow(10., random(-1., 1.)), M = 0.;
+    BranchList  steps;
+    double      a = std::pow(10., random(-1., 1.)), M = 0.;
+    long double energy = 0.L;
     for (unsigned int k = 0; k < n_steps; ++k)
       {
-        stiffnesses.push_back(a);
-        thresholds.push_back(M += random(0.1, 0.9));
-        a *= random(0.1, 0.9);
+        steps.push_back({a, 0., energy, std::to_string(k)});
+        M += random(0.1, 0.9);
+        const double next = k + 1 < n_steps ? a * random(0.1, 0.9) : 0.;
+        energy += 0.5L * (a - next) * M * M;
+        a = next;
       }
-    return stepped_law(stiffnesses, thresholds).branches;
+    steps.push_back({0., 0., energy, "broken"});
+    return steps;
   }
 
 

@@ -35,7 +35,8 @@ namespace
   bond(const double k, const double M)
   {
     return BranchMinimum(
-      {{k, 0., 0.L, "bonded"}, {0., 0., 0.5L * k * M * M, "broken"}});
+      std::vector<ConvexBranch>{{k, 0., 0.L, "bonded"},
+                                {0., 0., 0.5L * k * M * M, "broken"}});
   }
 
 
@@ -240,7 +241,7 @@ namespace
         const Eigen::VectorXd  &g       = p.g;
         const Eigen::VectorXd   minimum = inverse * g;
         const double            value   = -0.5 * g.dot(minimum);
-        const BranchMinimum     zero({{0., 0., 0.L, ""}});
+        const BranchMinimum     zero    = BranchMinimum::zero();
         const SeparableBranches no_bonds(std::vector<BranchMinimum>(n, zero));
         const double            more = uniform(engine);
         const auto root = NodeBound(p.S, p.g, no_bonds).root(value + more);

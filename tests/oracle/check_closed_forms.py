@@ -9,7 +9,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from run_scenes import Scenes
+from run_scenes import Scenes, sawteeth
 
 # Dimension, name, length and modulus.
 SYSTEMS = [(2, "GPa and m", 1., 1.), (3, "Pa and m", 1., 1e9), (2, "MPa and mm", 1e3, 1e3)]
@@ -205,7 +205,7 @@ def check_bonds():
                   ["Bond threshold=0.002", "Bond strength=0.138"],
                   ["Bond stiffness=69", "Fracture energy=1.38e-4"],
                   ["Bond threshold=0.002", "Fracture energy=1.38e-4"],
-                  ["Law=stepped", "Stepped/Stiffnesses=69", "Stepped/Thresholds=0.002"]):
+                  ["Law=curve", "Curve=" + sawteeth([69.], [0.002])]):
         result = solve(*BENCHMARK, *(law + bond for bond in bonds))
         close(", ".join(bonds), result["functional"], J, 1e-12)
     none = solve(*BENCHMARK, law + "Law=none")["functional"]
@@ -219,12 +219,12 @@ def check_bonds():
 
     # A crack is no part of the contact boundary and does not close; its end is between
     # faces, and so are the points of the rules.
-    stepped = [law + "Law=stepped", law + "Stepped/Stiffnesses=210, 40",
-               law + "Stepped/Thresholds=0.001, 0.004", "Mesh/Cells=16, 2",
+    stepped = [law + "Law=curve", law + "Curve=" + sawteeth([210., 40.], [0.001, 0.004]),
+               "Mesh/Cells=16, 2",
                "Loads/Traction top=0; 0.35", law + "Tangential displacement=free"]
     for rule in ("midpoint", "gauss 3"):
         one = solve(*stepped, law + "Quadrature=" + rule,
-                    law + "Stepped/Factor=if(x < 0.15, 0, 1)")
+                    law + "Traction factor=if(x < 0.15, 0, 1)")
         other = solve(*stepped, law + "Quadrature=" + rule, "Parts/glued=bottom: x > 0.15",
                       "Boundary conditions/Contact boundary=glued")
         close(f"{rule}, a crack beside a boundary without contact", one["functional"],
@@ -235,10 +235,10 @@ def check_bonds():
         energy = 75. * min(d, 0.001)**2 + 25. * min(d, 0.003)**2
         result = solve("Mesh/Cells=8, 1", "Material/Young modulus=1e7",
                        "Boundary conditions/Clamped boundaries=",
-                       f"Boundary conditions/Displacement top=0; {d}", law + "Law=stepped",
-                       law + "Stepped/Stiffnesses=200, 50",
-                       law + "Stepped/Thresholds=0.001, 0.003", law + "Stepped/Factor=5*x")
-        close("the integral of the stepped law", result["functional"], 0.4 * energy, 1e-5)
+                       f"Boundary conditions/Displacement top=0; {d}", law + "Law=curve",
+                       law + "Curve=" + sawteeth([200., 50.], [0.001, 0.003]),
+                       law + "Traction factor=5*x")
+        close("the integral of a law of steps", result["functional"], 0.4 * energy, 1e-5)
 
 
 def check_hard_laws():

@@ -5,8 +5,13 @@ that their scene files say of them."""
 import collections
 import itertools
 import math
+import pathlib
 import random
+import sys
 from types import SimpleNamespace
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from run_scenes import sawteeth
 
 SIDES = (("left", "right"), ("bottom", "top"), ("back", "front"))
 GRID_KINDS = ("L", "step", "notch", "hole")
@@ -404,15 +409,14 @@ class Scene:
             a = draw.magnitude(-6., 12.)
         M = self.mesh.length * draw.magnitude(-5., -1.)
         self.a, self.M = a, M
-        self.law = draw.choice(["winkler"] * 7 + ["stepped"] * 2 + ["none"])
+        self.law = draw.choice(["winkler"] * 7 + ["curve"] * 2 + ["none"])
         self.set("Contact law/Law", self.law)
         self.steps = [(1., 1.)] if self.law == "winkler" else []
-        if self.law == "stepped":
+        if self.law == "curve":
             self.steps = [(1., draw.uniform(0.2, 0.8)), (draw.uniform(0.1, 0.8), 1.)]
             self.steps = self.steps[draw.chance(0.3):]
-            for k, entry in enumerate(("Stiffnesses", "Thresholds")):
-                self.set("Contact law/Stepped/" + entry, ", ".join(
-                    repr((a, M)[k] * step[k]) for step in self.steps))
+            self.set("Contact law/Curve", sawteeth(
+                *([(a, M)[k] * step[k] for step in self.steps] for k in (0, 1))))
         self.quadrature = "nodal" if draw.chance(0.6) else draw.choice(
             ["midpoint", "gauss 1", "gauss 2", "gauss 3"])
         self.set("Contact law/Quadrature", self.quadrature)
@@ -467,9 +471,9 @@ class Scene:
                 self.set(f"{law}Bond stiffness{name}", str(bonds.stiffness))
             if changes[1] or not name:
                 self.set(f"{law}Bond threshold{name}", str(bonds.threshold))
-        elif self.law == "stepped" and not name and draw.chance(0.4):
+        elif self.law == "curve" and not name and draw.chance(0.4):
             bonds.stiffness = self.field(draw, a * draw.uniform(0.1, 1.), a)
-            self.set(f"{law}Stepped/Factor", f"({bonds.stiffness})/{a!r}")
+            self.set(f"{law}Traction factor", f"({bonds.stiffness})/{a!r}")
         if draw.chance(0.2):
             # Negative where nothing holds the body in the foundation.
             sign = -1. if draw.chance(0.3) and not self.holds_contact() else 1.

@@ -55,7 +55,7 @@ Contact law/Bond threshold nowhere=0.0001|Contact law/Bond strength glued=0.1
 Contact law/Fracture energy glued=1e-4|Contact law/Initial gap glued=0.0001
 Contact law/Initial gap bottom=0.0001*x|Contact law/Tangential displacement glued=free
 Contact law/Tangential displacement bottom=free|Contact law/Tangential displacement=free
-Contact law/Quadrature=exact|Contact law/Law=stepped|Load path/Factors=0.5, 1, 0.5, 0
+Contact law/Quadrature=exact|Contact law/Law=curve|Contact law/Law=bilinear|Contact law/Curve=0:0, 1e-4:0.01, 2e-4:0|Contact law/Traction factor=x|Load path/Factors=0.5, 1, 0.5, 0
 Load path/Displacement factors=0:0.25:1|Load path/Dead loads=body force
 Load path/Bonds heal=false|Loads/Temperature change=20*y|Loads/Traction glued=0; -0.01
 Loads/Traction top=0; 0.01|Loads/Body force=0; 0.01|Probes/tip=0.1, 0.02

@@ -66,7 +66,7 @@ at_points, at_cells = contact.at_points, contact.in_cells
 assert n == dim * n_faces, n
 assert {*at_points} == {
     "displacement", "tangential_force_density", "u_nu", "gap", "normal_force_density",
-    "law_violation", "bond_stiffness", "bond_threshold", "initial_gap"}, at_points
+    "law_violation", "bond_stiffness", "bond_threshold", "damage", "initial_gap"}, at_points
 assert {*at_cells} == {"bond_state"} and {*body.at_points} == {"displacement"}
 assert {"strain_energy_density", "error_density"} <= {*body.in_cells}
 states = ["contact", "bonded", "kink", "broken", "free", "held"]

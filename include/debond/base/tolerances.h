@@ -125,6 +125,16 @@ namespace Debond
     /// Majorants that are the same: forces and curvatures but for rounding.
     constexpr double same_majorant = 1e-12;
 
+    /// Part of Phi's second derivative by which that of bonds on the same
+    /// pieces changes in a refinement.
+    constexpr double same_curvature = 1e-6;
+
+    /// Part of J's first slope on a line where it has stopped falling.
+    constexpr double end_of_fall = 1e-10;
+
+    /// Part of the largest displacement by which a line goes on behind a kink.
+    constexpr double past_kink = 4. * epsilon;
+
     /// Displacements and pressures that an active set takes for zero.
     constexpr double active_set = 16. * epsilon;
 

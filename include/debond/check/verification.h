@@ -59,6 +59,9 @@ namespace Debond
     double bond_stiffness;
     double bond_threshold;
 
+    /// The part of its stiffness that the bond has lost, 0 to 1.
+    double damage;
+
     BondState state;
 
     /// That of the branch of the law that holds, whatever contact and kink (at

@@ -13,13 +13,13 @@
 
 namespace Debond
 {
-  /// The pieces of the law that bonds have not left for good: those before
-  /// them do not come back. Empty if bonds return.
+  /// The least s that bonds have been at, in terms of the law (of their
+  /// stretch): what is above it does not come back. Empty if bonds return.
   struct BondMemory
   {
-    std::vector<unsigned int> nodes;
-    std::vector<unsigned int> held;   ///< of vertices that are no nodes
-    std::vector<unsigned int> points; ///< face by face, unless points are nodes
+    std::vector<double> nodes;
+    std::vector<double> held;   ///< of vertices that are no nodes
+    std::vector<double> points; ///< face by face, unless points are nodes
   };
 
 
@@ -78,19 +78,29 @@ namespace Debond
     void
     set_memory(const BondMemory &memory);
 
-    /// The piece of the law that the bonds of a node have not left for good, of
-    /// all points of its faces where points are not nodes.
+    /// The memory of the bonds of a node, of all points of its faces where
+    /// points are not nodes.
+    double
+    reached(const unsigned int node) const
+    {
+      return broken.nodes.empty() ? 0. : broken.nodes[node];
+    }
+
+    /// The piece of the law that they have not left for good.
     unsigned int
     least_piece(const unsigned int node) const
     {
-      return broken.nodes.empty() ? 0 : broken.nodes[node];
+      return law.branches().index(reached(node));
     }
 
     /// The same of the bonds at a point of one of the boundary's faces: those
     /// of the point of the rule that is next to it.
     unsigned int
     least_piece_at(const typename ContactBoundary<dim>::Face &face,
-                   const std::array<double, dim> &barycentric) const;
+                   const std::array<double, dim>             &barycentric) const
+    {
+      return law.branches().index(reached_at(face, barycentric));
+    }
 
     /// Whether points that are not nodes have bonds that have broken for good.
     bool
@@ -110,7 +120,25 @@ namespace Debond
     double
     first_change(const VectorView &s,
                  const VectorView &ds,
-                 const double      limit) const;
+                 const double      limit) const override;
+
+    bool
+    softens() const override
+    {
+      return law.softens();
+    }
+
+    Eigen::SparseMatrix<double>
+    second_derivative(const VectorView &s) const override;
+
+    /// The same, of each point the least one within @p part of its s: a bound
+    /// where bonds are next to a kink.
+    Eigen::SparseMatrix<double>
+    least_second_derivative(const VectorView &s, const double part) const;
+
+    /// Whether at some point the traction drops within @p part of its s.
+    bool
+    is_at_drop(const VectorView &s, const double part) const;
 
     /// What bonds that do not return have taken: Phi(0) with nothing
     /// prescribed.
@@ -138,7 +166,19 @@ namespace Debond
 
     unsigned int
     least_piece_at(const typename ContactBoundary<dim>::Face &face,
-                   const unsigned int                         vertex) const;
+                   const unsigned int                         vertex) const
+    {
+      return law.branches().index(reached_at(face, vertex));
+    }
+
+    /// The memory of the bonds there.
+    double
+    reached_at(const typename ContactBoundary<dim>::Face &face,
+               const unsigned int                         vertex) const;
+
+    double
+    reached_at(const typename ContactBoundary<dim>::Face &face,
+               const std::array<double, dim>             &barycentric) const;
 
     /// Phi(s), an energy.
     double
@@ -244,9 +284,9 @@ namespace Debond
       std::array<unsigned int, n_coefficients(dim, 2)> nodes;
       Trace                                            shape;
       double                                           weight; ///< length, area
-      double       offset; ///< what is prescribed of the trace
-      BondScale    bonds;
-      unsigned int least_piece; ///< of the law
+      double    offset; ///< what is prescribed of the trace
+      BondScale bonds;
+      double    reached; ///< the memory
 
       bool
       is_on_a_node() const;
@@ -259,6 +299,11 @@ namespace Debond
     double
     held_trace(const typename ContactBoundary<dim>::Face &face,
                const unsigned int                         k) const;
+
+    /// The sum of @p of_law at the points, as a second derivative of Phi.
+    template <typename Curvature>
+    Eigen::SparseMatrix<double>
+    matrix(const VectorView &s, const Curvature &of_law) const;
 
     /// Makes bonds_of_nodes and bonds_of_held.
     void

@@ -18,61 +18,66 @@ namespace Debond
 
   /**
    * An adhesive law: the superpotential j_1 of the normal displacement s =
-   * u_nu (Section 3 of the paper, eq. (10)), which is the least of convex
-   * branches for s <= 0 and zero for s > 0. The unilateral constraint s <= 0
-   * is not part of it.
+   * u_nu (Section 3 of the paper, eq. (10)), a function of pieces for s <= 0
+   * and zero for s > 0. The unilateral constraint s <= 0 is not part of it.
+   *
+   * Bonds that do not return to what they have left have @p reached, the least
+   * s that they have been at, as their memory; 0 is none.
    *
    * Units: s in length, j_1 in energy per area, its derivatives accordingly.
    */
   class AdhesiveLaw
   {
   public:
-    /// @p branches in any order, with the names of bonds on them. Throws
+    /// @p pieces from s = 0 downwards, with the names of bonds on them. Throws
     /// std::invalid_argument as BranchMinimum does.
-    explicit AdhesiveLaw(const std::vector<ConvexBranch> &branches);
+    explicit AdhesiveLaw(const std::vector<EnergyPiece> &pieces);
 
     /// j_1(s).
     double
-    value(const double s) const;
+    value(const double s, const double reached = 0.) const;
 
     /// The Clarke subdifferential of j_1 at s: a point away from the kinks.
     Interval
-    clarke_interval(const double s) const;
+    clarke_interval(const double s, const double reached = 0.) const;
 
-    /// The first and the second derivative of the branch that holds at s (at a
-    /// kink: of the one on the side of 0).
+    /// The first derivative (at a kink: of the piece on the side of 0).
     double
-    derivative(const double s) const;
+    derivative(const double s, const double reached = 0.) const;
 
+    /// That of the flattest quadratic that touches j_1 at s, with this
+    /// derivative, and is nowhere below it.
     double
-    curvature(const double s) const;
+    curvature(const double s, const double reached = 0.) const;
+
+    /// The second derivative, of the piece as derivative() has it.
+    double
+    second_derivative(const double s, const double reached = 0.) const;
 
     /// The union of the Clarke intervals over [s - delta, s + delta]
     /// (Goldstein's subdifferential), its hull as an interval.
     Interval
-    goldstein_interval(const double s, const double delta) const;
+    goldstein_interval(const double s,
+                       const double delta,
+                       const double reached = 0.) const;
 
-    /// The same for a bond that has left the pieces before @p least for good:
-    /// that piece holds towards 0 as well.
+    /// The part of their stiffness that bonds which have been at @p reached
+    /// have lost for good, of their traction where that is no spring at first.
     double
-    value(const double s, const unsigned int least) const;
+    damage(const double reached) const;
 
-    double
-    derivative(const double s, const unsigned int least) const;
-
-    double
-    curvature(const double s, const unsigned int least) const;
-
-    Interval
-    goldstein_interval(const double       s,
-                       const double       delta,
-                       const unsigned int least) const;
+    /// Whether somewhere the traction falls while bonds open.
+    bool
+    softens() const
+    {
+      return minimum.softens();
+    }
 
     /// Where j_1 is not twice differentiable, in ascending order.
     std::vector<double>
     kinks() const;
 
-    /// j_1 on s <= 0.
+    /// j_1 on s <= 0, without a memory.
     const BranchMinimum &
     branches() const;
 
@@ -95,32 +100,25 @@ namespace Debond
     bond_strength() const;
 
   private:
-    /// Whether such a bond is on the piece @p least at s.
-    bool
-    is_before(const double s, const unsigned int least) const;
-
-    Interval
-    clarke_interval(const double s, const unsigned int least) const;
-
     BranchMinimum            minimum;
     std::vector<std::string> names;
   };
 
 
 
-  /// A law by the numbers of its branches.
+  /// A law by the numbers of its pieces.
   struct ContactLawParameters
   {
-    std::string               name; ///< one of law_names()
-    std::vector<ConvexBranch> branches;
-    std::string               data; ///< in words, empty if there is none
+    std::string              name; ///< one of law_names()
+    std::vector<EnergyPiece> pieces;
+    std::string              data; ///< in words, empty if there is none
 
     /// Expressions for bonds whose stiffness or threshold vary, empty where it
-    /// does not: `branches` have 1 in their place.
+    /// does not: `pieces` have 1 in their place.
     std::string stiffness = {}, threshold = {};
 
     /// Where `stiffness` is from. Of laws that are not winkler_law() it is a
-    /// factor of all their branches.
+    /// factor of all their pieces.
     std::string stiffness_entry = "Contact law/Bond stiffness";
 
     /// Of the bonds of one boundary, numbers or expressions.
@@ -153,7 +151,7 @@ namespace Debond
     /// Binds its own entries to variables of the maker.
     LawMaker (*bind)(ParameterTable &table);
 
-    std::string entries = {}; ///< these: paths, or a section, "A/B/"
+    std::string entries = {}; ///< these, and those that it has of others
   };
 
   /// The names of all kinds, for messages.

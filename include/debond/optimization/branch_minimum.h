@@ -2,6 +2,9 @@
 #ifndef debond_optimization_branch_minimum_h
 #define debond_optimization_branch_minimum_h
 
+#include <debond/optimization/interval.h>
+
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -21,11 +24,35 @@ namespace Debond
 
 
 
+  /// The end of a last piece.
+  constexpr double no_end = -std::numeric_limits<double>::infinity();
+
+  /// A piece of a function of s <= 0 whose derivative is curvature s + slope,
+  /// or, with a decay (1 / length), slope exp(decay (s - upper)), down to its
+  /// end, which is no_end for the last one.
+  struct EnergyPiece
+  {
+    double      curvature, slope;
+    double      end;
+    std::string name;
+    double      decay = 0.;
+  };
+
+
+
   /**
-   * f(s) = the least of convex branches at s <= 0, with f >= f(0) = 0: a list
-   * of pieces in the order in which they follow each other from 0 downwards. At
-   * the kink between two pieces the one on the side of 0 is the one that holds,
-   * here and wherever a branch is chosen.
+   * f(s) at s <= 0, with f >= f(0) = 0: a list of pieces in the order in which
+   * they follow each other from 0 downwards, continuous, with a derivative
+   * that may jump up but not down as s falls. So f is the least of convex
+   * quadratics that touch it, one at each s: where it is the least of its
+   * pieces, these; elsewhere pieces may be concave. At the kink between two
+   * pieces the one on the side of 0 is the one that holds, here and wherever a
+   * branch is chosen.
+   *
+   * What has been at s = reached need not return to what it has left: then f is
+   * a parabola about 0 down to there, the secant of the derivative, f(0) is not
+   * 0 any more but what was taken up for good, and below reached nothing has
+   * changed.
    */
   class BranchMinimum
   {
@@ -33,13 +60,21 @@ namespace Debond
     struct Piece
     {
       double       curvature, slope;
-      long double  constant;
-      double       lower, upper; ///< where it is the least
+      long double  constant;     ///< with a decay, the value at begin
+      double       lower, upper; ///< where it holds
       unsigned int branch;       ///< its number in the given list
+      double       decay = 0.;   ///< EnergyPiece::decay
+      double       begin = 0.;   ///< with a decay, the piece's own upper end
+
+      /// Whether its parabola is nowhere below f.
+      bool is_above = true;
 
       double
       value(const double s) const
       {
+        if (decay > 0.)
+          return static_cast<double>(constant) +
+                 slope / decay * std::expm1(decay * (s - begin));
         return curvature * s * s / 2. + slope * s +
                static_cast<double>(constant);
       }
@@ -47,7 +82,21 @@ namespace Debond
       double
       derivative(const double s) const
       {
-        return curvature * s + slope;
+        return decay > 0. ? slope * std::exp(decay * (s - begin)) :
+                            curvature * s + slope;
+      }
+
+      double
+      second_derivative(const double s) const
+      {
+        return decay > 0. ? decay * derivative(s) : curvature;
+      }
+
+      /// Whether it has the same value everywhere.
+      bool
+      is_flat() const
+      {
+        return curvature == 0. && slope == 0.;
       }
     };
 
@@ -55,6 +104,43 @@ namespace Debond
     /// none. Throws std::invalid_argument if a branch is concave or not finite,
     /// or if not f >= f(0) = 0.
     explicit BranchMinimum(const std::vector<ConvexBranch> &branches);
+
+    /// Throws std::invalid_argument if the pieces do not follow each other, or
+    /// f rises with s or has a derivative that jumps down as s falls.
+    explicit BranchMinimum(const std::vector<EnergyPiece> &given);
+
+    static BranchMinimum
+    zero()
+    {
+      return BranchMinimum(std::vector<ConvexBranch>{{0., 0., 0.L, ""}});
+    }
+
+    /// Whether some piece is not above f.
+    bool
+    softens() const;
+
+    /// Whether no piece decays.
+    bool
+    is_piecewise_quadratic() const;
+
+    /// The piece that holds at @p s where @p reached has been reached, with its
+    /// ends.
+    Piece
+    piece_at(const double s, const double reached) const;
+
+    /// The curvature of the flattest quadratic that touches f at s, and is
+    /// nowhere below it, where @p reached has been reached.
+    double
+    majorant_curvature(const double s, const double reached = 0.) const;
+
+    /// The convexity c with which f + c/2 s^2 is nowhere below its tangent at
+    /// s.
+    double
+    needed_convexity(const double s) const;
+
+    /// Where the derivative jumps, from 0 downwards.
+    std::vector<double>
+    drops() const;
 
     /// c f(s / stretch) with the c for which the first piece, which has to have
     /// a curvature here, has the given one; the single piece zero if that is
@@ -95,6 +181,13 @@ namespace Debond
 
   private:
     BranchMinimum() = default;
+
+    /// Whether a piece through 0 is all that holds above @p reached.
+    bool
+    returns_on_a_piece(const double reached) const
+    {
+      return pieces[index(reached)].slope == 0.;
+    }
 
     /// Constants for which the function is continuous at the kinks as they are
     /// in doubles.

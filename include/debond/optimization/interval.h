@@ -32,7 +32,7 @@ namespace Debond
 
   /**
    * How a lower bound of a functional grows with one of its unknowns:
-   * constant + slope (s - x) + curvature/2 (s - x)^2, curvature > 0.
+   * constant + slope (s - x) + curvature/2 (s - x)^2.
    */
   struct Growth
   {
@@ -47,7 +47,7 @@ namespace Debond
     least(const Interval &interval) const;
 
     /// The part of the interval where the value is at most the level, rounded
-    /// outwards.
+    /// outwards; all of it if it is concave and has such values.
     Interval
     where_at_most(const double level, const Interval &interval) const;
   };

@@ -11,10 +11,10 @@
 namespace Debond
 {
   /**
-   * A function Phi that is the least of several convex quadratics (at each of
-   * its quadrature points): the branch that is the least one at s lies above
-   * Phi everywhere and touches it at s. s are the normal displacements of the
-   * contact nodes in their order, s <= 0, a length.
+   * A function Phi that is the least of convex quadratics (at each of its
+   * quadrature points): one at s lies above Phi everywhere and touches it at s.
+   * s are the normal displacements of the contact nodes in their order, s <= 0,
+   * a length.
    */
   class PiecewiseQuadratic
   {
@@ -25,14 +25,39 @@ namespace Debond
     virtual double
     value(const VectorView &s) const = 0;
 
-    /// The gradient at s of the branches that are the least ones there, which
-    /// is an element of the Clarke subdifferential of Phi.
+    /// The gradient at s of the quadratics that touch there, which is an
+    /// element of the Clarke subdifferential of Phi.
     virtual Eigen::VectorXd
     subgradient(const VectorView &s) const = 0;
 
-    /// The second derivative of these branches, positive semidefinite.
+    /// The second derivative of these, positive semidefinite.
     virtual Eigen::SparseMatrix<double>
     curvature(const VectorView &s) const = 0;
+
+    /// Whether infinitely many quadratics touch Phi, as where bonds soften:
+    /// then Phi's own second derivative is less than theirs.
+    virtual bool
+    softens() const
+    {
+      return false;
+    }
+
+    /// The second derivative of Phi.
+    virtual Eigen::SparseMatrix<double>
+    second_derivative(const VectorView &s) const
+    {
+      return curvature(s);
+    }
+
+    /// How far on the way from s to s + @p limit ds the points of Phi come
+    /// before some leave their piece, as a multiple of ds: at most @p limit.
+    virtual double
+    first_change(const VectorView & /*s*/,
+                 const VectorView & /*ds*/,
+                 const double /*limit*/) const
+    {
+      return 0.;
+    }
   };
 
 
@@ -81,6 +106,26 @@ namespace Debond
     curvature(const VectorView &s) const override
     {
       return P.transpose() * phi.curvature(P * s) * P;
+    }
+
+    bool
+    softens() const override
+    {
+      return phi.softens();
+    }
+
+    Eigen::SparseMatrix<double>
+    second_derivative(const VectorView &s) const override
+    {
+      return P.transpose() * phi.second_derivative(P * s) * P;
+    }
+
+    double
+    first_change(const VectorView &s,
+                 const VectorView &ds,
+                 const double      limit) const override
+    {
+      return phi.first_change(P * s, P * ds, limit);
     }
 
   private:

@@ -64,11 +64,12 @@ namespace Debond
   wants_search(const SolverParameters &parameters);
 
   /// stationary, local minimum, or global if there is no adhesion and J is
-  /// convex.
+  /// convex. Where bonds soften, a minimum is known by S and g of @p condensed.
   template <int dim>
   MinimumKind
   kind_without_search(const AdhesionIntegral<dim> &adhesion,
-                      const VectorView            &s);
+                      const VectorView            &s,
+                      const Condensation          *condensed = nullptr);
 
   /// The search and the proof that are asked for, from the stationary point
   /// @p s, which moves if they find a better one. Throws BadInput if they

@@ -6,7 +6,7 @@ namespace Debond
   ContactLawParameters
   no_adhesion()
   {
-    return {"none", {{0., 0., 0.L, "free"}}, ""};
+    return {"none", {{0., 0., no_end, "free"}}, ""};
   }
 
 

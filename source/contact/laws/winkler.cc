@@ -43,9 +43,9 @@ namespace Debond
     std::ostringstream data;
     data << "a = " << a << ", M = " << M;
     if (a == 0.)
-      return {"winkler", {{0., 0., 0.L, "free"}}, data.str()};
+      return {"winkler", {{0., 0., no_end, "free"}}, data.str()};
     return {"winkler",
-            {{a, 0., 0.L, "bonded"}, {0., 0., 0.5L * a * M * M, "broken"}},
+            {{a, 0., -M, "bonded"}, {0., 0., no_end, "broken"}},
             data.str()};
   }
 

@@ -142,7 +142,8 @@ namespace Debond
       minimise_from(const Eigen::VectorXd &x, Job &job) const
       {
         job.state = problem.phi.state(x);
-        if (tried.count(job.state) > 0)
+        // Where bonds soften the state does not say where it leads to.
+        if (!problem.phi.softens() && tried.count(job.state) > 0)
           return;
         Eigen::VectorXd  s = x.cwiseMin(0.);
         CondensedProblem condensed(problem.S, problem.g, problem.phi, s);
@@ -232,12 +233,11 @@ namespace Debond
             return;
           }
         const unsigned int i     = *job.result.unknown;
-        const double       kink  = problem.phi.f[i][job.result.piece].upper;
         ProofNode          upper = job.node, lower = job.node;
         upper.number   = ++n_created;
         lower.number   = ++n_created;
-        upper.lower(i) = kink;
-        lower.upper(i) = kink;
+        upper.lower(i) = job.result.split;
+        lower.upper(i) = job.result.split;
         upper.bound    = std::max(job.node.bound, job.result.half_bounds[0]);
         lower.bound    = std::max(job.node.bound, job.result.half_bounds[1]);
         open.insert(upper);

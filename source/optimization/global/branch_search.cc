@@ -55,6 +55,7 @@ namespace Debond
         , s(s)
         , is_separable(
             is_diagonal(problem.phi.curvature(Eigen::VectorXd::Zero(s.size()))))
+        , states_are_majorants(is_separable && !problem.phi.softens())
       {
         const auto state  = condensed(problem, s).evaluate();
         result.functional = state.functional;
@@ -93,6 +94,7 @@ namespace Debond
       const BranchSearchParameters &parameters;
       Eigen::VectorXd              &s;
       const bool                    is_separable; ///< each node has its own law
+      const bool                    states_are_majorants;
       BranchSearchResult            result;
       double                        functional = 0.; ///< where moves start
       double                        rounding;
@@ -250,7 +252,7 @@ namespace Debond
           minimise_trial(problem.method, trial, [&](const auto &iteration) {
             if (problem.operations != nullptr)
               *problem.operations += iteration.operations;
-            if (is_separable)
+            if (states_are_majorants)
               {
                 way.push_back(problem.lumped.state(next));
                 const auto known = end_of_way.find(way.back());
@@ -268,7 +270,7 @@ namespace Debond
             minimum.functional = ends[end].functional;
             next               = ends[end].s;
           }
-        if (minimum.status == SolverStatus::success && is_separable &&
+        if (minimum.status == SolverStatus::success && states_are_majorants &&
             end_of_way.size() * next.size() < most_branches_on_ways)
           {
             if (end == ends.size())
@@ -391,6 +393,9 @@ namespace Debond
       bool
       is_proved(Eigen::VectorXd &s, const unsigned int maximum_nodes)
       {
+        // Envelopes are of quadratic pieces.
+        if (!problem.lumped.is_piecewise_quadratic())
+          return false;
         BranchAndBoundParameters parameters;
         parameters.tolerance             = limits.tolerance;
         parameters.n_threads             = limits.n_threads;

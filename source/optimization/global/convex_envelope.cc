@@ -3,6 +3,7 @@
 #include <debond/optimization/global/convex_envelope.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -32,68 +33,89 @@ namespace Debond
 
 
 
-    /// Where a line from the point (s, value) touches a parabola above it, to
-    /// the right or to the left of s. Infinite for a line.
-    long double
-    touch(const long double s, const long double value, const Parabola &p)
+    /// A convex piece of f from one point to another, which may be the same.
+    struct Arc
     {
-      const long double above = std::max(0.L, p(s) - value);
-      return p.c > 0.L ? std::sqrt(2.L * above / p.c) :
-                         std::numeric_limits<long double>::infinity();
-    }
+      Parabola    f;
+      long double lower, upper;
 
+      /// Where m s - f(s) is largest.
+      long double
+      contact(const long double m) const
+      {
+        if (lower == upper)
+          return lower;
+        return f.c > 0.L ? std::min(std::max((m - f.b) / f.c, lower), upper) :
+               m < f.b   ? lower :
+                           upper;
+      }
 
-
-    struct CommonTangent
-    {
-      double first, second; ///< where it touches the parabolas
+      /// Slopes with which lines begin to leave each end.
+      long double
+      slope_at(const long double s) const
+      {
+        return f.b + f.c * s;
+      }
     };
 
-    /// Of two parabolas, of which @p left is below the other one to the left of
-    /// their crossing @p kink, on [lower, upper].
-    CommonTangent
-    common_tangent(const Parabola   &left,
-                   const Parabola   &right,
-                   const long double kink,
-                   const double      lower,
-                   const double      upper)
+
+
+    /// The line that is below two arcs, @p left and @p right of it, and meets
+    /// both.
+    struct Bridge
     {
-      const long double jump = (left.c - right.c) * kink + (left.b - right.b);
-      const long double root_left  = std::sqrt(left.c);
-      const long double root_right = std::sqrt(right.c);
-      if (!(jump > 0.L))
-        return {static_cast<double>(kink), static_cast<double>(kink)};
-      const long double d     = jump / (root_left + root_right);
-      long double       first = left.c > 0.L ?
-                                  std::max<long double>(lower, kink - d / root_left) :
-                                  lower;
-      long double       second =
-        right.c > 0.L ? std::min<long double>(upper, kink + d / root_right) :
-                              upper;
-      if (first == lower)
-        second =
-          std::min<long double>(upper,
-                                lower + touch(lower, left(lower), right));
-      if (second == upper && left.c > 0.L)
-        first = std::max<long double>(lower,
-                                      upper - touch(upper, right(upper), left));
-      return {static_cast<double>(first), static_cast<double>(second)};
-    }
+      double first, second; ///< where
+    };
 
-
-
-    /// Where @p left gets above @p right as s grows.
-    long double
-    crossing(const Parabola &left, const Parabola &right)
+    Bridge
+    bridge(const Arc &left, const Arc &right)
     {
-      const long double A = right.c - left.c, B = right.b - left.b,
-                        C    = right.h - left.h;
-      const long double root = std::sqrt(std::max(0.L, B * B - 2.L * A * C));
-      return A != 0.L && B >= 0.L ? -(B + root) / A : -2.L * C / (B - root);
+      // Where they meet without a concave kink there is no line.
+      if (left.upper == right.lower)
+        {
+          const long double before = left.slope_at(left.upper),
+                            behind = right.slope_at(right.lower);
+          if (left.lower == left.upper || right.lower == right.upper ||
+              before <= behind + Tolerance::rounding_of_data * std::abs(before))
+            return {static_cast<double>(left.upper),
+                    static_cast<double>(left.upper)};
+        }
+      // How much lower the line with slope m that touches left is at right.
+      const auto excess = [&](const long double m) {
+        const long double p = left.contact(m), q = right.contact(m);
+        return m * (q - p) - (right.f(q) - left.f(p));
+      };
+      // It grows with m, by a parabola between these slopes.
+      std::array<long double, 4> slopes = {{left.slope_at(left.lower),
+                                            left.slope_at(left.upper),
+                                            right.slope_at(right.lower),
+                                            right.slope_at(right.upper)}};
+      std::sort(slopes.begin(), slopes.end());
+      unsigned int k = 0;
+      while (k < 4 && excess(slopes[k]) < 0.L)
+        ++k;
+      // From where on it is a parabola or, beyond the last slope, a line.
+      const long double from    = slopes[k == 0 ? 0 : k - 1];
+      const long double to      = k == 0 ? from - 1.L :
+                                  k == 4 ? from + 1.L :
+                                           slopes[k];
+      const long double at_from = excess(from), middle = (from + to) / 2.L;
+      const long double at_to = excess(to), width = to - from;
+      long double       m = from;
+      if (width != 0.L && at_to != at_from)
+        {
+          // a x + b x^2 through the three values, x from 0 to 1.
+          const long double half = excess(middle) - at_from;
+          const long double b    = 2.L * (at_to - at_from) - 4.L * half;
+          const long double a    = (at_to - at_from) - b;
+          const long double root =
+            std::sqrt(std::max(0.L, a * a - 4.L * b * at_from));
+          const long double sum = a + std::copysign(root, a);
+          m = from + width * (sum == 0.L ? 0.L : -2.L * at_from / sum);
+        }
+      return {static_cast<double>(left.contact(m)),
+              static_cast<double>(right.contact(m))};
     }
-
-
-
   } // namespace
 
 
@@ -124,16 +146,19 @@ namespace Debond
       return Limits::infinity();
     const long double c     = static_cast<long double>(convexity) + p.curvature;
     const long double slope = r + p.slope;
-    const long double s     = c > 0.L ?
-                                std::min(std::max(-slope / c, left), right) :
-                              slope > 0.L ? left :
-                                            right;
+    // Of a concave piece one of the ends.
+    const bool is_left_lower =
+      c < 0.L ? slope + 0.5L * c * (left + right) > 0.L : slope > 0.L;
+    const long double s = c > 0.L ?
+                            std::min(std::max(-slope / c, left), right) :
+                          is_left_lower ? left :
+                                          right;
     if (!std::isfinite(s))
       return -Limits::infinity();
     const long double square = 0.5L * c * s * s;
     return slope * s + square + p.constant -
            16.L * Limits::epsilon() *
-             (std::abs(p.constant) + square +
+             (std::abs(p.constant) + std::abs(square) +
               (std::abs(r) + std::abs(p.slope)) * std::abs(s));
   }
 
@@ -157,59 +182,70 @@ namespace Debond
                                  const double        upper)
     : f(energy)
   {
-    // A parabola on the envelope, from where the line before it touches it.
-    struct Arc
+    // Convex pieces on the envelope, each with the line to it; of concave ones
+    // the ends.
+    struct Step
     {
+      Arc          arc;
       const Piece *piece;
-      double       line_from, lower;
+      double       line_from, begin;
     };
-    std::vector<Arc> arcs;
+    std::vector<Step> steps;
+    const auto        add = [&](const Arc &arc, const Piece &piece) {
+      Step step = {arc,
+                   &piece,
+                   static_cast<double>(arc.lower),
+                   static_cast<double>(arc.lower)};
+      while (!steps.empty())
+        {
+          Step &last        = steps.back();
+          Arc   left        = last.arc;
+          left.lower        = last.begin;
+          const Bridge line = bridge(left, arc);
+          step.line_from    = line.first;
+          step.begin        = line.second;
+          // The line before passes below what is left of that piece.
+          if (steps.size() == 1 || line.first > last.begin)
+            break;
+          steps.pop_back();
+        }
+      steps.push_back(step);
+    };
     for (auto piece = f.pieces.rbegin(); piece != f.pieces.rend(); ++piece)
       {
-        if (piece->upper <= lower && piece + 1 != f.pieces.rend())
+        const double from = std::max(lower, piece->lower),
+                     to   = std::min(upper, piece->upper);
+        if (from > to || (from == to && upper > lower))
           continue;
-        if (piece->lower >= upper && !arcs.empty())
-          break;
-        const Parabola right(*piece, f.convexity);
-        Arc            arc = {&*piece, lower, lower};
-        while (!arcs.empty())
+        const Parabola parabola(*piece, f.convexity);
+        if (parabola.c >= 0.L)
+          add({parabola, from, to}, *piece);
+        else
           {
-            // Neighbours meet where the pieces say, to the last digit.
-            const Parabola left(*arcs.back().piece, f.convexity);
-            const bool     are_neighbours = arcs.back().piece == &*piece + 1;
-            const CommonTangent tangent =
-              common_tangent(left,
-                             right,
-                             are_neighbours ? piece->lower :
-                                              crossing(left, right),
-                             lower,
-                             upper);
-            arc.line_from = tangent.first;
-            arc.lower     = tangent.second;
-            // The line before passes below this parabola.
-            if (arcs.size() == 1 || tangent.first > arcs.back().lower)
-              break;
-            arcs.pop_back();
+            add({parabola, from, from}, *piece);
+            if (to > from)
+              add({parabola, to, to}, *piece);
           }
-        arcs.push_back(arc);
       }
 
-    for (unsigned int k = 0; k < arcs.size(); ++k)
+    for (unsigned int k = 0; k < steps.size(); ++k)
       {
-        const Arc   &arc = arcs[k];
-        const double end = k + 1 < arcs.size() ? arcs[k + 1].line_from : upper;
-        if (arc.lower > arc.line_from)
-          parts.push_back({arc.line_from,
-                           arc.lower,
-                           (f.value(arc.lower) - f.value(arc.line_from)) /
-                             (arc.lower - arc.line_from),
+        const Step  &step = steps[k];
+        const double end  = k + 1 < steps.size() ?
+                              steps[k + 1].line_from :
+                              static_cast<double>(step.arc.upper);
+        if (step.begin > step.line_from)
+          parts.push_back({step.line_from,
+                           step.begin,
+                           (f.value(step.begin) - f.value(step.line_from)) /
+                             (step.begin - step.line_from),
                            0.,
                            true});
-        if (end > arc.lower)
-          parts.push_back({arc.lower,
+        if (end > step.begin)
+          parts.push_back({step.begin,
                            end,
-                           arc.piece->slope,
-                           f.convexity + arc.piece->curvature,
+                           step.piece->slope,
+                           f.convexity + step.piece->curvature,
                            false});
       }
   }

@@ -78,9 +78,9 @@ namespace Debond
         NodeResult result;
         for (unsigned int round = 0;; ++round)
           {
-            const bool all_decided = undecided().empty();
             if (InterruptGuard::noticed() || !set_up(round == 0))
               break;
+            const bool all_decided = undecided().empty();
             minimise_relaxation(problem, envelopes, node.x);
             const LowerBound lower_bound(problem, node.x);
             node.bound = std::max(node.bound, lower_bound.value);
@@ -130,16 +130,16 @@ namespace Debond
       /// Of the problem's matrix.
       Eigen::MatrixXd inverse;
 
+      /// Whose terms are not convex with what they have of S's convexity.
       std::vector<unsigned int>
       undecided() const
       {
         std::vector<unsigned int> result;
         for (unsigned int i = 0; i < n; ++i)
-          {
-            const Pieces pieces = pieces_in_box(node, i, phi.f[i]);
-            if (pieces.first < pieces.last)
-              result.push_back(i);
-          }
+          if (std::any_of(envelopes[i].parts.begin(),
+                          envelopes[i].parts.end(),
+                          [](const auto &part) { return part.is_line; }))
+            result.push_back(i);
         return result;
       }
 
@@ -165,10 +165,10 @@ namespace Debond
                 least   = std::min(least, f.pieces.back().curvature);
                 largest = std::max(largest, f.pieces.back().curvature);
               }
-            if (pieces.first < pieces.last)
+            if (pieces.first < pieces.last || least < 0.)
               {
                 shift(i)   = node.shift(i);
-                weights(i) = largest - least;
+                weights(i) = std::max(largest, 0.) - least;
               }
             else if (double &curvature = f.pieces[0].curvature; curvature > 0.)
               {
@@ -252,24 +252,19 @@ namespace Debond
         double highest = -std::numeric_limits<double>::infinity();
         for (const unsigned int i : undecided())
           {
-            // At the kink that is nearest to the minimum of the relaxation the
-            // gap of the envelope is largest.
-            const auto  &pieces = problem.f[i].pieces;
-            unsigned int split  = 0;
-            for (unsigned int k = 1; k < pieces.size(); ++k)
-              if (node.lower(i) < pieces[k].upper &&
-                  pieces[k].upper < node.upper(i) &&
-                  (split == 0 || std::abs(node.x(i) - pieces[k].upper) <
-                                   std::abs(node.x(i) - pieces[split].upper)))
-                split = k;
-
+            const double          split = place_to_split(i);
             std::array<double, 2> halves;
             halves.fill(std::numeric_limits<double>::infinity());
-            for (unsigned int k = 0; k < pieces.size(); ++k)
-              halves[k >= split] =
-                std::min(halves[k >= split],
-                         lower_bound.growth(i, k, inverse(i, i))
-                           .least(box(i, pieces[k])));
+            for (unsigned int k = 0; k < problem.f[i].pieces.size(); ++k)
+              for (const unsigned int half : {0, 1})
+                halves[half] =
+                  std::min(halves[half],
+                           lower_bound.growth(i, k, inverse(i, i))
+                             .least(
+                               intersection(box(i, problem.f[i].pieces[k]),
+                                            half == 0 ?
+                                              Interval{split, node.upper(i)} :
+                                              Interval{node.lower(i), split})));
             const double score =
               std::min(halves[0], halves[1]) +
               envelope_weight *
@@ -278,10 +273,39 @@ namespace Debond
               {
                 highest            = score;
                 result.unknown     = i;
-                result.piece       = phi.f[i].index(pieces[split].upper) + 1;
+                result.split       = split;
                 result.half_bounds = halves;
               }
           }
+      }
+
+      /// At the kink under a line of the envelope that is nearest to the
+      /// minimum of the relaxation the gap of the envelope is largest. Under a
+      /// line without a kink f is concave.
+      double
+      place_to_split(const unsigned int i) const
+      {
+        const double x       = node.x(i);
+        const double nowhere = std::numeric_limits<double>::infinity();
+        double       split   = nowhere;
+        const ConvexEnvelope::Part *longest = nullptr;
+        for (const ConvexEnvelope::Part &part : envelopes[i].parts)
+          if (part.is_line)
+            {
+              for (const BranchMinimum::Piece &piece : problem.f[i].pieces)
+                if (part.lower < piece.upper && piece.upper < part.upper &&
+                    std::abs(x - piece.upper) < std::abs(x - split))
+                  split = piece.upper;
+              if (longest == nullptr ||
+                  part.upper - part.lower > longest->upper - longest->lower)
+                longest = &part;
+            }
+        if (split != nowhere)
+          return split;
+        const ConvexEnvelope::Part *const at_x = envelopes[i].line_at(x);
+        const ConvexEnvelope::Part &line   = at_x != nullptr ? *at_x : *longest;
+        const double                middle = 0.5 * (line.lower + line.upper);
+        return at_x != nullptr ? 0.5 * (middle + x) : middle;
       }
 
       Interval
@@ -291,28 +315,6 @@ namespace Debond
                 std::min(node.upper(i), piece.upper)};
       }
     };
-
-
-
-    /// The convexity with which @p other is not below the tangent of @p own at
-    /// s and its parabola there.
-    double
-    needed_convexity(const BranchMinimum::Piece &own,
-                     const BranchMinimum::Piece &other,
-                     const double                s)
-    {
-      const long double c       = own.curvature;
-      const long double slope   = own.slope + c * s;
-      const long double value   = own.constant - 0.5L * c * s * s;
-      const long double b       = other.slope - slope;
-      const long double h       = other.constant - value;
-      const long double above   = h + s * (b + 0.5L * other.curvature * s);
-      const long double squared = b * b - 2.L * other.curvature * h;
-      if (!(squared > 0.L))
-        return 0.;
-      return above > 0.L ? static_cast<double>(squared / (2.L * above)) :
-                           std::numeric_limits<double>::infinity();
-    }
   } // namespace
 
 
@@ -326,7 +328,7 @@ namespace Debond
     const Eigen::VectorXd s_0 = *inverse * g;
 
     // Phi is not negative.
-    const BranchMinimum zero({{0., 0., 0.L, ""}});
+    const BranchMinimum zero        = BranchMinimum::zero();
     BoxProblem          without_phi = {S,
                                        g,
                                        std::vector<BranchEnergy>(n, {0., {zero[0]}}),
@@ -364,15 +366,12 @@ namespace Debond
     for (unsigned int i = 0; i < n; ++i)
       {
         const BranchMinimum &f_i       = phi.f[i];
-        const unsigned int   own       = f_i.index(s(i));
-        double               convexity = 0., largest = 0.;
+        const double         convexity = f_i.needed_convexity(s(i));
+        double               largest   = 0.;
         for (unsigned int k = 0; k < f_i.size(); ++k)
           {
             f[i].pieces.push_back(f_i[k]);
             largest = std::max(largest, f_i[k].curvature);
-            if (k != own)
-              convexity =
-                std::max(convexity, needed_convexity(f_i[own], f_i[k], s(i)));
           }
         A(i, i) -= (1. + Tolerance::excess_at_point) * convexity +
                    Tolerance::floor_at_point * std::min(largest, S(i, i));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/optimization/global/separable_branches.h>
 
+#include <algorithm>
+
 namespace Debond
 {
   BranchState
@@ -41,9 +43,29 @@ namespace Debond
   {
     Eigen::SparseMatrix<double> result(s.size(), s.size());
     for (unsigned int i = 0; i < s.size(); ++i)
-      if (const double c = f[i][f[i].index(s(i))].curvature; c != 0.)
+      if (const double c = f[i].majorant_curvature(s(i)); c != 0.)
         result.insert(i, i) = c;
     return result;
+  }
+
+
+
+  bool
+  SeparableBranches::softens() const
+  {
+    return std::any_of(f.begin(), f.end(), [](const BranchMinimum &f_i) {
+      return f_i.softens();
+    });
+  }
+
+
+
+  bool
+  SeparableBranches::is_piecewise_quadratic() const
+  {
+    return std::all_of(f.begin(), f.end(), [](const BranchMinimum &f_i) {
+      return f_i.is_piecewise_quadratic();
+    });
   }
 
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/tolerances.h>
+#include <debond/linear_algebra/cholesky.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/polar_cone.h>
 
@@ -18,6 +19,14 @@ namespace Debond
   {
     /// Far more than scenes need.
     constexpr unsigned int maximum_proximal_steps = 500;
+
+    /// On the way of a fall, for each unknown.
+    constexpr unsigned int most_pieces_passed = 10;
+
+    constexpr unsigned int most_bisections = 50;
+
+    /// Towards the motion along which J is least convex.
+    constexpr unsigned int steps_to_least_convex = 20;
 
     Eigen::MatrixXd
     orthonormal(const Eigen::MatrixXd &motions)
@@ -167,7 +176,8 @@ namespace Debond
       }
     if (guess != nullptr && !guess->empty())
       active = guess->active_set(M, E, r);
-    const BoundQPResult qp =
+    const Eigen::VectorXd before = s;
+    const BoundQPResult   qp =
       solve_bound_qp(M,
                      r,
                      Eigen::VectorXd::Zero(s.size()),
@@ -177,7 +187,111 @@ namespace Debond
                        0.);
     if (qp.status != SolverStatus::interrupted)
       s = qp.x;
+    if (can_be_verified(qp.status) && phi.softens())
+      fall(before);
     return {qp.status, qp.steps, 0, qp.operations};
+  }
+
+
+
+  void
+  CondensedProblem::fall(const Eigen::VectorXd &before)
+  {
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index i = 0; i < s.size(); ++i)
+      if (s(i) < 0.)
+        free.push_back(i);
+    if (free.empty())
+      return;
+    Eigen::MatrixXd A = S;
+    A += phi.second_derivative(s);
+    const Eigen::VectorXd force = g - S * s - phi.subgradient(s);
+    const DenseCholesky   factor(A(free, free));
+    Eigen::VectorXd       way;
+    if (factor.is_positive_definite())
+      {
+        way = force(free);
+        factor.solve_in_place(way);
+      }
+    else
+      {
+        // M^{-1}(M - A), M of the majorant, is what takes one step of majorants
+        // to the next one.
+        const DenseCholesky majorant(M(free, free));
+        if (!majorant.is_positive_definite())
+          return;
+        const Eigen::MatrixXd rest = M(free, free) - A(free, free);
+        way                        = (s - before)(free);
+        for (unsigned int k = 0; k < steps_to_least_convex && !way.isZero(0.);
+             ++k)
+          {
+            way = rest * (way / way.lpNorm<Eigen::Infinity>());
+            majorant.solve_in_place(way);
+          }
+        if (way.dot(force(free)) < 0.)
+          way *= -1.;
+      }
+    Eigen::VectorXd ds = Eigen::VectorXd::Zero(s.size());
+    ds(free)           = way;
+    fall_along(ds);
+  }
+
+
+
+  void
+  CondensedProblem::fall_along(const Eigen::VectorXd &ds)
+  {
+    const double size = ds.lpNorm<Eigen::Infinity>();
+    if (!(size > 0.))
+      return;
+    double limit = std::numeric_limits<double>::max();
+    for (Eigen::Index i = 0; i < s.size(); ++i)
+      if (ds(i) > 0.)
+        limit = std::min(limit, -s(i) / ds(i));
+    const Eigen::VectorXd start     = s;
+    const double          work      = ds.dot(g - S * s);
+    const double          stiffness = ds.dot(S * ds);
+    const auto            slope_at  = [&](const double t) {
+      s = (start + t * ds).cwiseMin(0.);
+      return t * stiffness - work + phi.subgradient(s).dot(ds);
+    };
+    double t = 0., slope = slope_at(0.);
+    double beyond_kink =
+      Tolerance::past_kink * s.lpNorm<Eigen::Infinity>() / size;
+    const double least_slope = Tolerance::end_of_fall * std::abs(slope);
+    for (Eigen::Index k = 0;
+         k < most_pieces_passed * s.size() && slope < -least_slope && t < limit;
+         ++k)
+      {
+        const double curvature =
+          stiffness + ds.dot(phi.second_derivative(s) * ds);
+        const double step =
+          std::min(limit - t,
+                   curvature > 0. ? -slope / curvature : std::max(1., t));
+        const double part = phi.first_change(s, ds, step);
+        // Beyond a kink, as on it the piece before it holds: by rounding, and
+        // further for those that hardly move.
+        beyond_kink = part > 0. ? Tolerance::past_kink *
+                                    s.lpNorm<Eigen::Infinity>() / size :
+                                  8. * beyond_kink;
+        double low  = t;
+        t     = std::min(limit, t + part + (part < step ? beyond_kink : 0.));
+        slope = slope_at(t);
+        // What is no parabola may have its minimum before.
+        for (unsigned int j = 0; j < most_bisections && slope > least_slope;
+             ++j)
+          {
+            const double middle       = 0.5 * (low + t);
+            const double middle_slope = slope_at(middle);
+            if (middle_slope > 0. || j + 1 == most_bisections)
+              {
+                t     = middle;
+                slope = middle_slope;
+              }
+            else
+              low = middle;
+          }
+      }
   }
 
 

@@ -10,7 +10,8 @@
 
 namespace Debond
 {
-  /// f(s) = c/2 s^2 + the least of some pieces of a BranchMinimum, c >= 0.
+  /// f(s) = c/2 s^2 + some pieces of a BranchMinimum that follow each other, c
+  /// >= 0.
   struct BranchEnergy
   {
     double                            convexity; ///< c
@@ -36,8 +37,8 @@ namespace Debond
 
   /**
    * The convex envelope of a BranchEnergy on [lower, upper], upper <= 0: parts
-   * of its parabolas, and between them lines that touch the parabolas on both
-   * sides as far as these reach.
+   * of its convex pieces, and between them lines that touch these, or meet the
+   * ends of concave ones.
    */
   class ConvexEnvelope
   {
@@ -65,12 +66,12 @@ namespace Debond
     /// In ascending order, without empty ones.
     std::vector<Part> parts;
 
-  private:
-    BranchEnergy f;
-
     /// The line that has s inside, null if there is none.
     const Part *
     line_at(const double s) const;
+
+  private:
+    BranchEnergy f;
   };
 
 

@@ -32,10 +32,10 @@ namespace Debond
   /// What NodeBound finds out of a node.
   struct NodeResult
   {
-    /// The unknown to branch on next, the first piece of the lower half of its
-    /// pieces, and bounds of the upper and the lower half.
+    /// The unknown to branch on next, where, and bounds of the upper and the
+    /// lower half.
     std::optional<unsigned int> unknown;
-    unsigned int                piece = 0;
+    double                      split = 0.;
     std::array<double, 2>       half_bounds;
 
     /// If there is none, the node is done: it has no value below this.
@@ -60,15 +60,15 @@ namespace Debond
    * Bounds nodes of the branch and bound for 1/2 s'S s - g's + Phi(s), s <= 0,
    * Phi with branches.
    *
-   * A node's box leaves each unknown some pieces in a row: if it is one, the
-   * unknown is decided. The others' terms are replaced by their convex envelope
-   * on the box, after an amount of convexity was moved from S to them, which
-   * makes the envelope tighter (the D.C. splitting of alpha-BB: Androulakis,
-   * Maranas, Floudas, J. Global Optim. 7, 1995): first the same multiple of the
-   * differences of their curvatures, which leaves enough in S to shrink the
-   * box, then what raises the bound (raise_bound, with which the bound nears
-   * that of a semidefinite program). Each bound shrinks the box to where a
-   * point can be below the best known value, which decides unknowns.
+   * A node's box leaves each unknown some pieces in a row: if it is a convex
+   * one, the unknown is decided. The others' terms are replaced by their convex
+   * envelope on the box, after an amount of convexity was moved from S to them,
+   * which makes the envelope tighter (the D.C. splitting of alpha-BB:
+   * Androulakis, Maranas, Floudas, J. Global Optim. 7, 1995): first the same
+   * multiple of the differences of their curvatures, which leaves enough in S
+   * to shrink the box, then what raises the bound (raise_bound, with which the
+   * bound nears that of a semidefinite program). Each bound shrinks the box to
+   * where a point can be below the best known value, which decides unknowns.
    */
   class NodeBound
   {
@@ -88,10 +88,8 @@ namespace Debond
     root(const double best_value) const;
 
     /// A lower bound of the functional that is close to its value at @p s if
-    /// the convexity that the branches at s need to be the least ones with it,
-    ///     p'(s_i)^2 / (2 p(s_i)) - c
-    /// for each other branch with curvature c, p its difference to the tangent
-    /// at s_i, leaves S positive definite; minus infinity if it does not. Takes
+    /// the convexity with which the terms of Phi are not below their tangents
+    /// at s leaves S positive definite; minus infinity if it does not. Takes
     /// one factorisation.
     double
     bound_at(const Eigen::VectorXd &s) const;

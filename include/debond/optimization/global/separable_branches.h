@@ -14,7 +14,7 @@ namespace Debond
 
 
 
-  /// Phi(s) = sum_i f_i(s_i): each unknown has branches of its own.
+  /// Phi(s) = sum_i f_i(s_i): each unknown has pieces of its own.
   struct SeparableBranches : public PiecewiseQuadratic
   {
     std::vector<BranchMinimum> f;
@@ -34,6 +34,13 @@ namespace Debond
 
     Eigen::SparseMatrix<double>
     curvature(const VectorView &s) const override;
+
+    bool
+    softens() const override;
+
+    /// Whether all pieces are quadratic.
+    bool
+    is_piecewise_quadratic() const;
 
     /// The largest value of Phi, infinite if there is none.
     double

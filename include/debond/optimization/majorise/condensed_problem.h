@@ -15,8 +15,8 @@ namespace Debond
    * sets with a Cholesky factorisation each, exactly whatever the tolerance
    * unless minimise_roughly() was called.
    *
-   * Where points of Phi move with s, the minimum of a majorant is only a step
-   * towards the limit, and what the last of them say of it is tried.
+   * Where points of Phi move with s, or Phi softens, the minimum of a majorant
+   * is only a step towards the limit.
    *
    * A majorant that leaves motions without stiffness, or with so little that it
    * is lost in that of the body, is minimised by proximal steps along these
@@ -68,6 +68,20 @@ namespace Debond
     minimise(const double tolerance) override;
 
   private:
+    /// Where Phi softens majorants are too stiff to come far, and where J is
+    /// not convex they crawl. From s, to which a majorant has led from @p
+    /// before: a Newton step for the bounds that are not active, or, if J is
+    /// not convex, the way along which it is least so, by a power iteration
+    /// that begins with the step of the majorant. As far as J falls, so that no
+    /// barrier is crossed.
+    void
+    fall(const Eigen::VectorXd &before);
+
+    /// From s along @p ds to the first minimum of J, or to where s meets a
+    /// bound.
+    void
+    fall_along(const Eigen::VectorXd &ds);
+
     Eigen::MatrixXd N; ///< an orthonormal basis of S's null space
 
     /// S without what rounding leaves along N, if there is N.

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/parameter_table.h>
+#include <debond/base/text.h>
+#include <debond/contact/laws/curve.h>
+#include <debond/contact/laws/softening.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace Debond
+{
+  namespace
+  {
+    const std::string of_stiffness = "Contact law/Bond stiffness";
+    const std::string of_strength  = "Contact law/Bond strength";
+    const std::string of_energy    = "Contact law/Fracture energy";
+
+
+
+    std::string
+    data_of(const SofteningBonds &bonds)
+    {
+      return words("stiffness ",
+                   bonds.stiffness,
+                   ", strength ",
+                   bonds.strength,
+                   ", fracture energy ",
+                   bonds.energy);
+    }
+
+
+
+    void
+    check(const SofteningBonds &bonds)
+    {
+      for (const double number :
+           {bonds.stiffness, bonds.strength, bonds.energy})
+        if (!(number > 0.) || !std::isfinite(number))
+          throw std::invalid_argument(
+            "bonds that soften need numbers > 0, these have " + data_of(bonds));
+      const double stored =
+        bonds.strength * bonds.strength / (2. * bonds.stiffness);
+      if (!(bonds.energy > stored))
+        throw std::invalid_argument(
+          words("it has to exceed strength^2 / (2 stiffness) = ",
+                stored,
+                ", which a bond gives back when it breaks; equal to it is Law "
+                "= winkler"));
+    }
+
+
+
+    /// A law of three numbers.
+    template <ContactLawParameters (*law_of)(const SofteningBonds &)>
+    LawMaker
+    maker(ParameterTable &)
+    {
+      return [](ParameterTable &table) {
+        const std::string for_winkler =
+          "is for Law = winkler: bonds that soften are the same everywhere but "
+          "for the Traction factor";
+        for (const auto &[path, unused] : table.locations())
+          for (const std::string &entry :
+               {of_stiffness, of_strength, of_energy})
+            if (path.compare(0, entry.size() + 1, entry + ' ') == 0 &&
+                table.is_set(path))
+              table.reject(path, for_winkler);
+        SofteningBonds bonds   = {};
+        bool           has_all = true;
+        for (const auto &[path, number] :
+             {std::make_pair(of_stiffness, &bonds.stiffness),
+              std::make_pair(of_strength, &bonds.strength),
+              std::make_pair(of_energy, &bonds.energy)})
+          if (!table.is_set(path) || !read_number(table.get(path), *number))
+            {
+              table.reject(path,
+                           "bonds that soften need a Bond stiffness, a Bond "
+                           "strength and a Fracture energy, three numbers");
+              has_all = false;
+            }
+        if (!has_all)
+          return ContactLawParameters();
+        try
+          {
+            ContactLawParameters law = law_of(bonds);
+            add_traction_factor(table, law);
+            return law;
+          }
+        catch (const std::invalid_argument &error)
+          {
+            table.reject(of_energy, error.what(), {of_stiffness, of_strength});
+            return ContactLawParameters();
+          }
+      };
+    }
+
+
+
+    const std::string softening_entries = of_stiffness + ", " + of_strength +
+                                          ", " + of_energy + ", " +
+                                          traction_factor;
+  } // namespace
+
+
+
+  ContactLawParameters
+  bilinear_law(const SofteningBonds &bonds)
+  {
+    check(bonds);
+    ContactLawParameters law =
+      curve_law({{0., 0.},
+                 {bonds.strength / bonds.stiffness, bonds.strength},
+                 {2. * bonds.energy / bonds.strength, 0.}});
+    law.name                = "bilinear";
+    law.data                = data_of(bonds);
+    law.pieces[0].curvature = bonds.stiffness;
+    return law;
+  }
+
+
+
+  ContactLawParameters
+  exponential_law(const SofteningBonds &bonds)
+  {
+    check(bonds);
+    const double stored =
+      bonds.strength * bonds.strength / (2. * bonds.stiffness);
+    return {"exponential",
+            {{bonds.stiffness, 0., -bonds.strength / bonds.stiffness, "bonded"},
+             {0.,
+              -bonds.strength,
+              no_end,
+              "softening",
+              bonds.strength / (bonds.energy - stored)}},
+            data_of(bonds)};
+  }
+
+
+
+  LawKind
+  bilinear_kind()
+  {
+    return {"bilinear",
+            "softens: springs of the Bond stiffness up to the Bond strength, "
+            "whose traction then falls in a straight line while they take the "
+            "Fracture energy",
+            maker<bilinear_law>,
+            softening_entries};
+  }
+
+
+
+  LawKind
+  exponential_kind()
+  {
+    return {"exponential",
+            "the same with a traction that falls exponentially",
+            maker<exponential_law>,
+            softening_entries};
+  }
+} // namespace Debond
