@@ -371,7 +371,10 @@ namespace Debond
   AdhesionIntegral<dim>::is_at_drop(const VectorView &s,
                                     const double      part) const
   {
-    const std::vector<double> drops = law.branches().drops();
+    std::vector<double> drops;
+    for (unsigned int k = 0; k + 1 < law.branches().size(); ++k)
+      if (law.branches().has_drop(k))
+        drops.push_back(law.branches()[k].lower);
     return std::any_of(
       point_list.begin(), point_list.end(), [&](const Point &point) {
         const double trace = point.trace(s) / point.bonds.stretch;

@@ -321,16 +321,21 @@ namespace Debond
         "needs a law of straight lines, not Law = exponential";
       const bool decays =
         !AdhesiveLaw(p.law.pieces).branches().is_piecewise_quadratic();
-      refuse({{p.solver.prove && decays, "Solver/Prove", quadratic},
-              {p.load_path.global_branch == GlobalBranch::prove && decays,
-               "Load path/Global branch",
-               quadratic},
-              {p.load_path.arc, "Load path/Arc", breaks},
-              {p.certificate.kind != CertificateKind::none,
-               "Certificate/Kind",
-               breaks}},
-             {"Contact law/Law"},
-             table);
+      refuse(
+        {{p.solver.prove && decays, "Solver/Prove", quadratic},
+         {p.load_path.global_branch == GlobalBranch::prove && decays,
+          "Load path/Global branch",
+          quadratic},
+         {p.load_path.arc && decays, "Load path/Arc", quadratic},
+         {p.load_path.arc && !p.load_path.bonds_heal,
+          "Load path/Arc",
+          "needs Load path/Bonds heal = true with bonds that soften, as what "
+          "unloads does not come back on the same curve"},
+         {p.certificate.kind != CertificateKind::none,
+          "Certificate/Kind",
+          breaks}},
+        {"Contact law/Law"},
+        table);
     }
 
 

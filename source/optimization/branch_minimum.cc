@@ -411,19 +411,15 @@ namespace Debond
 
 
 
-  std::vector<double>
-  BranchMinimum::drops() const
+  bool
+  BranchMinimum::has_drop(const unsigned int piece) const
   {
-    std::vector<double> result;
-    for (unsigned int k = 1; k < pieces.size(); ++k)
-      {
-        const double s    = pieces[k].upper;
-        const double pull = pieces[k - 1].derivative(s);
-        if (pieces[k].derivative(s) - pull >
-            Tolerance::rounding_of_data * -pull)
-          result.push_back(s);
-      }
-    return result;
+    if (piece + 1 >= pieces.size())
+      return false;
+    const double s    = pieces[piece].lower;
+    const double pull = -pieces[piece].derivative(s);
+    return pull + pieces[piece + 1].derivative(s) >
+           Tolerance::rounding_of_data * pull;
   }
 
 

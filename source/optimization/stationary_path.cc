@@ -84,10 +84,16 @@ namespace Debond
     const unsigned int i     = change.i;
     const Segment      first = 2 * bonds[i].least + 1;
     Segment           &here  = segments[i];
-    if (change.opens)
-      here = here == 0 ? first : here + 1;
-    else
-      here = here == first ? 0 : here - 1;
+    const auto         go_on = [&]() {
+      if (change.opens)
+        here = here == 0 ? first : here + 1;
+      else
+        here = here == first ? 0 : here - 1;
+    };
+    go_on();
+    // Where the derivative does not jump nothing stays at a kink.
+    if (here > 0 && !is_free(i) && !f.has_drop((here - 1) / 2))
+      go_on();
     hold(i);
     if (is_free(i) && !returns && change.opens)
       bonds[i].least = (here - 1) / 2;
@@ -107,6 +113,38 @@ namespace Debond
 
   bool
   StationaryPath::factorise()
+  {
+    indefinite.reset();
+    if (factorise_definite())
+      return factor.condition_bound() >= Tolerance::condition_on_path;
+    factor.clear();
+    std::fill(in_factor.begin(), in_factor.end(), 0);
+    free.clear();
+    for (unsigned int i = 0; i < s.size(); ++i)
+      if (is_free(i))
+        free.push_back(i);
+    Eigen::MatrixXd M = S(free, free);
+    for (unsigned int k = 0; k < free.size(); ++k)
+      M(k, k) = stiffness(free[k]);
+    indefinite.emplace(M);
+    return indefinite->rcond() >= Tolerance::condition_on_path;
+  }
+
+
+
+  void
+  StationaryPath::solve_free(Eigen::VectorXd &b) const
+  {
+    if (indefinite)
+      b = indefinite->solve(b).eval();
+    else
+      factor.solve_in_place(b);
+  }
+
+
+
+  bool
+  StationaryPath::factorise_definite()
   {
     std::vector<unsigned int> others;
     for (unsigned int i = 0; i < s.size(); ++i)
@@ -145,14 +183,9 @@ namespace Debond
         Eigen::MatrixXd M = S(free, free);
         for (unsigned int k = 0; k < free.size(); ++k)
           M(k, k) = stiffness(free[k]);
-        if (!factor.compute(M))
-          {
-            free.clear();
-            std::fill(in_factor.begin(), in_factor.end(), 0);
-            return false;
-          }
+        return factor.compute(M);
       }
-    return factor.condition_bound() >= Tolerance::condition_on_path;
+    return true;
   }
 
 
@@ -173,8 +206,8 @@ namespace Debond
         point(k) -=
           bond.energy / bond.stretch * f[(segments[free[k]] - 1) / 2].slope;
       }
-    factor.solve_in_place(speeds);
-    factor.solve_in_place(point);
+    solve_free(speeds);
+    solve_free(point);
     ds.setZero();
     ds(free)   = speeds;
     s(free)    = point;
@@ -241,9 +274,9 @@ namespace Debond
         }
 
     const double tie = step + tied;
-    had_kink         = false;
+    is_unstable      = indefinite.has_value();
     for (unsigned int i = 0; i < s.size(); ++i)
-      had_kink = had_kink || (segments[i] > 0 && !is_free(i));
+      is_unstable = is_unstable || (segments[i] > 0 && !is_free(i));
     changes.clear();
     if (!reaches_end)
       for (unsigned int i = 0; i < s.size(); ++i)

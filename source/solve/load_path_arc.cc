@@ -165,7 +165,7 @@ namespace Debond
             "The arc ends after " + std::to_string(most) + " changes of nodes.";
         else
           // Nodes of a body at rest change one after the other.
-          is_going = path.t() == before || add(!path.was_at_kink());
+          is_going = path.t() == before || add(!path.was_unstable());
       }
     return arc;
   }

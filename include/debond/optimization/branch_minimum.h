@@ -138,9 +138,9 @@ namespace Debond
     double
     needed_convexity(const double s) const;
 
-    /// Where the derivative jumps, from 0 downwards.
-    std::vector<double>
-    drops() const;
+    /// Whether the derivative jumps at the lower end of a piece.
+    bool
+    has_drop(const unsigned int piece) const;
 
     /// c f(s / stretch) with the c for which the first piece, which has to have
     /// a curvature here, has the given one; the single piece zero if that is

@@ -7,7 +7,10 @@
 #include <debond/linear_algebra/cholesky.h>
 #include <debond/optimization/branch_minimum.h>
 
+#include <Eigen/LU>
+
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace Debond
@@ -17,15 +20,16 @@ namespace Debond
    *
    *     1/2 s'S s - g(t)'s + sum_i w_i f(s_i / l_i),  s <= 0,
    *
-   * g being affine in t, f a BranchMinimum and S positive definite where pieces
-   * of f have no curvature. Each s_i together with its force r_i, r = g - S s,
-   * is on a curve of straight segments: contact (s_i = 0), a piece of f, the
-   * kink after it, at which s_i stays and r_i goes from the derivative of one
-   * piece to that of the next, and so on. So the stationary points form a curve
-   * in (s, t) that is straight between breakpoints, at which one s_i comes to
-   * its next segment; t may turn there, and only there. It goes on beyond the
-   * end of a minimum: points with an s_i at a kink are no minima, as f is
-   * concave there.
+   * g being affine in t, and f a BranchMinimum of quadratic pieces. Each s_i
+   * together with its force r_i, r = g - S s, is on a curve of straight
+   * segments: contact (s_i = 0), a piece of f, if the derivative of f jumps at
+   * its end the kink there, at which s_i stays and r_i goes from the derivative
+   * of one piece to that of the next, and so on. So the stationary points form
+   * a curve in (s, t) that is straight between breakpoints, at which one s_i
+   * comes to its next segment; t may turn there, and only there. It goes on
+   * beyond the end of a minimum: points with an s_i at a kink are no minima, as
+   * f is concave there, nor are those where the free part of S with the
+   * curvatures of the pieces is not positive definite.
    *
    * See Eaves, "On solving equations with piecewise linear functions", in:
    * Math. Oper. Res. 1 (1976).
@@ -80,11 +84,11 @@ namespace Debond
       return s;
     }
 
-    /// Whether some s_i was at a kink between the last two points.
+    /// Whether the points between the last two are no minima.
     bool
-    was_at_kink() const
+    was_unstable() const
     {
-      return had_kink;
+      return is_unstable;
     }
 
     /// The point with each s_i that is at a kink inside the piece that it
@@ -138,10 +142,18 @@ namespace Debond
     void
     change(const Change &change);
 
-    /// The free part of S with its pieces, by what has changed in it. Returns
-    /// whether it is definite enough.
+    /// The free part of S with its pieces, by what has changed in it as long as
+    /// it is positive definite. Returns whether it is regular enough.
     bool
     factorise();
+
+    /// The same, if it is positive definite.
+    bool
+    factorise_definite();
+
+    /// b <- its inverse times b.
+    void
+    solve_free(Eigen::VectorXd &b) const;
 
     /// The diagonal entry of a free s_i in it.
     double
@@ -162,9 +174,9 @@ namespace Debond
     Eigen::VectorXd      s;
     Eigen::VectorXd      r;
     std::vector<Segment> segments;
-    std::vector<Change>  changes;        ///< at the point
-    double               direction = 1.; ///< of t
-    bool                 had_kink  = false;
+    std::vector<Change>  changes;          ///< at the point
+    double               direction   = 1.; ///< of t
+    bool                 is_unstable = false;
     Eigen::VectorXd      ds, dr; ///< by t
     double               largest_ds = 0.;
     double               largest_dr = 0.; ///< of the terms of dr
@@ -174,6 +186,9 @@ namespace Debond
     UpdatableCholesky         factor;
     std::vector<unsigned int> free;
     std::vector<Segment>      in_factor;
+
+    /// Where it is not positive definite.
+    std::optional<Eigen::PartialPivLU<Eigen::MatrixXd>> indefinite;
   };
 } // namespace Debond
 
