@@ -4,7 +4,9 @@
 #include <debond/check/plausibility.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace Debond
 {
@@ -40,8 +42,59 @@ namespace Debond
 
 
 
+  template <int dim>
+  double
+  faces_in_softening_zone(const ElasticProblem<dim>   &problem,
+                          const AdhesionIntegral<dim> &adhesion)
+  {
+    constexpr double   infinity = std::numeric_limits<double>::infinity();
+    const AdhesiveLaw &law      = adhesion.adhesive_law();
+    const double       energy   = law.branches().largest_value();
+    if (!law.softens() || !std::isfinite(energy))
+      return infinity;
+
+    // Over E', of the faces of each cell.
+    const auto         &handler = problem.unknowns().dof_handler();
+    std::vector<double> faces_by_modulus(
+      handler.get_triangulation().n_global_active_cells(), infinity);
+    std::array<double, dim> middle;
+    middle.fill(1. / dim);
+    for (const auto &face : adhesion.contact_boundary().faces)
+      if (const BondScale bonds = adhesion.bonds_of(face, middle);
+          bonds.energy > 0.)
+        {
+          const double strength =
+            law.bond_strength() * bonds.energy / bonds.stretch;
+          const double size =
+            dim == 2 ? face.measure : 2. * std::sqrt(face.measure);
+          double &faces = faces_by_modulus[face.cell];
+          faces =
+            std::min(faces,
+                     energy * bonds.energy / (strength * strength * size));
+        }
+    double least = infinity;
+    for (const auto &cell : owned_cells(handler))
+      {
+        const Material &material = problem.fields().material(cell);
+        const double    mu       = material.shear_modulus();
+        const double    lambda   = material.lame_lambda<dim>();
+        const double    modulus  = 4. * mu * (lambda + mu) / (lambda + 2. * mu);
+        least =
+          std::min(least,
+                   modulus * faces_by_modulus[cell->id().get_coarse_cell_id()]);
+      }
+    return dealii::Utilities::MPI::min(least,
+                                       problem.unknowns().communicator());
+  }
+
+
+
   namespace
   {
+    /// With fewer faces in it a zone that softens moves in jumps from node to
+    /// node.
+    constexpr double least_faces_in_zone = 3.;
+
     /// Beyond it the strains of linear elasticity are wrong by some percent.
     constexpr double largest_small_gradient = 0.05;
   } // namespace
@@ -49,7 +102,9 @@ namespace Debond
 
 
   std::vector<std::string>
-  plausibility_notes(const bool has_load, const LargestValues &largest)
+  plausibility_notes(const bool           has_load,
+                     const LargestValues &largest,
+                     const double         faces_in_softening_zone)
   {
     std::vector<std::string> notes;
     const auto               add = [&notes](const auto &...parts) {
@@ -64,11 +119,19 @@ namespace Debond
           " are beyond linear elasticity, which is for small strains and "
           "rotations, below about ",
           largest_small_gradient);
+    if (faces_in_softening_zone < least_faces_in_zone)
+      add("the zone in which bonds soften, about E' G / strength^2 long, has ",
+          faces_in_softening_zone,
+          " faces of the contact boundary, which should be three at least: "
+          "fronts move in jumps. Take smaller cells there, or a lower strength "
+          "with the same energy");
     return notes;
   }
 
 
 
-  template decltype(largest_values<2>) largest_values<2>;
-  template decltype(largest_values<3>) largest_values<3>;
+  template decltype(faces_in_softening_zone<2>) faces_in_softening_zone<2>;
+  template decltype(faces_in_softening_zone<3>) faces_in_softening_zone<3>;
+  template decltype(largest_values<2>)          largest_values<2>;
+  template decltype(largest_values<3>)          largest_values<3>;
 } // namespace Debond

@@ -260,7 +260,11 @@ namespace Debond
         result.times.emplace_back("error estimate", timer.wall_time());
       }
 
-    append(plausibility_notes(is_loaded, result.largest), result.notes);
+    append(plausibility_notes(is_loaded,
+                              result.largest,
+                              faces_in_softening_zone(scene.problem(),
+                                                      scene.adhesion())),
+           result.notes);
     result.displacement_error =
       error_of(verification.exact_displacement, scene, result.solve.u);
   }

@@ -24,6 +24,8 @@ BAR = ["Dimension=3", "Mesh/Lengths=0.4, 0.04, 0.04", "Mesh/Cells=16, 4, 4",
        "Loads/Traction top=0; if(x < 0.2, 0.69, -0.345); 0"]
 TRI = ["Mesh/Source=file", "Mesh/File=tri.msh"]
 MG = MM + ["Solver/Linear solver=multigrid"]
+SOFT = ["Contact law/Law=bilinear", "Contact law/Bond stiffness=690",
+        "Contact law/Bond strength=0.138", "Contact law/Fracture energy=1e-4"]
 
 # Of each a name, a scene and what differs in it.
 SCENES = [
@@ -61,6 +63,9 @@ SCENES = [
     ("two sides", "hard/two-sides", []),
     ("bonds by place", "hard/patches", []),
     ("stepped", "stepped", []),
+    ("softening", "benchmark-40x4", MM + SOFT),
+    ("softening path", "benchmark-40x4", MM + SOFT + [
+        "Load path/Factors=0.3, 0.6, 1, 0.5", "Load path/Bonds heal=false"]),
     ("gap and probe", "benchmark-40x4",
      MM + ["Contact law/Initial gap=1e-4*(1 + x)", "Probes/end=0.37, 0.02"]),
     ("temperature", "benchmark-40x4",

@@ -3,6 +3,7 @@
 #define debond_check_plausibility_h
 
 #include <debond/base/dof_vector.h>
+#include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/mesh/body.h>
 
@@ -29,11 +30,26 @@ namespace Debond
 
 
 
+  /// How many faces of the contact boundary there are at least in the length
+  /// E' G / strength^2, over which bonds soften (Hillerborg, Modeer, Petersson,
+  /// Cement Concr. Res. 6, 1976); infinite if they do not. E' = E, or E / (1 -
+  /// nu^2) in plane strain and 3D, of the cell at the face, G what breaks
+  /// bonds.
+  template <int dim>
+  double
+  faces_in_softening_zone(const ElasticProblem<dim>   &problem,
+                          const AdhesionIntegral<dim> &adhesion);
+
+
+
   /// What a user should know of a result that is right as the solution of the
-  /// discrete problem: that there is no load, or that displacements are too
-  /// large for linear elasticity.
+  /// discrete problem: that there is no load, that displacements are too
+  /// large for linear elasticity, or that faces are too large for bonds that
+  /// soften.
   std::vector<std::string>
-  plausibility_notes(const bool has_load, const LargestValues &largest);
+  plausibility_notes(const bool           has_load,
+                     const LargestValues &largest,
+                     const double         faces_in_softening_zone);
 } // namespace Debond
 
 #endif

@@ -1,0 +1,223 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""check_softening.py DEBOND: bonds that soften. A column by hand, in several units; paths of
+a strip beside a program of its own (dense matrices, all of majorise-minimise in Python); a
+cube that snaps back; least states that are proved; the limit of brittle bonds; a double
+cantilever beam through its snaps."""
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from run_scenes import Scenes
+
+scenes = Scenes(sys.argv[1])
+solve, check, close = scenes.solve, scenes.check, scenes.close
+FREE = ["Contact law/Tangential displacement=free", "Contact law/Quadrature=nodal"]
+NO_HEALING = "Load path/Bonds heal=false"
+
+
+def law(name, stiffness, strength, energy):
+    return [f"Contact law/Law={name}", f"Contact law/Bond stiffness={stiffness}",
+            f"Contact law/Bond strength={strength}", f"Contact law/Fracture energy={energy}"]
+
+
+def column(length, modulus, *more):
+    """E 100, height 2, moved by d: its compliance C is 0.02, bonds of k 100, t 1, G 0.02."""
+    return solve(f"Mesh/Lengths={2 * length}, {2 * length}", "Mesh/Cells=2, 2",
+                 f"Material/Young modulus={100 * modulus}", "Material/Poisson ratio=0",
+                 "Boundary conditions/Clamped boundaries=",
+                 "Boundary conditions/Roller boundaries=left",
+                 "Boundary conditions/Contact boundary=bottom",
+                 f"Boundary conditions/Displacement top=free; {length}", *FREE,
+                 "Load path/Displacement factors=0.005, 0.02, 0.035, 0.02, 0, 0.035, 0.04, 0.05",
+                 NO_HEALING, *law("bilinear", 100 * modulus / length, modulus,
+                                  0.02 * modulus * length), *more)
+
+
+def check_column():
+    scenes.section("Column")
+    # d, opening, J of the width 2: (d - p)^2 / (2 C) + j_1(p), p = (d - C t) of the line
+    # t = (0.04 - p) / 0.03 or t = 100 p; back at t = 20 p.
+    expected = [(0.005, 0.005 / 3, 0), (0.02, 1 / 150, 0), (0.035, 0.025, 0.01),
+                (0.02, 0.02 / 1.4, 0.01), (0, 0, 0.01), (0.035, 0.025, 0.01),
+                (0.04, 0.04, 0.02), (0.05, 0.05, 0.02)]
+    for name, length, modulus, more in (
+            ("MPa, mm", 1., 1., []), ("Pa, m", 1e-3, 1e6, []), ("GPa, m", 1e-3, 1e-3, []),
+            ("degree 2", 1., 1., ["Mesh/Degree=2", "Contact law/Quadrature=gauss 3"]),
+            ("midpoint", 1., 1., ["Contact law/Quadrature=midpoint"]),
+            ("multigrid", 1., 1., ["Solver/Linear solver=multigrid"])):
+        path = column(length, modulus, *more)["path"]
+        check(name + " has all steps", len(path) == len(expected))
+        for row, (d, opening, taken) in zip(path, expected):
+            energy = 2 * modulus * length**2
+            close(f"{name}, opening at {d}", row["largest_gap"], opening * length, 1e-10,
+                  0.04 * length)
+            close(f"{name}, dissipated at {d}", row["dissipated_energy"], taken * energy, 1e-10,
+                  0.02 * energy)
+            traction = (d - opening) / 0.02
+            close(f"{name}, force at {d}", -row["normal_force"], 2 * modulus * length * traction,
+                  1e-9, 2 * modulus * length)
+            close(f"{name}, balance at {d}", row["elastic_energy"] + row["adhesion_energy"],
+                  row["J"], 1e-13, 0.02 * energy)
+        close(name + ", J at 0.035", path[2]["J"], 0.01875 * energy, 1e-10)
+    # From rest, each by itself, by both methods.
+    for method in ("majorise minimise", "energy bundle"):
+        for d, opening, J in ((0.02, 1 / 150, 0.0066666666666666667), (0.035, 0.025, 0.01875),
+                              (0.05, 0.05, 0.02)):
+            result = column(1., 1., "Load path/Displacement factors=", "Load path/Bonds heal=true",
+                            f"Boundary conditions/Displacement top=free; {d}",
+                            "Solver/Method=" + method)
+            close(f"{method}, J at {d}", result["functional"], 2 * J, 1e-9)
+            close(f"{method}, opening at {d}", result["largest_opening"], opening, 1e-5)
+
+
+def strip(*more):
+    return solve("Mesh/Lengths=40, 2", "Mesh/Cells=20, 2", "Parts/grip=left: y > 1",
+                 "Material/Young modulus=1000", "Material/Poisson ratio=0.3",
+                 "Boundary conditions/Clamped boundaries=right",
+                 "Boundary conditions/Contact boundary=bottom",
+                 "Boundary conditions/Displacement grip=0.2; 1", *FREE, *more)
+
+
+# Factor: total and dissipated energy, bilinear and exponential.
+PATH = {
+    "bilinear": [(0.2, 0.3154258876617, 0.1871095483233), (0.6, 0.8825149347967, 0.38),
+                 (1, 1.680100494737, 0.5), (1.5, 3.072030693976, 0.6202187648677),
+                 (1, 1.709912955582, 0.6202187648677), (0.5, 0.8926423125464, 0.6202187648677),
+                 (0, 0.6202187648677, 0.6202187648677), (2, 4.924806934210, 0.7104452569407)],
+    "exponential": [(0.2, 0.3117708209190, 0.1692808895915), (0.6, 0.8785721038235,
+                                                               0.3691348645244),
+                    (1, 1.676806740887, 0.4907563379429), (1.5, 3.069020129493,
+                                                            0.6114547082725),
+                    (1, 1.703706006593, 0.6114547082725), (0.5, 0.8845175328526,
+                                                            0.6114547082725),
+                    (0, 0.6114547082725, 0.6114547082725), (2, 4.920527718965,
+                                                            0.7238151544637)]}
+
+
+def check_strip():
+    scenes.section("Path of a strip")
+    for name, expected in PATH.items():
+        path = strip(*law(name, 100, 1, 0.02), NO_HEALING, "Load path/Displacement factors="
+                     + ", ".join(str(row[0]) for row in expected))["path"]
+        check(name + " has all steps", len(path) == len(expected))
+        for row, (factor, total, dissipated) in zip(path, expected):
+            close(f"{name}, total at {factor}", row["J"], total, 1e-8)
+            close(f"{name}, dissipated at {factor}", row["dissipated_energy"], dissipated, 1e-6)
+        check(name + ", all are minima", all(r["minimum"] == "local minimum" for r in path))
+    # Small steps, and bonds between the nodes of a finer mesh.
+    factors = "Load path/Displacement factors=0.05:0.05:3"
+    for name, cells, most in (("bilinear", "20, 2", 4), ("bilinear", "80, 8", 5),
+                              ("exponential", "20, 2", 4), ("exponential", "80, 8", 5)):
+        path = strip(*law(name, 100, 1, 0.02), NO_HEALING, factors, "Mesh/Cells=" + cells)["path"]
+        mean = sum(row["iterations"] for row in path) / len(path)
+        check(f"{name} {cells}: iterations for a factor", len(path) == 60 and mean <= most, mean)
+        taken = [row["dissipated_energy"] for row in path]
+        check(f"{name} {cells}: what is taken does not fall", taken == sorted(taken))
+
+
+def check_brittle():
+    """With a fracture energy of little more than strength^2 / (2 stiffness)."""
+    scenes.section("Brittle limit")
+    factors = [NO_HEALING, "Load path/Displacement factors=0.2, 0.6, 1, 1.5, 0.5, 2"]
+    winkler = strip("Contact law/Bond stiffness=100", "Contact law/Bond threshold=0.01",
+                    *factors)["path"]
+    for part in (1e-3, 1e-6):
+        soft = strip(*law("bilinear", 100, 1, 0.005 * (1 + part)), *factors)["path"]
+        for row, brittle in zip(soft, winkler):
+            close(f"{part}: dissipated", row["dissipated_energy"],
+                  brittle["dissipated_energy"] * (1 + part), 1e-9)
+            close(f"{part}: J", row["J"] - row["dissipated_energy"],
+                  brittle["J"] - brittle["dissipated_energy"], 1e-9, brittle["J"])
+
+
+def check_snap_back():
+    """A cube of E 0.5 whose bonds are rigid up to 1.1 and then soften (SSNP118 of
+    code_aster, V6.03.118): the opening p goes with the traction t = 1.1 (1 - p / p_c), p_c =
+    1.8 / 1.1, and the top with p + t / 0.5."""
+    scenes.section("Cube that snaps back")
+    p_c = 1.8 / 1.1
+    for dimension in (2, 3):
+        both = dimension == 3
+        result = solve(f"Dimension={dimension}", "Mesh/Lengths=1, 1" + ", 1" * both,
+                       "Mesh/Cells=2, 2" + ", 2" * both, "Material/Young modulus=0.5",
+                       "Material/Poisson ratio=0", "Boundary conditions/Clamped boundaries=",
+                       "Boundary conditions/Roller boundaries=left" + ", front" * both,
+                       "Boundary conditions/Contact boundary=bottom",
+                       "Boundary conditions/Displacement top=free; 1" + "; free" * both, *FREE,
+                       "Contact law/Law=curve", f"Contact law/Curve=0:1.1, {p_c!r}:0",
+                       "Load path/Displacement factors=1, 3", "Load path/Arc=true")
+        arc = result["arc"]
+        check(f"{dimension}D: four states", [row["status"] for row in arc] ==
+              ["stable", "stable", "unstable", "stable"], arc)
+        # Straight between the states.
+        first, last = arc[1:3]
+        for opening, moved, force in ((0.368848, 2.0729525, 0.852052),
+                                      (1.45237, 1.699739, 0.123685)):
+            part = opening / last["largest_gap"]
+            between = {name: first[name] + part * (last[name] - first[name])
+                       for name in ("displacement_factor", "normal_force")}
+            traction = 1.1 * (1 - opening / p_c)
+            close(f"{dimension}D: displacement", between["displacement_factor"],
+                  opening + traction / 0.5, 1e-12)
+            close(f"{dimension}D: force", -between["normal_force"], traction, 1e-12)
+            close(f"{dimension}D: published", between["displacement_factor"], moved, 1e-6)
+            close(f"{dimension}D: published force", -between["normal_force"], force, 1e-5)
+
+
+def check_proofs():
+    """Half of two equal strips: least states by another branch and bound, in Python."""
+    scenes.section("Least states")
+    for b, J in ((0.1, 0.1068156398590), (0.3, 0.2275626259770), (0.5, 0.3067896265292),
+                 (1, 0.4570378093090), (2, 0.6685556957074)):
+        result = strip("Material/Poisson ratio=0", *law("bilinear", 200, 1, 0.01),
+                       f"Boundary conditions/Displacement grip=free; {b / 2}",
+                       "Solver/Prove=true")
+        close(f"half of it at {b}", 2 * result["functional"], J, 1e-9)
+        check(f"proved at {b}", result["minimum"]["state"] == "global")
+        check(f"in few nodes at {b}", result["proof"]["nodes"] <= 81,
+              result["proof"])
+    # The arc from rest ends where the path does.
+    settings = ["Material/Poisson ratio=0", *law("bilinear", 200, 1, 0.01),
+                "Boundary conditions/Displacement grip=free; 0.5",
+                "Load path/Displacement factors=0, 2"]
+    result = strip(*settings, "Load path/Arc=true")
+    check("arc with unstable states", {r["status"] for r in result["arc"]} ==
+          {"stable", "unstable"}, len(result["arc"]))
+    close("and the end of the path", result["arc"][-1]["J"], result["path"][-1]["J"], 1e-11)
+    # A curve is the law of its points, in the scene or in a file.
+    (scenes.directory / "law.csv").write_text("opening,traction\n0,0\n0.005,1\n0.02,0\n")
+    for entry in ("Curve=0:0, 0.005:1, 0.02:0", "Curve file=law.csv"):
+        other = strip("Material/Poisson ratio=0", "Contact law/Law=curve", "Contact law/" + entry,
+                      *settings[5:])
+        close(entry, other["path"][-1]["J"], result["path"][-1]["J"], 1e-12)
+
+
+def check_double_cantilever():
+    """Strong bonds on coarse cells: the crack runs on in snaps."""
+    scenes.section("Double cantilever beam")
+    for name in ("bilinear", "exponential"):
+        result = solve("Mesh/Lengths=100, 1.5", "Mesh/Cells=200, 3",
+                       "Material/Hypothesis=plane strain", "Material/Young modulus=126000",
+                       "Material/Poisson ratio=0.3", "Boundary conditions/Clamped boundaries=right",
+                       "Boundary conditions/Contact boundary=bottom",
+                       "Boundary conditions/Displacement left=free; 0.5", *FREE,
+                       *law(name, 200000, 57, 0.14), "Contact law/Traction factor="
+                       "if(x < 30 - 1e-9, 0, if(x < 30 + 1e-9, 0.5, 1))",
+                       "Load path/Displacement factors=0.1:0.1:6", NO_HEALING)
+        path = result["path"]
+        check(name + " arrives", result["exit_code"] == 0 and len(path) == 60)
+        check(name + " snaps, by more than a node", max(b["dissipated_energy"] - a["dissipated_energy"]
+                                   for a, b in zip(path, path[1:])) > 0.105)
+        check(name + ": at most 40 iterations a factor",
+              max(row["iterations"] for row in path) <= 40,
+              max(row["iterations"] for row in path))
+        check(name + ": damage from 0 to 1", min(r["damage"] for r in result["profile"]) == 0.
+              and max(r["damage"] for r in result["profile"]) > 0.99)
+        check(name + " has no note on its cells", not any("zone" in n for n in result["notes"]))
+
+
+scenes.together(*((check_.__name__, check_) for check_ in (
+    check_column, check_strip, check_brittle, check_snap_back, check_proofs,
+    check_double_cantilever)))
+scenes.end()
