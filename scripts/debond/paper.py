@@ -36,12 +36,15 @@ SCENES = [
       for name in ("ring", "double-cantilever", "bimaterial-strip", "peel", "blister",
                    "wafer")),
     *((f"cookbook/{name}", "", "mm, MPa", {"load_path": f"cookbook-{name}"})
-      for name in ("double-cantilever-path", "r-curve", "punch"))]
+      for name in ("double-cantilever-path", "r-curve", "punch",
+                   "softening-cantilever", "snap-back"))]
 
 # What the pictures of these load paths show over the displacement's factor.
 PATHS = {"cookbook/double-cantilever-path": ("reaction_left_y", "fronts"),
          "cookbook/r-curve": ("reaction_left_y", "fronts"),
-         "cookbook/punch": ("reaction_top_y", "largest_gap")}
+         "cookbook/punch": ("reaction_top_y", "largest_gap"),
+         "cookbook/softening-cantilever": ("reaction_left_y", "softening_part"),
+         "cookbook/snap-back": ("reaction_top_y", "largest_gap")}
 
 
 def make_pictures(program):

@@ -248,6 +248,34 @@ def main(debond, directory):
             if rows[-1]["broken_zone"] > 0. or max(tips) - min(tips) > 1.5 * size:
                 failures.append(f"double cantilever, tip at {tips}")
 
+    # Linear fracture mechanics knows neither stiffness nor strength: w = P a^3 / (3 EI), P =
+    # sqrt(2 G EI) / a. Bonds that soften are stretched before the crack, which lowers the
+    # peak, but not the force once the zone has its length.
+    couple = math.sqrt(2. * 0.04 * EI)
+    for strength, least in (8, 0.92), (1, 0.83):
+        run(debond, directory + "/softening-cantilever.prm",
+            ["Mesh/Cells=160, 1", f"Contact law/Bond strength={strength}"])
+        rows = path_rows()
+        for row in rows:
+            if row["displacement_factor"] in {2.5, 3., 4.}:
+                a = math.sqrt(3. * EI * row["displacement_factor"] / couple)
+                within(f"softening cantilever, strength {strength}, force at "
+                       f"{row['displacement_factor']}", couple / a,
+                       row["reaction_left_y"], 0.01)
+        peak = max(row["reaction_left_y"] for row in rows) * 60. / couple
+        if not least < peak < least + 0.05:
+            failures.append(f"softening cantilever, peak {peak} for {strength}")
+
+    # The opening p of the glue has the traction 1.1 (1 - p / p_c); the cube is stretched by
+    # 2 mm per MPa.
+    run(debond, directory + "/snap-back.prm", [])
+    with open("output/load_path_arc.csv", encoding="utf8") as file:
+        arc = list(csv.DictReader(file))
+    within("snap-back, strength", 2.2, float(arc[1]["displacement_factor"]), 1e-10)
+    within("snap-back, end", 1.8 / 1.1, float(arc[2]["displacement_factor"]), 1e-10)
+    if [row["status"] for row in arc] != ["stable", "stable", "unstable", "stable"]:
+        failures.append("snap-back, states")
+
     # The middle to what shear changes where bonds hold the strip, (h/a)^2 = 1/400 of
     # bending times a small number; the pressure to what the root is wider than a
     # line, and to fronts that wait.
