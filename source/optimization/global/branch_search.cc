@@ -436,7 +436,7 @@ namespace Debond
                   const std::vector<double> &stretches)
   {
     const Eigen::VectorXd curvature =
-      phi.curvature(Eigen::VectorXd::Zero(n)) * Eigen::VectorXd::Ones(n);
+      phi.second_derivative(Eigen::VectorXd::Zero(n)) * Eigen::VectorXd::Ones(n);
     std::vector<BranchMinimum> f;
     for (unsigned int i = 0; i < n; ++i)
       f.push_back(
