@@ -24,10 +24,26 @@ namespace Debond
 
 
 
+  template <typename Number>
+  double
+  AdhesiveLaw::on_piece(const double  s,
+                        const double  reached,
+                        const Number &number) const
+  {
+    // Without a memory there is no piece to be made.
+    return reached != 0. ? number(minimum.piece_at(s, reached)) :
+           s > 0.        ? 0. :
+                           number(minimum[minimum.index(s)]);
+  }
+
+
+
   double
   AdhesiveLaw::value(const double s, const double reached) const
   {
-    return s > 0. && reached == 0. ? 0. : minimum.piece_at(s, reached).value(s);
+    return on_piece(s, reached, [s](const auto &piece) {
+      return piece.value(s);
+    });
   }
 
 
@@ -35,8 +51,9 @@ namespace Debond
   double
   AdhesiveLaw::derivative(const double s, const double reached) const
   {
-    return s > 0. && reached == 0. ? 0. :
-                                     minimum.piece_at(s, reached).derivative(s);
+    return on_piece(s, reached, [s](const auto &piece) {
+      return piece.derivative(s);
+    });
   }
 
 
@@ -53,9 +70,9 @@ namespace Debond
   double
   AdhesiveLaw::second_derivative(const double s, const double reached) const
   {
-    return s > 0. && reached == 0. ?
-             0. :
-             minimum.piece_at(s, reached).second_derivative(s);
+    return on_piece(s, reached, [s](const auto &piece) {
+      return piece.second_derivative(s);
+    });
   }
 
 

@@ -315,6 +315,16 @@ namespace Debond
     {
       if (p.law.pieces.empty() || !AdhesiveLaw(p.law.pieces).softens())
         return;
+      const bool gains =
+        std::any_of(p.law.pieces.begin(),
+                    p.law.pieces.end(),
+                    [](const EnergyPiece &piece) { return piece.slope > 0.; });
+      if (gains && !p.load_path.bonds_heal)
+        table.reject("Load path/Bonds heal",
+                     "false needs tractions that never rise more than in "
+                     "proportion to the opening: bonds that close along the "
+                     "secant would give back more than they took",
+                     {"Contact law/Law"});
       const std::string breaks =
         "needs bonds whose traction does not fall but at once, these soften";
       const std::string quadratic =

@@ -373,6 +373,9 @@ namespace Debond
   double
   BranchMinimum::majorant_curvature(const double s, const double reached) const
   {
+    if (const Piece &here = pieces[index(s)];
+        reached == 0. && here.is_above && pieces[0].slope == 0.)
+      return here.curvature;
     const Piece own        = piece_at(s, reached);
     const bool  has_secant = !returns_on_a_piece(reached);
     if (own.is_above && (own.is_flat() || !has_secant))

@@ -100,6 +100,11 @@ namespace Debond
     bond_strength() const;
 
   private:
+    /// Of the piece that holds; 0 for s > 0 without a memory.
+    template <typename Number>
+    double
+    on_piece(const double s, const double reached, const Number &number) const;
+
     BranchMinimum            minimum;
     std::vector<std::string> names;
   };

@@ -263,6 +263,10 @@ namespace Debond
                                         .string()) :
                            curve_of(entries->points));
               add_traction_factor(all, law);
+              if (law.pieces.back().slope != 0.)
+                all.notes.push_back(path + " ends with a traction: bonds pull "
+                                           "with it at any opening, and never "
+                                           "break");
               return law;
             }
           catch (const std::invalid_argument &error)
