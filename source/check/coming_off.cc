@@ -41,8 +41,7 @@ namespace Debond
   {
     const auto &nodes   = problem.unknowns().contact().boundary().nodes;
     const auto &motions = problem.unknowns().held_by_contact().motions;
-    if (motions.empty() || nodes.empty() ||
-        !law.is_loose(law.branches().size() - 1))
+    if (motions.empty() || nodes.empty() || !law.lets_go())
       return {};
 
     const Eigen::MatrixXd towards =

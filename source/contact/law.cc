@@ -175,6 +175,15 @@ namespace Debond
 
 
 
+  bool
+  AdhesiveLaw::lets_go() const
+  {
+    const BranchMinimum::Piece &last = minimum[minimum.size() - 1];
+    return last.is_flat() || last.decay > 0.;
+  }
+
+
+
   double
   AdhesiveLaw::bond_threshold() const
   {

@@ -13,6 +13,10 @@ namespace Debond
   {
     constexpr double infinity = std::numeric_limits<double>::infinity();
 
+    /// Where nothing is left of what decays, in terms of the length in which it
+    /// does so by e.
+    constexpr double far_behind = 20.;
+
 
 
     /// Where @p next falls below @p current as s falls; minus infinity if
@@ -261,18 +265,7 @@ namespace Debond
 
   BranchMinimum::BranchMinimum(const std::vector<EnergyPiece> &given)
   {
-    double upper = 0., largest = 0.;
-    for (const EnergyPiece &piece : given)
-      {
-        if (std::isfinite(piece.end))
-          largest =
-            std::max({largest,
-                      std::abs(piece.curvature * upper + piece.slope),
-                      std::abs(piece.curvature * piece.end + piece.slope)});
-        upper = piece.end;
-      }
-    const double rounding   = Tolerance::rounding_of_data * largest;
-    const auto   require_of = [](const bool         holds,
+    const auto require_of = [](const bool         holds,
                                const EnergyPiece &piece,
                                const std::string &reason) {
       if (!holds)
@@ -281,7 +274,7 @@ namespace Debond
     };
     if (given.empty())
       throw std::invalid_argument("A law needs a piece");
-    upper = 0.;
+    double upper = 0., last_rounding = 0.;
     for (const EnergyPiece &piece : given)
       {
         const bool is_last = &piece == &given.back();
@@ -304,6 +297,11 @@ namespace Debond
                           piece.decay,
                           upper});
         const Piece &here = pieces.back();
+        // Of steep pieces far from 0 the terms of the derivative cancel.
+        const double rounding =
+          Tolerance::rounding_of_data *
+          (std::abs(piece.slope) +
+           std::abs(piece.curvature * (is_last ? upper : piece.end)));
         require_of(here.derivative(upper) <= rounding &&
                      (is_last ? here.curvature >= 0. || here.decay > 0. :
                                 here.derivative(piece.end) <= rounding),
@@ -311,10 +309,12 @@ namespace Debond
                    "pushes");
         require_of(pieces.size() == 1 ||
                      here.derivative(upper) >=
-                       pieces[pieces.size() - 2].derivative(upper) - rounding,
+                       pieces[pieces.size() - 2].derivative(upper) -
+                         (rounding + last_rounding),
                    piece,
                    "pulls more where it begins than the one before");
-        upper = piece.end;
+        upper         = piece.end;
+        last_rounding = rounding;
       }
     connect();
     for (Piece &own : pieces)
@@ -483,6 +483,8 @@ namespace Debond
   BranchMinimum::point_inside(const unsigned int piece) const
   {
     const Piece &p = pieces[piece];
+    if (p.decay > 0.)
+      return p.upper - far_behind / p.decay;
     return std::isfinite(p.lower) ? (p.lower + p.upper) / 2. : 2. * p.upper;
   }
 

@@ -217,7 +217,47 @@ def check_double_cantilever():
         check(name + " has no note on its cells", not any("zone" in n for n in result["notes"]))
 
 
+def check_edges():
+    """What random scenes have shown to be hard."""
+    scenes.section("Edges")
+    # A pad that only bonds of strength 0.1 hold.
+    pad = ["Mesh/Lengths=0.2, 0.1", "Mesh/Cells=8, 4", "Boundary conditions/Clamped boundaries=",
+           "Boundary conditions/Contact boundary=bottom"]
+    for name in ("bilinear", "exponential"):
+        for pull in (0.11, 0.2, 1):
+            result = solve(*pad, f"Loads/Traction top=0; {pull}", *law(name, 100, 0.1, 1e-4))
+            check(f"{name} comes off at {pull}", (result["status"], result["exit_code"]) ==
+                  ("comes off", 0), result["status"])
+        result = solve(*pad, "Loads/Traction top=0; 0.05", *law(name, 100, 0.1, 1e-4))
+        check(name + " holds", result["status"] == "success")
+    # Bonds that are all but brittle.
+    beam = ["Mesh/Lengths=1, 0.5", "Mesh/Cells=2, 1", "Material/Young modulus=10",
+            "Boundary conditions/Clamped boundaries=left", "Loads/Traction right=0; 0.1"]
+    brittle = solve(*beam, "Contact law/Bond stiffness=3", "Contact law/Bond threshold=0.1")
+    for part in (1e-3, 1e-5, 1e-6, 1e-8, 1e-9, 1e-12):
+        result = solve(*beam, *law("bilinear", 3, 0.3, repr(0.015 * (1 + part))))
+        check(f"brittle to {part}", result["minimum"]["state"] == "global", result["errors"])
+        close(f"J of brittle to {part}", result["functional"], brittle["functional"], 20 * part
+              + 1e-12)
+    # A curve whose second piece is the stiffest.
+    result = solve("Mesh/Lengths=1.6, 1.16", "Mesh/Cells=4, 2", "Material/Young modulus=8.56",
+                   "Material/Poisson ratio=0.02", "Boundary conditions/Clamped boundaries=left, right",
+                   "Boundary conditions/Contact boundary=bottom", "Loads/Traction top=0; 0.66",
+                   "Contact law/Law=curve", "Solver/Prove=true",
+                   "Contact law/Curve=0:0, 0.0006:0.15, 0.0007:0.2, 0.0012:0")
+    check("bonds that stiffen are proved", result["minimum"]["state"] == "global")
+    # Starts from all bonds broken reach the tail of an exponential law.
+    states = [solve("Mesh/Lengths=3.98, 0.34", "Mesh/Cells=9, 1", "Material/Young modulus=5.52",
+                    "Material/Poisson ratio=0.15", "Material/Hypothesis=plane strain",
+                    "Boundary conditions/Clamped boundaries=left",
+                    "Boundary conditions/Contact boundary=bottom",
+                    "Loads/Traction top=0; 0.0214", "Loads/Body force=0; -0.0283",
+                    *FREE, *law(name, 72.6, 0.0686, 0.00013))["functional"]
+              for name in ("bilinear", "exponential")]
+    close("a peeled strip is found with both laws", states[0], states[1], 0.01)
+
+
 scenes.together(*((check_.__name__, check_) for check_ in (
     check_column, check_strip, check_brittle, check_snap_back, check_proofs,
-    check_double_cantilever)))
+    check_double_cantilever, check_edges)))
 scenes.end()

@@ -125,6 +125,10 @@ namespace Debond
     /// Majorants that are the same: forces and curvatures but for rounding.
     constexpr double same_majorant = 1e-12;
 
+    /// Part by which the opening at which bonds that soften are broken exceeds
+    /// that at which they begin to: with less they break at once.
+    constexpr double brittle = 1e-9;
+
     /// Part of Phi's second derivative by which that of bonds on the same
     /// pieces changes in a refinement.
     constexpr double same_curvature = 1e-6;

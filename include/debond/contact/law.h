@@ -89,6 +89,10 @@ namespace Debond
     bool
     is_loose(const unsigned int piece) const;
 
+    /// Whether bonds hold nothing far away.
+    bool
+    lets_go() const;
+
     /// The displacement below which bonds are on the last branch, as a positive
     /// length (the paper's M); zero if there is no other.
     double

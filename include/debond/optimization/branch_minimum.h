@@ -175,7 +175,8 @@ namespace Debond
     double
     largest_value() const;
 
-    /// A point inside a piece, on the last one at twice its kink.
+    /// A point inside a piece, on the last one at twice its kink, or where it
+    /// has decayed.
     double
     point_inside(const unsigned int piece) const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/parameter_table.h>
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/contact/laws/curve.h>
 #include <debond/contact/laws/softening.h>
 
@@ -107,10 +108,13 @@ namespace Debond
   bilinear_law(const SofteningBonds &bonds)
   {
     check(bonds);
-    ContactLawParameters law =
-      curve_law({{0., 0.},
-                 {bonds.strength / bonds.stiffness, bonds.strength},
-                 {2. * bonds.energy / bonds.strength, 0.}});
+    // What is brittle but for rounding breaks at once.
+    const double         first = bonds.strength / bonds.stiffness;
+    const double         last  = 2. * bonds.energy / bonds.strength;
+    ContactLawParameters law   = curve_law(
+      {{0., 0.},
+         {first, bonds.strength},
+         {last > (1. + Tolerance::brittle) * first ? last : first, 0.}});
     law.name                = "bilinear";
     law.data                = data_of(bonds);
     law.pieces[0].curvature = bonds.stiffness;

@@ -269,6 +269,9 @@ namespace Debond
           std::min(limit - t,
                    curvature > 0. ? -slope / curvature : std::max(1., t));
         const double part = phi.first_change(s, ds, step);
+        // What nothing holds would fall for ever: the next majorant says so.
+        if (N.cols() > 0 && curvature <= 0. && part >= step && step < limit - t)
+          return;
         // Beyond a kink, as on it the piece before it holds: by rounding, and
         // further for those that hardly move.
         beyond_kink = part > 0. ? Tolerance::past_kink *
