@@ -115,19 +115,65 @@ namespace Debond
   StationaryPath::factorise()
   {
     indefinite.reset();
-    if (factorise_definite())
-      return factor.condition_bound() >= Tolerance::condition_on_path;
-    factor.clear();
-    std::fill(in_factor.begin(), in_factor.end(), 0);
+    if (!update_factor())
+      make_factor();
+    return (indefinite ? indefinite->rcond() : factor.condition_bound()) >=
+           Tolerance::condition_on_path;
+  }
+
+
+
+  bool
+  StationaryPath::update_factor()
+  {
+    std::vector<unsigned int> others;
+    for (unsigned int i = 0; i < s.size(); ++i)
+      if (in_factor[i] != (is_free(i) ? segments[i] : 0))
+        others.push_back(i);
+    // A change takes about as long as three rows of a new factor.
+    if (3 * others.size() >= free.size())
+      return false;
+    for (const unsigned int i : others)
+      {
+        if (in_factor[i] != 0)
+          {
+            const auto place = std::find(free.begin(), free.end(), i);
+            factor.remove(static_cast<unsigned int>(place - free.begin()));
+            free.erase(place);
+            in_factor[i] = 0;
+          }
+        if (!is_free(i))
+          continue;
+        if (!(factor.append(S.col(i)(free),
+                            stiffness(i),
+                            Tolerance::condition_on_path) >
+              Tolerance::condition_on_path))
+          return false;
+        free.push_back(i);
+        in_factor[i] = segments[i];
+      }
+    return true;
+  }
+
+
+
+  void
+  StationaryPath::make_factor()
+  {
     free.clear();
     for (unsigned int i = 0; i < s.size(); ++i)
-      if (is_free(i))
-        free.push_back(i);
+      {
+        in_factor[i] = is_free(i) ? segments[i] : 0;
+        if (is_free(i))
+          free.push_back(i);
+      }
     Eigen::MatrixXd M = S(free, free);
     for (unsigned int k = 0; k < free.size(); ++k)
       M(k, k) = stiffness(free[k]);
+    if (factor.compute(M))
+      return;
+    std::fill(in_factor.begin(), in_factor.end(), 0);
     indefinite.emplace(M);
-    return indefinite->rcond() >= Tolerance::condition_on_path;
   }
 
 
@@ -139,53 +185,6 @@ namespace Debond
       b = indefinite->solve(b).eval();
     else
       factor.solve_in_place(b);
-  }
-
-
-
-  bool
-  StationaryPath::factorise_definite()
-  {
-    std::vector<unsigned int> others;
-    for (unsigned int i = 0; i < s.size(); ++i)
-      if (in_factor[i] != (is_free(i) ? segments[i] : 0))
-        others.push_back(i);
-    // A change takes about as long as three rows of a new factor.
-    if (3 * others.size() < free.size())
-      for (const unsigned int i : others)
-        {
-          if (in_factor[i] != 0)
-            {
-              const auto place = std::find(free.begin(), free.end(), i);
-              factor.remove(static_cast<unsigned int>(place - free.begin()));
-              free.erase(place);
-              in_factor[i] = 0;
-            }
-          if (!is_free(i))
-            continue;
-          if (!(factor.append(S.col(i)(free),
-                              stiffness(i),
-                              Tolerance::condition_on_path) >
-                Tolerance::condition_on_path))
-            return false;
-          free.push_back(i);
-          in_factor[i] = segments[i];
-        }
-    else
-      {
-        free.clear();
-        for (unsigned int i = 0; i < s.size(); ++i)
-          {
-            in_factor[i] = is_free(i) ? segments[i] : 0;
-            if (is_free(i))
-              free.push_back(i);
-          }
-        Eigen::MatrixXd M = S(free, free);
-        for (unsigned int k = 0; k < free.size(); ++k)
-          M(k, k) = stiffness(free[k]);
-        return factor.compute(M);
-      }
-    return true;
   }
 
 

@@ -142,14 +142,19 @@ namespace Debond
     void
     change(const Change &change);
 
-    /// The free part of S with its pieces, by what has changed in it as long as
-    /// it is positive definite. Returns whether it is regular enough.
+    /// The free part of S with its pieces. Returns whether it is regular
+    /// enough.
     bool
     factorise();
 
-    /// The same, if it is positive definite.
+    /// By what has changed in it, if that is little and it stays positive
+    /// definite; otherwise false.
     bool
-    factorise_definite();
+    update_factor();
+
+    /// Anew.
+    void
+    make_factor();
 
     /// b <- its inverse times b.
     void

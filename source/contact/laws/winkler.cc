@@ -330,7 +330,7 @@ namespace Debond
           entries->everywhere.strength,
           entries->strengths,
           true,
-          "a M, the traction at which bonds break, likewise. Two of stiffness, threshold, strength and fracture energy are given, the other two follow",
+          "a M, the traction at which bonds break, likewise. Two of stiffness, threshold, strength and fracture energy are given, the other two follow. Bonds that soften begin to do so at it, and have stiffness, strength and fracture energy, three numbers",
           "force per area");
         bind(energy_path,
              entries->everywhere.energy,
