@@ -89,9 +89,7 @@ namespace Debond
                                        "done");
             }
           const auto &[energy, stretch] = scales[0];
-          laws.push_back(law.with_first_curvature(energy * law[0].curvature /
-                                                    (stretch * stretch),
-                                                  stretch));
+          laws.push_back(law.scaled(energy, stretch));
         }
       return laws;
     }

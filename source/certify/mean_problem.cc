@@ -70,9 +70,7 @@ namespace Debond
         ++first;
       const BranchMinimum::Piece &nearest  = whole[first];
       const auto                  in_whole = [&]() -> LawInRange {
-        return {{},
-                whole.with_first_curvature(factor * whole[0].curvature),
-                0.};
+        return {{}, whole.scaled(factor), 0.};
       };
       if (first == last)
         return {Quadratic{factor * nearest.curvature,

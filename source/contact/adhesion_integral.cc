@@ -367,6 +367,18 @@ namespace Debond
 
 
   template <int dim>
+  Eigen::VectorXd
+  AdhesionIntegral<dim>::lumped_weights() const
+  {
+    const unsigned int n = n_nodes();
+    return matrix(Eigen::VectorXd::Zero(n),
+                  [](const double, const Point &) { return 1.; }) *
+           Eigen::VectorXd::Ones(n);
+  }
+
+
+
+  template <int dim>
   bool
   AdhesionIntegral<dim>::is_at_drop(const VectorView &s,
                                     const double      part) const

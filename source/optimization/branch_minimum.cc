@@ -428,18 +428,16 @@ namespace Debond
 
 
   BranchMinimum
-  BranchMinimum::with_first_curvature(const double curvature,
-                                      const double stretch) const
+  BranchMinimum::scaled(const double energy, const double stretch) const
   {
-    if (curvature == 0.)
+    if (energy == 0.)
       return BranchMinimum::zero();
     BranchMinimum result;
-    result.pieces      = pieces;
-    const double first = pieces[0].curvature;
+    result.pieces = pieces;
     for (Piece &piece : result.pieces)
       {
-        piece.curvature = piece.curvature / first * curvature;
-        piece.slope     = piece.slope / first * curvature * stretch;
+        piece.curvature *= energy / (stretch * stretch);
+        piece.slope *= energy / stretch;
         piece.decay /= stretch;
         piece.begin *= stretch;
         piece.lower *= stretch;

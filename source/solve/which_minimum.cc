@@ -4,7 +4,6 @@
 #include <debond/base/tolerances.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
-#include <debond/input/bad_input.h>
 #include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/majorise/coarse_start.h>
@@ -90,9 +89,8 @@ namespace Debond
         , result(result)
         , method(parameters.majorise_minimise)
         , graph(neighbours(adhesion.contact_boundary()))
-        , lumped(lumped_branches(adhesion,
-                                 adhesion.n_nodes(),
-                                 adhesion.adhesive_law().branches(),
+        , lumped(lumped_branches(adhesion.adhesive_law().branches(),
+                                 adhesion.lumped_weights(),
                                  stretches(adhesion)))
       {
         // What the bonds can change in J: at most the most that they can take
@@ -293,11 +291,13 @@ namespace Debond
           coarsen(adhesion.contact_boundary(), largest_automatic_search);
         const auto search = [&](const PiecewiseProblem &coarse,
                                 Eigen::VectorXd        &coarse_s) {
-          result.search_nodes = static_cast<unsigned int>(coarse_s.size());
+          result.search_nodes     = static_cast<unsigned int>(coarse_s.size());
+          Eigen::VectorXd weights = adhesion.lumped_weights();
+          for (const Eigen::SparseMatrix<double> &P : prolongations)
+            weights = (P.transpose() * weights).eval();
           const SeparableBranches coarse_lumped =
-            lumped_branches(coarse.phi,
-                            result.search_nodes,
-                            adhesion.adhesive_law().branches(),
+            lumped_branches(adhesion.adhesive_law().branches(),
+                            weights,
                             stretches(adhesion, prolongations));
           const NeighbourGraph coarse_graph =
             coarse_neighbours(prolongations.back());
@@ -405,18 +405,6 @@ namespace Debond
     const bool searches = wants_search(parameters);
     if (result.kind == MinimumKind::global || !(searches || parameters.prove))
       return result;
-
-    // The nodes' multiples of the law are known by their curvature at 0.
-    if (!(adhesion.adhesive_law().second_derivative(0.) > 0.))
-      {
-        const std::string reason = "needs a law with a curvature at 0";
-        if (parameters.prove)
-          throw BadInput({"Solver/Prove " + reason});
-        if (parameters.search != BondSearchChoice::automatic)
-          throw BadInput({"Solver/Search " + reason});
-        result.notes.push_back("no search for a lower minimum: that " + reason);
-        return result;
-      }
 
     MinimumSearch<dim> search(
       parameters, adhesion, condensed, may_go_on, s, result);

@@ -112,9 +112,8 @@ namespace
         const BranchList    branches = any_branches(random);
         const BranchMinimum f(branches);
         raise(most_pieces, f.size());
-        const double        factor = random(0.1, 10.);
-        const BranchMinimum more =
-          f.with_first_curvature(factor * f[0].curvature);
+        const double              factor = random(0.1, 10.);
+        const BranchMinimum       more   = f.scaled(factor);
         std::vector<unsigned int> seen(branches.size(), 0);
         for (unsigned int p = 0; p < f.size(); ++p)
           {

@@ -136,6 +136,11 @@ namespace Debond
     Eigen::SparseMatrix<double>
     least_second_derivative(const VectorView &s, const double part) const;
 
+    /// Of each node the factor of the law's second derivative in Phi's, if all
+    /// bonds are lumped at nodes.
+    Eigen::VectorXd
+    lumped_weights() const;
+
     /// Whether at some point the traction drops within @p part of its s.
     bool
     is_at_drop(const VectorView &s, const double part) const;

@@ -142,12 +142,9 @@ namespace Debond
     bool
     has_drop(const unsigned int piece) const;
 
-    /// c f(s / stretch) with the c for which the first piece, which has to have
-    /// a curvature here, has the given one; the single piece zero if that is
-    /// zero.
+    /// energy f(s / stretch); the single piece zero without energy.
     BranchMinimum
-    with_first_curvature(const double curvature,
-                         const double stretch = 1.) const;
+    scaled(const double energy, const double stretch = 1.) const;
 
     unsigned int
     size() const

@@ -430,18 +430,16 @@ namespace Debond
 
 
   SeparableBranches
-  lumped_branches(const PiecewiseQuadratic  &phi,
-                  const unsigned int         n,
-                  const BranchMinimum       &branches,
+  lumped_branches(const BranchMinimum       &branches,
+                  const Eigen::VectorXd     &weights,
                   const std::vector<double> &stretches)
   {
-    const Eigen::VectorXd curvature =
-      phi.second_derivative(Eigen::VectorXd::Zero(n)) * Eigen::VectorXd::Ones(n);
     std::vector<BranchMinimum> f;
-    for (unsigned int i = 0; i < n; ++i)
-      f.push_back(
-        branches.with_first_curvature(curvature(i),
-                                      stretches.empty() ? 1. : stretches[i]));
+    for (unsigned int i = 0; i < weights.size(); ++i)
+      {
+        const double stretch = stretches.empty() ? 1. : stretches[i];
+        f.push_back(branches.scaled(weights(i) * stretch * stretch, stretch));
+      }
     return SeparableBranches(f);
   }
 

@@ -92,13 +92,12 @@ namespace Debond
 
 
 
-  /// Phi lumped at its @p n unknowns: each has the multiple of @p branches with
-  /// the row sum of the second derivative at 0. This is Phi itself if each
-  /// unknown has a multiple of them for its own.
+  /// Each unknown has @p branches with its @p stretches and @p weights[i]
+  /// times their second derivative; with those of Phi this is Phi itself if
+  /// each unknown has a multiple of them for its own.
   SeparableBranches
-  lumped_branches(const PiecewiseQuadratic  &phi,
-                  const unsigned int         n,
-                  const BranchMinimum       &branches,
+  lumped_branches(const BranchMinimum       &branches,
+                  const Eigen::VectorXd     &weights,
                   const std::vector<double> &stretches = {});
 
 
