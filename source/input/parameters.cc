@@ -313,8 +313,6 @@ namespace Debond
     void
     check_softening(const Parameters &p, ParameterTable &table)
     {
-      if (p.law.pieces.empty() || !AdhesiveLaw(p.law.pieces).softens())
-        return;
       const bool gains =
         std::any_of(p.law.pieces.begin(),
                     p.law.pieces.end(),
@@ -325,6 +323,8 @@ namespace Debond
                      "proportion to the opening: bonds that close along the "
                      "secant would give back more than they took",
                      {"Contact law/Law"});
+      if (p.law.pieces.empty() || !AdhesiveLaw(p.law.pieces).softens())
+        return;
       const std::string breaks =
         "needs bonds whose traction does not fall but at once, these soften";
       const std::string quadratic =

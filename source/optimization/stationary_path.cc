@@ -144,10 +144,11 @@ namespace Debond
           }
         if (!is_free(i))
           continue;
-        if (!(factor.append(S.col(i)(free),
-                            stiffness(i),
-                            Tolerance::condition_on_path) >
-              Tolerance::condition_on_path))
+        const double diagonal = stiffness(i);
+        if (!(diagonal > 0.) || !(factor.append(S.col(i)(free),
+                                                diagonal,
+                                                Tolerance::condition_on_path) >
+                                  Tolerance::condition_on_path))
           return false;
         free.push_back(i);
         in_factor[i] = segments[i];

@@ -230,6 +230,19 @@ def check_edges():
                   ("comes off", 0), result["status"])
         result = solve(*pad, "Loads/Traction top=0; 0.05", *law(name, 100, 0.1, 1e-4))
         check(name + " holds", result["status"] == "success")
+    # Softening so steep that single nodes have a negative pivot on the arc.
+    for scene in (["Boundary conditions/Displacement right=free; 1",
+                   *law("bilinear", 5, 0.1, 0.00105),
+                   "Load path/Displacement factors=0.02:0.02:0.6"],
+                  ["Loads/Traction right=0; 0.5", "Contact law/Law=curve",
+                   "Contact law/Curve=0:1, 0.1:0", "Load path/Factors=0.1:0.1:1"]):
+        result = solve("Mesh/Lengths=10, 1", "Mesh/Cells=6, 1", "Load path/Arc=true",
+                       "Boundary conditions/Clamped boundaries=left",
+                       "Boundary conditions/Contact boundary=bottom", *scene)
+        check("steep: arc to the end of the interval, without a note",
+              result["exit_code"] == 0 and not any("arc" in n for n in result["notes"]) and
+              all(row["status"] in ("stable", "unstable") for row in result["arc"]),
+              result["notes"])
     # Bonds that are all but brittle.
     beam = ["Mesh/Lengths=1, 0.5", "Mesh/Cells=2, 1", "Material/Young modulus=10",
             "Boundary conditions/Clamped boundaries=left", "Loads/Traction right=0; 0.1"]

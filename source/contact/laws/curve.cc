@@ -44,8 +44,10 @@ namespace Debond
       for (std::size_t k = 0; k < curve.size(); ++k)
         {
           const auto [opening, traction] = curve[k];
-          require_curve(std::isfinite(opening) && std::isfinite(traction),
-                        "has finite numbers");
+          for (const double number : {opening, traction})
+            require_curve(number == 0. || (std::abs(number) >= 1e-100 &&
+                                           std::abs(number) <= 1e100),
+                          "has numbers from 1e-100 to 1e100, or 0");
           require_curve(traction >= 0.,
                         words("has no negative ones, as ",
                               traction,
@@ -101,10 +103,13 @@ namespace Debond
           if (parts.size() == 2 && read_number(parts[0], opening) &&
               read_number(parts[1], traction))
             curve.emplace_back(opening, traction);
-          else if (!parts.empty() && !curve.empty())
+          else if (!parts.empty() && number > 1)
             throw std::invalid_argument("line " + std::to_string(number) +
                                         " is not an opening and a traction");
         }
+      if (curve.empty())
+        throw std::invalid_argument(
+          "has no lines of an opening and a traction");
       return curve;
     }
 
@@ -253,7 +258,7 @@ namespace Debond
             {
               if (has_file == !entries->points.empty())
                 throw std::invalid_argument(
-                  "Law = curve needs a Curve or a Curve file");
+                  "Law = curve needs a Curve or a Curve file, not both");
               const std::string    set_at = all.locations().at(file_path);
               ContactLawParameters law    = curve_law(
                 has_file ? read_curve((std::filesystem::path(
