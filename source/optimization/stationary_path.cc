@@ -114,8 +114,9 @@ namespace Debond
   bool
   StationaryPath::factorise()
   {
+    const bool has_factor = !indefinite;
     indefinite.reset();
-    if (!update_factor())
+    if (!has_factor || !update_factor())
       make_factor();
     return (indefinite ? indefinite->rcond() : factor.condition_bound()) >=
            Tolerance::condition_on_path;
