@@ -239,13 +239,9 @@ namespace Debond
           const double trace = point.trace(s) / point.bonds.stretch;
           const double speed =
             (point.trace(ds) - point.offset) / point.bonds.stretch;
-          const BranchMinimum::Piece piece =
-            branches.piece_at(trace, point.reached);
-          const double end = speed < 0. ? piece.lower : piece.upper;
-          const bool   changes =
-            speed < 0. ? std::isfinite(end) : speed > 0. && end < 0.;
-          if (changes)
-            first = std::min(first, std::max(0., (end - trace) / speed));
+          first = std::min(
+            first,
+            branches.piece_at(trace, point.reached).way_to_end(trace, speed));
         }
     return first;
   }

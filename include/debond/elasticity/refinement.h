@@ -51,7 +51,8 @@ namespace Debond
 
   /**
    * Majorise-minimise from @p u in extended precision (ExtendedOperator), so
-   * that what remains of its errors is the rounding of the result. Active sets
+   * that what remains of its errors is the rounding of the result; where Phi
+   * softens by Newton steps. Active sets
    * for u_nu <= 0; the linear systems are solved by flexible conjugate
    * gradients with @p solver as preconditioner (Notay, SIAM J. Sci. Comput. 22,
    * 2000), to 1e-13 of the energy. The few directions in which factors in

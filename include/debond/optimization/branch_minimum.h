@@ -4,6 +4,7 @@
 
 #include <debond/optimization/interval.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -90,6 +91,17 @@ namespace Debond
       second_derivative(const double s) const
       {
         return decay > 0. ? decay * derivative(s) : curvature;
+      }
+
+      /// How far it is from @p s along @p ds to its end, as a multiple of ds:
+      /// infinite if there is none before s = 0.
+      double
+      way_to_end(const double s, const double ds) const
+      {
+        const double end  = ds < 0. ? lower : upper;
+        const bool   ends = ds < 0. ? std::isfinite(end) : ds > 0. && end < 0.;
+        return ends ? std::max(0., (end - s) / ds) :
+                      std::numeric_limits<double>::infinity();
       }
 
       /// Whether it has the same value everywhere.

@@ -42,7 +42,8 @@ namespace Debond
       return false;
     }
 
-    /// The second derivative of Phi.
+    /// The second derivative of Phi. Those that soften have their own, and
+    /// their own first_change(), which others are not asked for.
     virtual Eigen::SparseMatrix<double>
     second_derivative(const VectorView &s) const
     {

@@ -201,20 +201,6 @@ namespace Debond
 
 
   void
-  bind_traction_factor(ParameterTable &table)
-  {
-    table.declare(
-      traction_factor,
-      "",
-      Pattern("nothing, or an expression"),
-      "What multiplies the tractions of Law = curve, bilinear or exponential, an expression in x, y (and z) as in Loads: 0 where there are no bonds, such as on a crack; 1 if empty",
-      "none",
-      [](const std::string &) {});
-  }
-
-
-
-  void
   add_traction_factor(const ParameterTable &table, ContactLawParameters &law)
   {
     law.stiffness       = table.get(traction_factor);
@@ -250,7 +236,13 @@ namespace Debond
           Pattern("nothing, or a file"),
           "A file with two columns, such as a CSV file, in place of Curve, relative to the folder of what sets it",
           "as Curve");
-        bind_traction_factor(table);
+        table.declare(
+          traction_factor,
+          "",
+          Pattern("nothing, or an expression"),
+          "What multiplies the tractions of Law = curve, bilinear or exponential, an expression in x, y (and z) as in Loads: 0 where there are no bonds, such as on a crack; 1 if empty",
+          "none",
+          [](const std::string &) {});
         return [entries](ParameterTable &all) {
           const bool        has_file = !entries->file.empty();
           const std::string path     = has_file ? file_path : curve_path;

@@ -171,7 +171,7 @@ namespace Debond
       8. * std::numeric_limits<double>::epsilon() *
       (std::abs(value) + std::abs(least_i) + std::abs(constant) + offset +
        (std::abs(r_i) + std::abs(p.slope) +
-        (is_bounded ? quadratic * size : 0.) + (c + quadratic) * s) *
+        (is_bounded ? quadratic * size : 0.) + (std::abs(c) + quadratic) * s) *
          s);
     if (is_bounded)
       return {0.,

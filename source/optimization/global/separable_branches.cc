@@ -70,6 +70,30 @@ namespace Debond
 
 
 
+  Eigen::SparseMatrix<double>
+  SeparableBranches::second_derivative(const VectorView &s) const
+  {
+    Eigen::SparseMatrix<double> result(s.size(), s.size());
+    for (unsigned int i = 0; i < s.size(); ++i)
+      result.insert(i, i) = f[i][f[i].index(s(i))].second_derivative(s(i));
+    return result;
+  }
+
+
+
+  double
+  SeparableBranches::first_change(const VectorView &s,
+                                  const VectorView &ds,
+                                  const double      limit) const
+  {
+    double first = limit;
+    for (unsigned int i = 0; i < s.size(); ++i)
+      first = std::min(first, f[i][f[i].index(s(i))].way_to_end(s(i), ds(i)));
+    return first;
+  }
+
+
+
   double
   SeparableBranches::largest_value() const
   {

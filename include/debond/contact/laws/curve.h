@@ -34,12 +34,8 @@ namespace Debond
   LawKind
   curve_kind();
 
-  /// What multiplies the tractions of a law in a scene, for laws with numbers
-  /// that hold everywhere. Has to be called once for a table.
-  void
-  bind_traction_factor(ParameterTable &table);
-
-  /// Gives it to a law.
+  /// Gives what multiplies the tractions in a scene to a law, whose numbers
+  /// hold everywhere else.
   void
   add_traction_factor(const ParameterTable &table, ContactLawParameters &law);
 

@@ -38,6 +38,14 @@ namespace Debond
     bool
     softens() const override;
 
+    Eigen::SparseMatrix<double>
+    second_derivative(const VectorView &s) const override;
+
+    double
+    first_change(const VectorView &s,
+                 const VectorView &ds,
+                 const double      limit) const override;
+
     /// Whether all pieces are quadratic.
     bool
     is_piecewise_quadratic() const;

@@ -115,7 +115,8 @@ namespace Debond
    * a tenth of the residual it started from. The functional never rises; as
    * there are finitely many branches, the method ends at a point that is the
    * minimum of its own majorant and so satisfies the optimality conditions
-   * (for quadrature points that move with s it converges in the limit).
+   * (for quadrature points that move with s, and where Phi softens, it
+   * converges in the limit).
    *
    * See Hunter, Lange, "A tutorial on MM algorithms", Amer. Statist. 58 (2004).
    */
