@@ -80,28 +80,21 @@ namespace Debond
                 0.};
       if (first == 0 && last + 1 == whole.size())
         return in_whole();
-      std::vector<ConvexBranch> branches;
+      std::vector<EnergyPiece> pieces;
       for (unsigned int k = first; k <= last; ++k)
-        {
-          long double constant = whole[k].constant - nearest.constant;
-          // Branches without slopes have the constant of a near one.
-          if (std::abs(constant) <
-              Tolerance::same_constant * whole[last].constant)
-            constant = 0.L;
-          branches.push_back({factor * whole[k].curvature,
-                              factor * whole[k].slope,
-                              factor * constant,
-                              ""});
-        }
+        pieces.push_back({factor * whole[k].curvature,
+                          factor * whole[k].slope,
+                          k < last ? whole[k].lower : no_end,
+                          ""});
       try
         {
           return {{},
-                  BranchMinimum(branches),
+                  BranchMinimum(pieces),
                   factor * static_cast<double>(nearest.constant)};
         }
       catch (const std::invalid_argument &)
         {
-          // Some branch falls below its value at 0.
+          // Some piece falls below its value at 0.
           return in_whole();
         }
     }

@@ -3,6 +3,7 @@
 
 #include <debond/base/parameter_table.h>
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/contact/law.h>
 #include <debond/contact/laws/curve.h>
 #include <debond/contact/laws/none.h>
@@ -12,14 +13,28 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <stdexcept>
 
 namespace Debond
 {
   AdhesiveLaw::AdhesiveLaw(const std::vector<EnergyPiece> &pieces)
     : minimum(pieces)
   {
-    for (const EnergyPiece &piece : pieces)
-      names.push_back(piece.name);
+    for (unsigned int k = 0; k < minimum.size(); ++k)
+      {
+        const BranchMinimum::Piece &piece = minimum[k];
+        const double                lower =
+          std::isfinite(piece.lower) ? piece.lower : 2. * piece.upper;
+        // Of steep pieces far from 0 the terms of the derivative cancel.
+        const double rounding =
+          Tolerance::rounding_of_data *
+          (std::abs(piece.slope) + std::abs(piece.curvature * lower));
+        if (piece.derivative(piece.upper) > rounding ||
+            piece.derivative(lower) > rounding)
+          throw std::invalid_argument("The piece \"" + pieces[k].name +
+                                      "\" pushes");
+        names.push_back(pieces[k].name);
+      }
   }
 
 
@@ -87,7 +102,7 @@ namespace Debond
     // The other side, if s is a kink.
     const double other =
       s == 0. && reached == 0. ? 0. :
-      s == piece.lower         ? minimum[piece.branch + 1].derivative(s) :
+      s == piece.lower         ? minimum[piece.number + 1].derivative(s) :
                                  force;
     return {std::min(force, other), std::max(force, other)};
   }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 namespace Debond
@@ -19,100 +18,6 @@ namespace Debond
 
 
 
-    /// Where @p next falls below @p current as s falls; minus infinity if
-    /// nowhere.
-    long double
-    crossing(const ConvexBranch &current, const ConvexBranch &next)
-    {
-      const long double A =
-        static_cast<long double>(next.curvature) - current.curvature;
-      const long double B =
-        static_cast<long double>(next.slope) - current.slope;
-      const long double C = next.constant - current.constant;
-      // Of A/2 s^2 + B s + C the root with a positive derivative.
-      const long double discriminant = B * B - 2.L * A * C;
-      if (!(discriminant > 0.L))
-        return -infinity;
-      const long double root = std::sqrt(discriminant);
-      if (B > 0.L)
-        return -2.L * C / (B + root);
-      return A != 0.L ? (root - B) / A : -infinity;
-    }
-
-
-
-    long double
-    derivative(const ConvexBranch &branch, const long double s)
-    {
-      return branch.slope + branch.curvature * s;
-    }
-
-
-
-    /// Which of two branches that meet at s is lower below it.
-    bool
-    is_lower_below(const ConvexBranch &a,
-                   const ConvexBranch &b,
-                   const long double   s)
-    {
-      const long double of_a = derivative(a, s), of_b = derivative(b, s);
-      return of_a != of_b ? of_a > of_b : a.curvature < b.curvature;
-    }
-
-
-
-    struct Successor
-    {
-      const ConvexBranch *branch;
-      long double         end;
-    };
-
-    /// The branch that is the least below @p current, of those that meet there
-    /// the lowest one, and where it begins.
-    Successor
-    successor(const std::vector<ConvexBranch> &branches,
-              const Successor                 &current)
-    {
-      Successor result = {nullptr, -infinity};
-      for (const ConvexBranch &branch : branches)
-        {
-          long double s = crossing(*current.branch, branch);
-          if (s >= current.end)
-            {
-              // Three branches meet, at one point but for rounding.
-              if (s > (1.L - Tolerance::same_crossing) * current.end ||
-                  !is_lower_below(branch, *current.branch, current.end))
-                continue;
-              s = current.end;
-            }
-          if (s > result.end || (s == result.end && result.branch != nullptr &&
-                                 is_lower_below(branch, *result.branch, s)))
-            result = {&branch, s};
-        }
-      return result;
-    }
-
-
-
-    void
-    require(const bool          condition,
-            const ConvexBranch &branch,
-            const std::string  &reason)
-    {
-      if (condition)
-        return;
-      std::ostringstream message;
-      message << "The branch \"" << branch.name << "\", " << branch.constant
-              << " + " << branch.slope << " s + " << branch.curvature
-              << "/2 s^2, " << reason;
-      throw std::invalid_argument(message.str());
-    }
-  } // namespace
-
-
-
-  namespace
-  {
     using Piece = BranchMinimum::Piece;
 
     /// The curvatures of quadratics that touch @p own at @p s and meet @p other
@@ -202,67 +107,6 @@ namespace Debond
 
 
 
-  BranchMinimum::BranchMinimum(const std::vector<ConvexBranch> &branches)
-  {
-    if (branches.empty())
-      throw std::invalid_argument("A minimum of branches needs a branch");
-    for (const ConvexBranch &branch : branches)
-      {
-        require(std::isfinite(branch.curvature) &&
-                  std::isfinite(branch.slope) && std::isfinite(branch.constant),
-                branch,
-                "is not finite");
-        require(branch.curvature >= 0., branch, "is concave");
-      }
-
-    Successor current = {&branches[0], 0.L};
-    for (const ConvexBranch &branch : branches)
-      if (branch.constant < current.branch->constant ||
-          (branch.constant == current.branch->constant &&
-           is_lower_below(branch, *current.branch, 0.L)))
-        current.branch = &branch;
-    long double largest = 0.L;
-    while (current.branch != nullptr)
-      {
-        const Successor next  = successor(branches, current);
-        const double    lower = static_cast<double>(next.end),
-                     upper    = static_cast<double>(current.end);
-        if (lower < upper)
-          {
-            pieces.push_back(
-              {current.branch->curvature,
-               current.branch->slope,
-               current.branch->constant,
-               lower,
-               upper,
-               static_cast<unsigned int>(current.branch - branches.data())});
-            largest = std::max(largest, current.branch->constant);
-          }
-        current = next;
-      }
-
-    require(pieces[0].constant == 0.L,
-            branches[pieces[0].branch],
-            "is the least at s = 0 and has to be zero there");
-    connect();
-    for (const Piece &piece : pieces)
-      {
-        // The least value, which rounding may take below zero.
-        const double s =
-          piece.curvature > 0. ?
-            std::min(std::max(-piece.slope / piece.curvature, piece.lower),
-                     piece.upper) :
-            (piece.slope > 0. ? piece.lower : piece.upper);
-        require(std::isfinite(s) &&
-                  piece.value(s) >=
-                    -Tolerance::negative_branch * static_cast<double>(largest),
-                branches[piece.branch],
-                "is negative where it is the least");
-      }
-  }
-
-
-
   BranchMinimum::BranchMinimum(const std::vector<EnergyPiece> &given)
   {
     const auto require_of = [](const bool         holds,
@@ -302,11 +146,6 @@ namespace Debond
           Tolerance::rounding_of_data *
           (std::abs(piece.slope) +
            std::abs(piece.curvature * (is_last ? upper : piece.end)));
-        require_of(here.derivative(upper) <= rounding &&
-                     (is_last ? here.curvature >= 0. || here.decay > 0. :
-                                here.derivative(piece.end) <= rounding),
-                   piece,
-                   "pushes");
         require_of(pieces.size() == 1 ||
                      here.derivative(upper) >=
                        pieces[pieces.size() - 2].derivative(upper) -
@@ -317,10 +156,27 @@ namespace Debond
         last_rounding = rounding;
       }
     connect();
+    double rounding = 0.;
     for (Piece &own : pieces)
-      for (const Piece &other : pieces)
-        own.is_above = own.is_above && own.curvature >= 0. && own.decay == 0. &&
-                       is_nowhere_below(own, other);
+      {
+        // The least value, which rounding may take below zero.
+        rounding =
+          std::max(rounding, Tolerance::negative_energy * own.value(own.upper));
+        const double stationary =
+          own.curvature > 0. ? -own.slope / own.curvature : own.upper;
+        const double least =
+          own.value(std::clamp(stationary, own.lower, own.upper));
+        const bool rises =
+          std::isfinite(own.lower) ?
+            own.value(own.lower) < -rounding :
+            own.curvature < 0. || (own.curvature == 0. && own.slope > 0.);
+        require_of(!rises && least >= -rounding,
+                   given[own.number],
+                   "is negative");
+        for (const Piece &other : pieces)
+          own.is_above = own.is_above && own.curvature >= 0. &&
+                         own.decay == 0. && is_nowhere_below(own, other);
+      }
   }
 
 
@@ -365,7 +221,7 @@ namespace Debond
     const double force = pieces[m].derivative(reached);
     const auto   taken = static_cast<long double>(pieces[m].value(reached)) -
                        0.5L * force * reached;
-    return {force / reached, 0., taken, reached, 0., pieces[m].branch};
+    return {force / reached, 0., taken, reached, 0., m};
   }
 
 
@@ -389,7 +245,7 @@ namespace Debond
     if (has_secant && !is_on_secant)
       stay_above(piece_at(0., reached));
     for (Piece other : pieces)
-      if (other.lower < reached && (is_on_secant || other.branch != own.branch))
+      if (other.lower < reached && (is_on_secant || other.number != own.number))
         {
           if (has_secant)
             other.upper = std::min(other.upper, reached);
@@ -406,7 +262,7 @@ namespace Debond
     const Piece own       = piece_at(s, 0.);
     double      convexity = std::max(0., -own.curvature);
     for (const Piece &other : pieces)
-      if (other.branch != own.branch)
+      if (other.number != own.number)
         convexity =
           std::max(convexity, -curvatures_that_meet(own, s, other).lower);
     return convexity;

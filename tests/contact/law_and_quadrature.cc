@@ -346,7 +346,9 @@ namespace
     print_error([] { AdhesiveLaw({{-5., 0., no_end, "falling"}}); });
     print_error([] { AdhesiveLaw({{1., INFINITY, no_end, "steep"}}); });
     print_error([] { AdhesiveLaw({{1., 0., -1., "short"}}); });
-    print_error([] { AdhesiveLaw({{1., 0.5, no_end, "pushing"}}); });
+    print_error([] {
+      AdhesiveLaw({{1., -0.5, -1., "soft"}, {1., 1.5, no_end, "pushing"}});
+    });
     print_error([] {
       AdhesiveLaw({{1., 0., -1., "soft"}, {2., 0., no_end, "stiff"}});
     });

@@ -34,9 +34,7 @@ namespace
   BranchMinimum
   bond(const double k, const double M)
   {
-    return BranchMinimum(
-      std::vector<ConvexBranch>{{k, 0., 0.L, "bonded"},
-                                {0., 0., 0.5L * k * M * M, "broken"}});
+    return BranchMinimum({{k, 0., -M, "bonded"}, {0., 0., no_end, "broken"}});
   }
 
 

@@ -82,14 +82,8 @@ namespace Debond
 
     // ------------------------------------------------------------------ laws
 
-    /// Crossings of three branches in one point, in extended precision.
-    constexpr long double same_crossing = 1e-15L;
-
-    /// Values of branches that are not negative, to the largest constant.
-    constexpr double negative_branch = 1e-12;
-
-    /// Constants of branches without slopes, which have that of a near one.
-    constexpr long double same_constant = 1e-12L;
+    /// Energies of bonds that are not negative, to the largest one.
+    constexpr double negative_energy = 1e-12;
 
     /// Displacements at a kink, to themselves: a point so close to it may be on
     /// the other side on another machine.

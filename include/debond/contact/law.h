@@ -30,7 +30,8 @@ namespace Debond
   {
   public:
     /// @p pieces from s = 0 downwards, with the names of bonds on them. Throws
-    /// std::invalid_argument as BranchMinimum does.
+    /// std::invalid_argument as BranchMinimum does, and for a piece that
+    /// pushes.
     explicit AdhesiveLaw(const std::vector<EnergyPiece> &pieces);
 
     /// j_1(s).

@@ -12,19 +12,6 @@
 
 namespace Debond
 {
-  /// constant + slope s + curvature/2 s^2, s <= 0. The constant has more digits
-  /// than a double, so that the kinks between branches are where they are meant
-  /// to be.
-  struct ConvexBranch
-  {
-    double      curvature;
-    double      slope;
-    long double constant;
-    std::string name;
-  };
-
-
-
   /// The end of a last piece.
   constexpr double no_end = -std::numeric_limits<double>::infinity();
 
@@ -63,7 +50,7 @@ namespace Debond
       double       curvature, slope;
       long double  constant;     ///< with a decay, the value at begin
       double       lower, upper; ///< where it holds
-      unsigned int branch;       ///< its number in the given list
+      unsigned int number;       ///< in the list
       double       decay = 0.;   ///< EnergyPiece::decay
       double       begin = 0.;   ///< with a decay, the piece's own upper end
 
@@ -112,19 +99,14 @@ namespace Debond
       }
     };
 
-    /// Pieces from kink to kink; branches that are nowhere the least have
-    /// none. Throws std::invalid_argument if a branch is concave or not finite,
-    /// or if not f >= f(0) = 0.
-    explicit BranchMinimum(const std::vector<ConvexBranch> &branches);
-
     /// Throws std::invalid_argument if the pieces do not follow each other, or
-    /// f rises with s or has a derivative that jumps down as s falls.
+    /// f is negative or has a derivative that jumps down as s falls.
     explicit BranchMinimum(const std::vector<EnergyPiece> &given);
 
     static BranchMinimum
     zero()
     {
-      return BranchMinimum(std::vector<ConvexBranch>{{0., 0., 0.L, ""}});
+      return BranchMinimum({{0., 0., no_end, ""}});
     }
 
     /// Whether some piece is not above f.

@@ -306,31 +306,28 @@ namespace Debond
   BranchMinimum
   RoundedBranches::minimum() const
   {
-    std::vector<ConvexBranch> branches;
+    std::vector<EnergyPiece> pieces;
+    // From the end of what there is already down to @p end.
+    const auto add =
+      [&pieces](const double curvature, const double slope, const double end) {
+        if (end < (pieces.empty() ? 0. : pieces.back().end))
+          pieces.push_back({curvature, slope, end, ""});
+      };
     for (unsigned int k = 0; k < f.size(); ++k)
-      branches.push_back({f[k].curvature, f[k].slope, f[k].constant, ""});
-    for (const Line &line : lines)
       {
-        const BranchMinimum::Piece &near = f[f.index(line.upper)];
-        const BranchMinimum::Piece &far  = f[f.index(line.lower)];
-        const long double           a = line.upper, b = line.lower;
-        const auto value = [](const BranchMinimum::Piece &piece,
-                              const long double           s) {
-          return piece.constant +
-                 s * (piece.slope + 0.5L * piece.curvature * s);
-        };
-        const long double slope = (value(near, a) - value(far, b)) / (a - b) -
-                                  0.5L * far.curvature * (a + b);
-        long double constant =
-          value(near, a) - a * (slope + 0.5L * far.curvature * a);
-        // Branches without slopes have the constant of the near one here.
-        const long double rounding = Tolerance::same_constant * value(far, b);
-        if (std::abs(constant - near.constant) < rounding)
-          constant = near.constant;
-        branches.push_back(
-          {far.curvature, static_cast<double>(slope), constant, ""});
+        for (const Line &line : lines)
+          if (const double a = line.upper, b = line.lower; f.index(a) == k)
+            {
+              const BranchMinimum::Piece &far = f[f.index(b)];
+              add(f[k].curvature, f[k].slope, a);
+              add(far.curvature,
+                  (f[k].value(a) - far.value(b)) / (a - b) -
+                    0.5 * far.curvature * (a + b),
+                  b);
+            }
+        add(f[k].curvature, f[k].slope, f[k].lower);
       }
-    return BranchMinimum(branches);
+    return BranchMinimum(pieces);
   }
 
 

@@ -77,7 +77,7 @@ namespace Debond
 
 
   /**
-   * Convex branches whose minimum is at most
+   * A function that is at most
    *
    *     conv(f + D/2 s^2) - D/2 s^2,   s <= 0,
    *
@@ -85,7 +85,7 @@ namespace Debond
    * D/2 (s - m)^2 over functions s with the mean m is not below that at m.
    *
    * The envelope is f but on lines that touch it on both sides of a kink.
-   * There the difference is concave, and not below the branch with the
+   * There the difference is concave, and not below the parabola with the
    * curvature of f on the far side that meets f where the line touches.
    */
   class RoundedBranches
@@ -94,8 +94,7 @@ namespace Debond
     /// @p D > 0.
     RoundedBranches(const BranchMinimum &f, const double D);
 
-    /// Those of f and one for each line. Throws std::invalid_argument as
-    /// BranchMinimum does.
+    /// f with one piece in place of each line.
     BranchMinimum
     minimum() const;
 
