@@ -60,12 +60,12 @@ namespace Debond
 
     /// The law of each side with its bonds, which must not vary along it.
     template <int dim>
-    std::vector<BranchMinimum>
+    std::vector<PiecewiseEnergy>
     laws_of_sides(const std::vector<SideOf<dim>> &sides,
-                  const BranchMinimum            &law,
+                  const PiecewiseEnergy          &law,
                   const AdhesionIntegral<dim>    &bonds)
     {
-      std::vector<BranchMinimum> laws;
+      std::vector<PiecewiseEnergy> laws;
       for (const SideOf<dim> &side : sides)
         {
           if (!bonds.has_field())
@@ -148,9 +148,9 @@ namespace Debond
 
 
     std::vector<CertifiedLength>
-    certified_lengths(const std::vector<CertifiedSide> &sides,
-                      const std::vector<BranchMinimum> &laws,
-                      const AdhesiveLaw                &whole)
+    certified_lengths(const std::vector<CertifiedSide>   &sides,
+                      const std::vector<PiecewiseEnergy> &laws,
+                      const AdhesiveLaw                  &whole)
     {
       std::vector<CertifiedLength> lengths;
       for (unsigned int k = 0; k < whole.branches().size(); ++k)
@@ -158,9 +158,9 @@ namespace Debond
           CertifiedLength length = {whole.name(k), 0., 0.};
           for (unsigned int i = 0; i < sides.size(); ++i)
             {
-              const CertifiedSide &side = sides[i];
-              const BranchMinimum &law  = laws[i];
-              const double measure      = side.ends[0].distance(side.ends[1]);
+              const CertifiedSide   &side = sides[i];
+              const PiecewiseEnergy &law  = laws[i];
+              const double measure        = side.ends[0].distance(side.ends[1]);
               // Without bonds all of them are broken.
               if (law.size() < whole.branches().size())
                 {
@@ -194,7 +194,7 @@ namespace Debond
     /// EquilibriumError if it is not, as h is minus infinity then.
     template <int dim>
     double
-    conjugate_integral(const BranchMinimum::Piece    &piece,
+    conjugate_integral(const PiecewiseEnergy::Piece  &piece,
                        const double                   measure,
                        const std::array<double, dim> &at_corners,
                        const double                   rounding)
@@ -265,11 +265,11 @@ namespace Debond
     /// The least J with given branches.
     template <int dim>
     void
-    bound_fixed_state(const EquilibriumProblem<dim>    &equilibrium,
-                      const std::vector<BranchMinimum> &laws,
-                      const ElasticFields<dim>         &fields,
-                      const DofVector                  &displacement,
-                      Certificate                      &certificate)
+    bound_fixed_state(const EquilibriumProblem<dim>      &equilibrium,
+                      const std::vector<PiecewiseEnergy> &laws,
+                      const ElasticFields<dim>           &fields,
+                      const DofVector                    &displacement,
+                      Certificate                        &certificate)
     {
       const std::vector<SideOf<dim>> &sides = equilibrium.contact_sides();
       const Eigen::Index     n = static_cast<Eigen::Index>(sides.size());
@@ -280,10 +280,10 @@ namespace Debond
       // The unknowns are <= 0 if the displacement is, as linear tractions <= 0
       // see it. Their work-conjugates are the tractions at the corners times a
       // part of the side.
-      std::vector<BranchMinimum::Piece> pieces;
-      Eigen::VectorXd                   u_nu(dim * n);
-      Eigen::MatrixXd                   M = S;
-      Eigen::VectorXd                   r = g;
+      std::vector<PiecewiseEnergy::Piece> pieces;
+      Eigen::VectorXd                     u_nu(dim * n);
+      Eigen::MatrixXd                     M = S;
+      Eigen::VectorXd                     r = g;
       for (Eigen::Index i = 0; i < n; ++i)
         {
           const Trace<dim> trace(sides[i], fields.unknowns(), displacement);

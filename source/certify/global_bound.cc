@@ -76,7 +76,7 @@ namespace Debond
 
     /// The piece of the law on which all of the interval is, if it is one.
     std::optional<unsigned int>
-    piece_of(const Interval &interval, const BranchMinimum &law)
+    piece_of(const Interval &interval, const PiecewiseEnergy &law)
     {
       const unsigned int piece = law.index(interval.upper);
       if (law.index(interval.lower) != piece)

@@ -23,13 +23,13 @@ namespace Debond
     /// What the rounded law is below the law, at the most, as far from a mean
     /// as a tenth of the distance of the first kink.
     double
-    largest_loss(const BranchMinimum   &law,
+    largest_loss(const PiecewiseEnergy &law,
                  const RoundedBranches &rounded,
                  const double           mean)
     {
-      const BranchMinimum own    = rounded.minimum();
-      const double        margin = 0.1 * std::abs(law[0].lower);
-      double              result = 0.;
+      const PiecewiseEnergy own    = rounded.minimum();
+      const double          margin = 0.1 * std::abs(law[0].lower);
+      double                result = 0.;
       for (const double part : {-1., -0.5, 0., 0.5, 1.})
         {
           const double s = std::min(mean + part * margin, 0.);
@@ -52,7 +52,7 @@ namespace Debond
     struct LawInRange
     {
       std::optional<Quadratic> quadratic;
-      BranchMinimum            minimum;
+      PiecewiseEnergy          minimum;
       double                   constant = 0.;
     };
 
@@ -60,23 +60,23 @@ namespace Debond
 
     /// @p factor times the law.
     LawInRange
-    law_in_range(const BranchMinimum &whole,
-                 const Interval      &range,
-                 const double         factor)
+    law_in_range(const PiecewiseEnergy &whole,
+                 const Interval        &range,
+                 const double           factor)
     {
       unsigned int first = whole.index(range.upper);
       unsigned int last  = std::max(whole.index(range.lower), first);
       while (first < last && range.upper <= whole[first].lower)
         ++first;
-      const BranchMinimum::Piece &nearest  = whole[first];
-      const auto                  in_whole = [&]() -> LawInRange {
+      const PiecewiseEnergy::Piece &nearest  = whole[first];
+      const auto                    in_whole = [&]() -> LawInRange {
         return {{}, whole.scaled(factor), 0.};
       };
       if (first == last)
         return {Quadratic{factor * nearest.curvature,
                           factor * nearest.slope,
                           factor * static_cast<double>(nearest.constant)},
-                BranchMinimum::zero(),
+                PiecewiseEnergy::zero(),
                 0.};
       if (first == 0 && last + 1 == whole.size())
         return in_whole();
@@ -89,7 +89,7 @@ namespace Debond
       try
         {
           return {{},
-                  BranchMinimum(pieces),
+                  PiecewiseEnergy(pieces),
                   factor * static_cast<double>(nearest.constant)};
         }
       catch (const std::invalid_argument &)
@@ -102,10 +102,10 @@ namespace Debond
 
 
 
-  MeanProblems::MeanProblems(const EquilibriumProblem<2>      &equilibrium,
-                             const std::vector<double>        &trace_constants,
-                             const std::vector<BranchMinimum> &laws,
-                             const std::vector<double>        &energies)
+  MeanProblems::MeanProblems(const EquilibriumProblem<2> &equilibrium,
+                             const std::vector<double>   &trace_constants,
+                             const std::vector<PiecewiseEnergy> &laws,
+                             const std::vector<double>          &energies)
     : equilibrium(equilibrium)
     , trace_constants(trace_constants)
     , energies(energies)
@@ -127,9 +127,9 @@ namespace Debond
     std::vector<double> shifts;
     for (unsigned int i = 0; i < n; ++i)
       {
-        const BranchMinimum &law     = laws[i];
-        const double         largest = multiple * law[0].curvature;
-        double               D       = 0.02 * law[0].curvature;
+        const PiecewiseEnergy &law     = laws[i];
+        const double           largest = multiple * law[0].curvature;
+        double                 D       = 0.02 * law[0].curvature;
         while (D < largest && RoundedBranches(law, D).is_rounded_near(means(i)))
           D *= 1.25;
         shifts.push_back(std::min({D, largest, available(i)}));
@@ -148,9 +148,9 @@ namespace Debond
     std::vector<double> shifts;
     for (unsigned int i = 0; i < n; ++i)
       {
-        const BranchMinimum &law  = laws[i];
-        const double         a    = law[0].curvature;
-        const double of_stiffness = 0.5 * energies[i] / trace_constants[i];
+        const PiecewiseEnergy &law = laws[i];
+        const double           a   = law[0].curvature;
+        const double of_stiffness  = 0.5 * energies[i] / trace_constants[i];
         const double of_slope = sides[i].measure * slopes(i) * slopes(i) / 6.;
         double       best     = least_shift * a;
         double       least    = std::numeric_limits<double>::infinity();
@@ -193,11 +193,11 @@ namespace Debond
         result.push_back(0.5 * D / trace_constants[i] * energies[i]);
         if (problem.pieces[i])
           continue;
-        const BranchMinimum &law = laws[i];
-        const double         s   = std::min(means_and_slopes(i), 0.);
-        const double         k   = means_and_slopes(n + i);
-        const double rounded     = RoundedBranches(law, D).minimum().value(s);
-        const double c           = law[law.index(s)].curvature;
+        const PiecewiseEnergy &law = laws[i];
+        const double           s   = std::min(means_and_slopes(i), 0.);
+        const double           k   = means_and_slopes(n + i);
+        const double rounded       = RoundedBranches(law, D).minimum().value(s);
+        const double c             = law[law.index(s)].curvature;
         result.back() +=
           sides[i].measure * (law.value(s) - rounded + (c + D) * k * k / 6.);
       }
@@ -228,18 +228,18 @@ namespace Debond
     MeanProblem result;
     result.shifts   = D;
     result.constant = condensed->energy_at_zero();
-    std::vector<BranchMinimum> kept_laws;
-    const BranchMinimum        zero = BranchMinimum::zero();
+    std::vector<PiecewiseEnergy> kept_laws;
+    const PiecewiseEnergy        zero = PiecewiseEnergy::zero();
     for (unsigned int i = 0; i < n; ++i)
       {
         const double             length = sides[i].measure;
-        const BranchMinimum     &law    = laws[i];
+        const PiecewiseEnergy   &law    = laws[i];
         const RoundedBranches    rounded(law, D[i]);
         std::optional<Quadratic> quadratic;
         result.pieces.push_back(rounded.exact_piece(ranges[i].linear()));
         if (result.pieces.back())
           {
-            const BranchMinimum::Piece &piece = law[*result.pieces.back()];
+            const PiecewiseEnergy::Piece &piece = law[*result.pieces.back()];
             quadratic = Quadratic{length * piece.curvature,
                                   length * piece.slope,
                                   length * static_cast<double>(piece.constant)};

@@ -162,12 +162,12 @@ namespace Debond
               const double                 tolerance,
               Verification<dim>           &result)
     {
-      const AdhesiveLaw   &law         = adhesion.adhesive_law();
-      const BranchMinimum &branches    = law.branches();
-      const BondScale      bonds       = adhesion.bonds_at(i);
-      const unsigned int   least_piece = adhesion.least_piece(i);
-      ContactNodeState    &node        = result.nodes[i];
-      const auto           state_of    = [&](const unsigned int piece) {
+      const AdhesiveLaw     &law         = adhesion.adhesive_law();
+      const PiecewiseEnergy &branches    = law.branches();
+      const BondScale        bonds       = adhesion.bonds_at(i);
+      const unsigned int     least_piece = adhesion.least_piece(i);
+      ContactNodeState      &node        = result.nodes[i];
+      const auto             state_of    = [&](const unsigned int piece) {
         return static_cast<BondState>(std::find(result.state_names.begin(),
                                                 result.state_names.end(),
                                                 law.name(piece)) -

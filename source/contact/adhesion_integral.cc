@@ -210,8 +210,8 @@ namespace Debond
   double
   AdhesionIntegral<dim>::open_measure(const VectorView &s) const
   {
-    const BranchMinimum &branches = law.branches();
-    double               sum      = 0.;
+    const PiecewiseEnergy &branches = law.branches();
+    double                 sum      = 0.;
     for (const Point &point : point_list)
       {
         const double trace = point.trace(s) / point.bonds.stretch;
@@ -231,8 +231,8 @@ namespace Debond
                                       const VectorView &ds,
                                       const double      limit) const
   {
-    const BranchMinimum &branches = law.branches();
-    double               first    = limit;
+    const PiecewiseEnergy &branches = law.branches();
+    double                 first    = limit;
     for (const Point &point : point_list)
       if (point.bonds.energy > 0.)
         {

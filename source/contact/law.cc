@@ -22,8 +22,8 @@ namespace Debond
   {
     for (unsigned int k = 0; k < minimum.size(); ++k)
       {
-        const BranchMinimum::Piece &piece = minimum[k];
-        const double                lower =
+        const PiecewiseEnergy::Piece &piece = minimum[k];
+        const double                  lower =
           std::isfinite(piece.lower) ? piece.lower : 2. * piece.upper;
         // Of steep pieces far from 0 the terms of the derivative cancel.
         const double rounding =
@@ -97,8 +97,8 @@ namespace Debond
   {
     if (s > 0. && reached == 0.)
       return {0., 0.};
-    const BranchMinimum::Piece piece = minimum.piece_at(s, reached);
-    const double               force = piece.derivative(s);
+    const PiecewiseEnergy::Piece piece = minimum.piece_at(s, reached);
+    const double                 force = piece.derivative(s);
     // The other side, if s is a kink.
     const double other =
       s == 0. && reached == 0. ? 0. :
@@ -141,7 +141,7 @@ namespace Debond
   double
   AdhesiveLaw::damage(const double reached) const
   {
-    const BranchMinimum::Piece first = minimum[0];
+    const PiecewiseEnergy::Piece first = minimum[0];
     const double pull = minimum.piece_at(reached, 0.).derivative(reached);
     if (!(reached < 0.) || first.is_flat())
       return 0.;
@@ -166,7 +166,7 @@ namespace Debond
 
 
 
-  const BranchMinimum &
+  const PiecewiseEnergy &
   AdhesiveLaw::branches() const
   {
     return minimum;
@@ -193,7 +193,7 @@ namespace Debond
   bool
   AdhesiveLaw::lets_go() const
   {
-    const BranchMinimum::Piece &last = minimum[minimum.size() - 1];
+    const PiecewiseEnergy::Piece &last = minimum[minimum.size() - 1];
     return last.is_flat() || last.decay > 0.;
   }
 

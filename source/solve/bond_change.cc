@@ -32,7 +32,7 @@ namespace Debond
     /// nodes.
     template <int dim>
     std::optional<double>
-    proportional_change(const BranchMinimum         &branches,
+    proportional_change(const PiecewiseEnergy       &branches,
                         const AdhesionIntegral<dim> &bonds,
                         const PathPoint             &last,
                         const double                 factor)
@@ -103,7 +103,7 @@ namespace Debond
       const Eigen::SparseMatrix<double> springs   = bonds.curvature(last.s);
       Eigen::MatrixXd                   stiffness = problem.S;
       stiffness += springs;
-      const BranchMinimum no_law = BranchMinimum::zero();
+      const PiecewiseEnergy no_law = PiecewiseEnergy::zero();
       problem.load += springs * last.s - bonds.subgradient(last.s);
       StationaryPath path({stiffness,
                            problem.load,
@@ -145,7 +145,7 @@ namespace Debond
                     const LoadFactors            next,
                     const std::function<bool()> &may_go_on)
   {
-    const BranchMinimum &branches = scene.scene.law().branches();
+    const PiecewiseEnergy &branches = scene.scene.law().branches();
     // Bonds that soften change by and by.
     if (branches.size() == 1 || branches.softens())
       return {};

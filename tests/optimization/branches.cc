@@ -54,7 +54,7 @@ namespace
 
 
 
-  BranchMinimum
+  PiecewiseEnergy
   stepped(Random &random, const unsigned int n_steps)
   {
     std::vector<EnergyPiece> steps;
@@ -66,14 +66,14 @@ namespace
         a *= random(0.1, 0.9);
       }
     steps.push_back({0., 0., no_end, "broken"});
-    return BranchMinimum(steps);
+    return PiecewiseEnergy(steps);
   }
 
 
 
   /// Any pieces of convex branches of which f is the least, two at least:
   /// the search has kinks in common.
-  BranchMinimum
+  PiecewiseEnergy
   any_branches(Random &random)
   {
     while (true)
@@ -91,7 +91,7 @@ namespace
           }
         try
           {
-            const BranchMinimum f(pieces);
+            const PiecewiseEnergy f(pieces);
             if (!f.softens())
               return f;
           }
@@ -111,11 +111,11 @@ namespace
     unsigned int most_pieces = 0;
     for (unsigned int k = 0; k < 3000; ++k)
       {
-        const BranchMinimum f        = any_branches(random);
-        const BranchList    branches = branches_of(f);
+        const PiecewiseEnergy f        = any_branches(random);
+        const BranchList      branches = branches_of(f);
         raise(most_pieces, f.size());
-        const double        factor = random(0.1, 10.);
-        const BranchMinimum more   = f.scaled(factor);
+        const double          factor = random(0.1, 10.);
+        const PiecewiseEnergy more   = f.scaled(factor);
         for (unsigned int p = 1; p < f.size(); ++p)
           {
             const double above = f[p - 1].value(f[p].upper);
@@ -255,7 +255,7 @@ namespace
 
     Problem p = {
       S, Eigen::MatrixXd(n, n), Vector(n), {}, SeparableBranches({})};
-    const BranchMinimum common = stepped(random, random.integer(1, 3));
+    const PiecewiseEnergy common = stepped(random, random.integer(1, 3));
     for (unsigned int i = 0; i < n; ++i)
       {
         // Of a law, each unknown has a multiple.

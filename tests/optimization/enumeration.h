@@ -2,7 +2,7 @@
 #ifndef debond_tests_optimization_enumeration_h
 #define debond_tests_optimization_enumeration_h
 
-#include <debond/optimization/branch_minimum.h>
+#include <debond/optimization/piecewise_energy.h>
 
 #include <Eigen/Dense>
 
@@ -16,13 +16,13 @@
 
 using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 using LongVector = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
-using BranchList = std::vector<Debond::BranchMinimum::Piece>;
+using BranchList = std::vector<Debond::PiecewiseEnergy::Piece>;
 
 
 
 /// The pieces of f as branches that go on for ever.
 inline BranchList
-branches_of(const Debond::BranchMinimum &f)
+branches_of(const Debond::PiecewiseEnergy &f)
 {
   BranchList branches;
   for (unsigned int k = 0; k < f.size(); ++k)
@@ -36,7 +36,7 @@ inline long double
 least_branch(const BranchList &branches, const long double s)
 {
   long double least = std::numeric_limits<long double>::infinity();
-  for (const Debond::BranchMinimum::Piece &b : branches)
+  for (const Debond::PiecewiseEnergy::Piece &b : branches)
     least =
       std::min(least, b.constant + s * (b.slope + 0.5L * b.curvature * s));
   return least;
@@ -97,7 +97,7 @@ enumerated_minimum(const LongMatrix              &S,
       long double constant = 0.L;
       for (unsigned int i = 0; i < n; ++i)
         {
-          const Debond::BranchMinimum::Piece &b = branches[i][choice[i]];
+          const Debond::PiecewiseEnergy::Piece &b = branches[i][choice[i]];
           A(i, i) += b.curvature;
           load(i) -= b.slope;
           constant += b.constant;

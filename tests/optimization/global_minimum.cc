@@ -31,10 +31,10 @@ namespace
   using Vector = Eigen::VectorXd;
 
   /// k/2 min(s^2, M^2)
-  BranchMinimum
+  PiecewiseEnergy
   bond(const double k, const double M)
   {
-    return BranchMinimum({{k, 0., -M, "bonded"}, {0., 0., no_end, "broken"}});
+    return PiecewiseEnergy({{k, 0., -M, "bonded"}, {0., 0., no_end, "broken"}});
   }
 
 
@@ -42,7 +42,7 @@ namespace
   SeparableBranches
   bonds_of(const Eigen::VectorXd &stiffness, const double threshold)
   {
-    std::vector<BranchMinimum> f;
+    std::vector<PiecewiseEnergy> f;
     for (const double k : stiffness)
       f.push_back(bond(k, threshold));
     return SeparableBranches(f);
@@ -239,8 +239,8 @@ namespace
         const Eigen::VectorXd  &g       = p.g;
         const Eigen::VectorXd   minimum = inverse * g;
         const double            value   = -0.5 * g.dot(minimum);
-        const BranchMinimum     zero    = BranchMinimum::zero();
-        const SeparableBranches no_bonds(std::vector<BranchMinimum>(n, zero));
+        const PiecewiseEnergy   zero    = PiecewiseEnergy::zero();
+        const SeparableBranches no_bonds(std::vector<PiecewiseEnergy>(n, zero));
         const double            more = uniform(engine);
         const auto root = NodeBound(p.S, p.g, no_bonds).root(value + more);
 

@@ -144,7 +144,7 @@ namespace Debond
     const EquilibriumProblem<dim>           equilibrium;
 
     /// Of the contact sides.
-    std::vector<BranchMinimum> laws;
+    std::vector<PiecewiseEnergy> laws;
 
     /// The same, if branches are not fixed.
     std::vector<double> trace_constants;

@@ -4,8 +4,8 @@
 
 #include <debond/certify/certified_side.h>
 #include <debond/certify/equilibrium_problem.h>
-#include <debond/optimization/branch_minimum.h>
 #include <debond/optimization/global/separable_branches.h>
+#include <debond/optimization/piecewise_energy.h>
 
 #include <Eigen/Core>
 
@@ -85,10 +85,10 @@ namespace Debond
     /// @p trace_constants: Lambda of each side, @p laws: of each; @p energies:
     /// of the strains in the cells above the sides, of a good displacement, for
     /// the choice of shifts. References to all are kept.
-    MeanProblems(const EquilibriumProblem<2>      &equilibrium,
-                 const std::vector<double>        &trace_constants,
-                 const std::vector<BranchMinimum> &laws,
-                 const std::vector<double>        &energies);
+    MeanProblems(const EquilibriumProblem<2>        &equilibrium,
+                 const std::vector<double>          &trace_constants,
+                 const std::vector<PiecewiseEnergy> &laws,
+                 const std::vector<double>          &energies);
 
     const std::vector<EquilibriumProblem<2>::ContactSide> &
     contact_sides() const
@@ -96,7 +96,7 @@ namespace Debond
       return sides;
     }
 
-    const std::vector<BranchMinimum> &
+    const std::vector<PiecewiseEnergy> &
     laws_of_sides() const
     {
       return laws;
@@ -150,7 +150,7 @@ namespace Debond
     const EquilibriumProblem<2>                           &equilibrium;
     const std::vector<double>                             &trace_constants;
     const std::vector<double>                             &energies;
-    const std::vector<BranchMinimum>                      &laws;
+    const std::vector<PiecewiseEnergy>                    &laws;
     const std::vector<EquilibriumProblem<2>::ContactSide> &sides;
     const unsigned int                                     n;
     std::vector<unsigned int> sharers; ///< contact sides of each cell

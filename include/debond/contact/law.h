@@ -2,8 +2,8 @@
 #ifndef debond_contact_law_h
 #define debond_contact_law_h
 
-#include <debond/optimization/branch_minimum.h>
 #include <debond/optimization/interval.h>
+#include <debond/optimization/piecewise_energy.h>
 
 #include <functional>
 #include <map>
@@ -30,7 +30,7 @@ namespace Debond
   {
   public:
     /// @p pieces from s = 0 downwards, with the names of bonds on them. Throws
-    /// std::invalid_argument as BranchMinimum does, and for a piece that
+    /// std::invalid_argument as PiecewiseEnergy does, and for a piece that
     /// pushes.
     explicit AdhesiveLaw(const std::vector<EnergyPiece> &pieces);
 
@@ -79,7 +79,7 @@ namespace Debond
     kinks() const;
 
     /// j_1 on s <= 0, without a memory.
-    const BranchMinimum &
+    const PiecewiseEnergy &
     branches() const;
 
     /// The name of bonds on a piece of branches().
@@ -110,7 +110,7 @@ namespace Debond
     double
     on_piece(const double s, const double reached, const Number &number) const;
 
-    BranchMinimum            minimum;
+    PiecewiseEnergy          minimum;
     std::vector<std::string> names;
   };
 

@@ -5,7 +5,7 @@
 #include <debond/base/tolerances.h>
 #include <debond/base/views.h>
 #include <debond/linear_algebra/cholesky.h>
-#include <debond/optimization/branch_minimum.h>
+#include <debond/optimization/piecewise_energy.h>
 
 #include <Eigen/LU>
 
@@ -20,7 +20,7 @@ namespace Debond
    *
    *     1/2 s'S s - g(t)'s + sum_i w_i f(s_i / l_i),  s <= 0,
    *
-   * g being affine in t, and f a BranchMinimum of quadratic pieces. Each s_i
+   * g being affine in t, and f a PiecewiseEnergy of quadratic pieces. Each s_i
    * together with its force r_i, r = g - S s, is on a curve of straight
    * segments: contact (s_i = 0), a piece of f, if the derivative of f jumps at
    * its end the kink there, at which s_i stays and r_i goes from the derivative
@@ -48,12 +48,12 @@ namespace Debond
     /// t_0 being the first t; S and f are references.
     struct Problem
     {
-      MatrixView           S;
-      Eigen::VectorXd      load;
-      Eigen::VectorXd      slope;
-      const BranchMinimum &f;
-      std::vector<Bond>    bonds;   ///< of each s_i
-      bool                 returns; ///< whether s_i comes back to a piece of f
+      MatrixView             S;
+      Eigen::VectorXd        load;
+      Eigen::VectorXd        slope;
+      const PiecewiseEnergy &f;
+      std::vector<Bond>      bonds; ///< of each s_i
+      bool returns;                 ///< whether s_i comes back to a piece of f
     };
 
     /// Starts at a minimum @p s for @p t, in the direction of rising t.
@@ -168,12 +168,12 @@ namespace Debond
     void
     solve();
 
-    const MatrixView      S;
-    const Eigen::VectorXd load, slope;
-    const double          first_t;
-    const BranchMinimum  &f;
-    std::vector<Bond>     bonds;
-    const bool            returns;
+    const MatrixView       S;
+    const Eigen::VectorXd  load, slope;
+    const double           first_t;
+    const PiecewiseEnergy &f;
+    std::vector<Bond>      bonds;
+    const bool             returns;
 
     double               parameter;
     Eigen::VectorXd      s;

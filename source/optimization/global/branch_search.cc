@@ -61,7 +61,7 @@ namespace Debond
         result.functional = state.functional;
         rounding          = state.functional_rounding;
         tried.insert(problem.lumped.state(s));
-        for (const BranchMinimum &f : problem.lumped.f)
+        for (const PiecewiseEnergy &f : problem.lumped.f)
           n_pieces = std::max(n_pieces, f.size());
       }
 
@@ -188,7 +188,7 @@ namespace Debond
               const MoveKind    kind,
               Eigen::VectorXd  &point)
       {
-        const std::vector<BranchMinimum> &f = problem.lumped.f;
+        const std::vector<PiecewiseEnergy> &f = problem.lumped.f;
 
         Eigen::VectorXd next = point;
         // Where there are no bonds no branch is to be left.
@@ -430,11 +430,11 @@ namespace Debond
 
 
   SeparableBranches
-  lumped_branches(const BranchMinimum       &branches,
+  lumped_branches(const PiecewiseEnergy     &branches,
                   const Eigen::VectorXd     &weights,
                   const std::vector<double> &stretches)
   {
-    std::vector<BranchMinimum> f;
+    std::vector<PiecewiseEnergy> f;
     for (unsigned int i = 0; i < weights.size(); ++i)
       {
         const double stretch = stretches.empty() ? 1. : stretches[i];

@@ -11,7 +11,7 @@ namespace Debond
 {
   namespace
   {
-    using Piece = BranchMinimum::Piece;
+    using Piece = PiecewiseEnergy::Piece;
 
     /// c/2 s^2 + b s + h.
     struct Parabola
@@ -283,7 +283,7 @@ namespace Debond
 
 
 
-  RoundedBranches::RoundedBranches(const BranchMinimum &f, const double D)
+  RoundedBranches::RoundedBranches(const PiecewiseEnergy &f, const double D)
     : f(f)
   {
     BranchEnergy energy = {D, {}};
@@ -303,7 +303,7 @@ namespace Debond
 
 
 
-  BranchMinimum
+  PiecewiseEnergy
   RoundedBranches::minimum() const
   {
     std::vector<EnergyPiece> pieces;
@@ -318,7 +318,7 @@ namespace Debond
         for (const Line &line : lines)
           if (const double a = line.upper, b = line.lower; f.index(a) == k)
             {
-              const BranchMinimum::Piece &far = f[f.index(b)];
+              const PiecewiseEnergy::Piece &far = f[f.index(b)];
               add(f[k].curvature, f[k].slope, a);
               add(far.curvature,
                   (f[k].value(a) - far.value(b)) / (a - b) -
@@ -327,7 +327,7 @@ namespace Debond
             }
         add(f[k].curvature, f[k].slope, f[k].lower);
       }
-    return BranchMinimum(pieces);
+    return PiecewiseEnergy(pieces);
   }
 
 

@@ -152,8 +152,8 @@ namespace Debond
                      const unsigned int piece,
                      const double       inverse_diagonal) const
   {
-    const BranchMinimum::Piece &p = problem.f[i].pieces[piece];
-    const double                quadratic =
+    const PiecewiseEnergy::Piece &p = problem.f[i].pieces[piece];
+    const double                  quadratic =
       1. / ((1. + Tolerance::outwards) * inverse_diagonal);
     const double c        = problem.f[i].convexity + p.curvature;
     const double r_i      = static_cast<double>(r[i]);

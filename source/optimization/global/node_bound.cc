@@ -41,9 +41,9 @@ namespace Debond
 
     /// Those that the box has a part of.
     Pieces
-    pieces_in_box(const ProofNode     &node,
-                  const unsigned int   i,
-                  const BranchMinimum &f)
+    pieces_in_box(const ProofNode       &node,
+                  const unsigned int     i,
+                  const PiecewiseEnergy &f)
     {
       const unsigned int last  = f.index(node.lower(i));
       unsigned int       first = 0;
@@ -292,7 +292,7 @@ namespace Debond
         for (const ConvexEnvelope::Part &part : envelopes[i].parts)
           if (part.is_line)
             {
-              for (const BranchMinimum::Piece &piece : problem.f[i].pieces)
+              for (const PiecewiseEnergy::Piece &piece : problem.f[i].pieces)
                 if (part.lower < piece.upper && piece.upper < part.upper &&
                     std::abs(x - piece.upper) < std::abs(x - split))
                   split = piece.upper;
@@ -309,7 +309,7 @@ namespace Debond
       }
 
       Interval
-      box(const unsigned int i, const BranchMinimum::Piece &piece) const
+      box(const unsigned int i, const PiecewiseEnergy::Piece &piece) const
       {
         return {std::max(node.lower(i), piece.lower),
                 std::min(node.upper(i), piece.upper)};
@@ -328,12 +328,12 @@ namespace Debond
     const Eigen::VectorXd s_0 = *inverse * g;
 
     // Phi is not negative.
-    const BranchMinimum zero        = BranchMinimum::zero();
-    BoxProblem          without_phi = {S,
-                                       g,
-                                       std::vector<BranchEnergy>(n, {0., {zero[0]}}),
-                                       Eigen::VectorXd(),
-                                       Eigen::VectorXd::Zero(n)};
+    const PiecewiseEnergy zero        = PiecewiseEnergy::zero();
+    BoxProblem            without_phi = {S,
+                                         g,
+                                         std::vector<BranchEnergy>(n, {0., {zero[0]}}),
+                                         Eigen::VectorXd(),
+                                         Eigen::VectorXd::Zero(n)};
     // Within this distance of s_0 by the energy, and a little more.
     const double distance = 2. * (best_value + 0.5 * g.dot(s_0));
     without_phi.lower =
@@ -365,9 +365,9 @@ namespace Debond
     std::vector<BranchEnergy> f(n);
     for (unsigned int i = 0; i < n; ++i)
       {
-        const BranchMinimum &f_i       = phi.f[i];
-        const double         convexity = f_i.needed_convexity(s(i));
-        double               largest   = 0.;
+        const PiecewiseEnergy &f_i       = phi.f[i];
+        const double           convexity = f_i.needed_convexity(s(i));
+        double                 largest   = 0.;
         for (unsigned int k = 0; k < f_i.size(); ++k)
           {
             f[i].pieces.push_back(f_i[k]);

@@ -53,7 +53,7 @@ namespace Debond
   bool
   SeparableBranches::softens() const
   {
-    return std::any_of(f.begin(), f.end(), [](const BranchMinimum &f_i) {
+    return std::any_of(f.begin(), f.end(), [](const PiecewiseEnergy &f_i) {
       return f_i.softens();
     });
   }
@@ -63,7 +63,7 @@ namespace Debond
   bool
   SeparableBranches::is_piecewise_quadratic() const
   {
-    return std::all_of(f.begin(), f.end(), [](const BranchMinimum &f_i) {
+    return std::all_of(f.begin(), f.end(), [](const PiecewiseEnergy &f_i) {
       return f_i.is_piecewise_quadratic();
     });
   }
@@ -98,7 +98,7 @@ namespace Debond
   SeparableBranches::largest_value() const
   {
     double sum = 0.;
-    for (const BranchMinimum &f_i : f)
+    for (const PiecewiseEnergy &f_i : f)
       sum += f_i.largest_value();
     return sum;
   }

@@ -96,7 +96,7 @@ namespace Debond
   /// times their second derivative; with those of Phi this is Phi itself if
   /// each unknown has a multiple of them for its own.
   SeparableBranches
-  lumped_branches(const BranchMinimum       &branches,
+  lumped_branches(const PiecewiseEnergy     &branches,
                   const Eigen::VectorXd     &weights,
                   const std::vector<double> &stretches = {});
 

@@ -2,20 +2,21 @@
 #ifndef debond_optimization_global_convex_envelope_h
 #define debond_optimization_global_convex_envelope_h
 
-#include <debond/optimization/branch_minimum.h>
 #include <debond/optimization/interval.h>
+#include <debond/optimization/piecewise_energy.h>
 
 #include <optional>
 #include <vector>
 
 namespace Debond
 {
-  /// f(s) = c/2 s^2 + some pieces of a BranchMinimum that follow each other, c
+  /// f(s) = c/2 s^2 + some pieces of a PiecewiseEnergy that follow each other,
+  /// c
   /// >= 0.
   struct BranchEnergy
   {
-    double                            convexity; ///< c
-    std::vector<BranchMinimum::Piece> pieces;    ///< from 0 downwards
+    double                              convexity; ///< c
+    std::vector<PiecewiseEnergy::Piece> pieces;    ///< from 0 downwards
 
     double
     value(const double s) const;
@@ -92,10 +93,10 @@ namespace Debond
   {
   public:
     /// @p D > 0.
-    RoundedBranches(const BranchMinimum &f, const double D);
+    RoundedBranches(const PiecewiseEnergy &f, const double D);
 
     /// f with one piece in place of each line.
-    BranchMinimum
+    PiecewiseEnergy
     minimum() const;
 
     /// Whether s, or what a tenth of a kink's distance from 0 takes it to, is
@@ -115,8 +116,8 @@ namespace Debond
       double lower, upper;
     };
 
-    const BranchMinimum &f;
-    std::vector<Line>    lines;
+    const PiecewiseEnergy &f;
+    std::vector<Line>      lines;
   };
 } // namespace Debond
 

@@ -2,7 +2,7 @@
 #ifndef debond_optimization_global_separable_branches_h
 #define debond_optimization_global_separable_branches_h
 
-#include <debond/optimization/branch_minimum.h>
+#include <debond/optimization/piecewise_energy.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
 #include <vector>
@@ -17,9 +17,9 @@ namespace Debond
   /// Phi(s) = sum_i f_i(s_i): each unknown has pieces of its own.
   struct SeparableBranches : public PiecewiseQuadratic
   {
-    std::vector<BranchMinimum> f;
+    std::vector<PiecewiseEnergy> f;
 
-    explicit SeparableBranches(const std::vector<BranchMinimum> &f)
+    explicit SeparableBranches(const std::vector<PiecewiseEnergy> &f)
       : f(f)
     {}
 

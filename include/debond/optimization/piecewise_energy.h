@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_optimization_branch_minimum_h
-#define debond_optimization_branch_minimum_h
+#ifndef debond_optimization_piecewise_energy_h
+#define debond_optimization_piecewise_energy_h
 
 #include <debond/optimization/interval.h>
 
@@ -42,7 +42,7 @@ namespace Debond
    * 0 any more but what was taken up for good, and below reached nothing has
    * changed.
    */
-  class BranchMinimum
+  class PiecewiseEnergy
   {
   public:
     struct Piece
@@ -101,12 +101,12 @@ namespace Debond
 
     /// Throws std::invalid_argument if the pieces do not follow each other, or
     /// f is negative or has a derivative that jumps down as s falls.
-    explicit BranchMinimum(const std::vector<EnergyPiece> &given);
+    explicit PiecewiseEnergy(const std::vector<EnergyPiece> &given);
 
-    static BranchMinimum
+    static PiecewiseEnergy
     zero()
     {
-      return BranchMinimum({{0., 0., no_end, ""}});
+      return PiecewiseEnergy({{0., 0., no_end, ""}});
     }
 
     /// Whether some piece is not above f.
@@ -137,7 +137,7 @@ namespace Debond
     has_drop(const unsigned int piece) const;
 
     /// energy f(s / stretch); the single piece zero without energy.
-    BranchMinimum
+    PiecewiseEnergy
     scaled(const double energy, const double stretch = 1.) const;
 
     unsigned int
@@ -172,7 +172,7 @@ namespace Debond
     point_inside(const unsigned int piece) const;
 
   private:
-    BranchMinimum() = default;
+    PiecewiseEnergy() = default;
 
     /// Whether a piece through 0 is all that holds above @p reached.
     bool

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/tolerances.h>
-#include <debond/optimization/branch_minimum.h>
+#include <debond/optimization/piecewise_energy.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace Debond
 
 
 
-    using Piece = BranchMinimum::Piece;
+    using Piece = PiecewiseEnergy::Piece;
 
     /// The curvatures of quadratics that touch @p own at @p s and meet @p other
     /// where it holds: with more than the largest they are nowhere below.
@@ -107,7 +107,7 @@ namespace Debond
 
 
 
-  BranchMinimum::BranchMinimum(const std::vector<EnergyPiece> &given)
+  PiecewiseEnergy::PiecewiseEnergy(const std::vector<EnergyPiece> &given)
   {
     const auto require_of = [](const bool         holds,
                                const EnergyPiece &piece,
@@ -182,7 +182,7 @@ namespace Debond
 
 
   bool
-  BranchMinimum::softens() const
+  PiecewiseEnergy::softens() const
   {
     return !std::all_of(pieces.begin(), pieces.end(), [](const Piece &piece) {
       return piece.is_above;
@@ -192,7 +192,7 @@ namespace Debond
 
 
   bool
-  BranchMinimum::is_piecewise_quadratic() const
+  PiecewiseEnergy::is_piecewise_quadratic() const
   {
     return std::all_of(pieces.begin(), pieces.end(), [](const Piece &piece) {
       return piece.decay == 0.;
@@ -201,8 +201,8 @@ namespace Debond
 
 
 
-  BranchMinimum::Piece
-  BranchMinimum::piece_at(const double s, const double reached) const
+  PiecewiseEnergy::Piece
+  PiecewiseEnergy::piece_at(const double s, const double reached) const
   {
     const unsigned int m     = index(reached);
     const unsigned int k     = index(s);
@@ -227,7 +227,8 @@ namespace Debond
 
 
   double
-  BranchMinimum::majorant_curvature(const double s, const double reached) const
+  PiecewiseEnergy::majorant_curvature(const double s,
+                                      const double reached) const
   {
     if (const Piece &here = pieces[index(s)];
         reached == 0. && here.is_above && pieces[0].slope == 0.)
@@ -257,7 +258,7 @@ namespace Debond
 
 
   double
-  BranchMinimum::needed_convexity(const double s) const
+  PiecewiseEnergy::needed_convexity(const double s) const
   {
     const Piece own       = piece_at(s, 0.);
     double      convexity = std::max(0., -own.curvature);
@@ -271,7 +272,7 @@ namespace Debond
 
 
   bool
-  BranchMinimum::has_drop(const unsigned int piece) const
+  PiecewiseEnergy::has_drop(const unsigned int piece) const
   {
     if (piece + 1 >= pieces.size())
       return false;
@@ -283,12 +284,12 @@ namespace Debond
 
 
 
-  BranchMinimum
-  BranchMinimum::scaled(const double energy, const double stretch) const
+  PiecewiseEnergy
+  PiecewiseEnergy::scaled(const double energy, const double stretch) const
   {
     if (energy == 0.)
-      return BranchMinimum::zero();
-    BranchMinimum result;
+      return PiecewiseEnergy::zero();
+    PiecewiseEnergy result;
     result.pieces = pieces;
     for (Piece &piece : result.pieces)
       {
@@ -306,7 +307,7 @@ namespace Debond
 
 
   unsigned int
-  BranchMinimum::index(const double s) const
+  PiecewiseEnergy::index(const double s) const
   {
     unsigned int k = 0;
     while (k + 1 < pieces.size() && s < pieces[k].lower)
@@ -317,7 +318,7 @@ namespace Debond
 
 
   double
-  BranchMinimum::largest_value() const
+  PiecewiseEnergy::largest_value() const
   {
     // The last piece rises as s falls, for ever unless it decays, or is flat.
     const Piece &last = pieces.back();
@@ -334,7 +335,7 @@ namespace Debond
 
 
   double
-  BranchMinimum::point_inside(const unsigned int piece) const
+  PiecewiseEnergy::point_inside(const unsigned int piece) const
   {
     const Piece &p = pieces[piece];
     if (p.decay > 0.)
@@ -345,7 +346,7 @@ namespace Debond
 
 
   void
-  BranchMinimum::connect()
+  PiecewiseEnergy::connect()
   {
     for (unsigned int k = 1; k < pieces.size(); ++k)
       {
