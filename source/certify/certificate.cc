@@ -29,14 +29,20 @@ namespace Debond
     {
       const auto &triangulation =
         scene.problem().unknowns().dof_handler().get_triangulation();
+      // As pressures.
+      std::vector<double> thermal_stresses =
+        temperature_changes(triangulation, scene.loads());
+      if (!thermal_stresses.empty())
+        for (const auto &cell : triangulation.active_cell_iterators())
+          thermal_stresses[cell->active_cell_index()] *=
+            scene.materials()(cell->material_id())
+              .template thermal_stress<dim>()[0][0];
       return EquilibriumProblem<dim>(triangulation,
                                      scene.conditions(),
                                      scene.supports(),
                                      scene.materials(),
                                      scene.loads(),
-                                     thermal_stresses(triangulation,
-                                                      scene.materials(),
-                                                      scene.loads()));
+                                     thermal_stresses);
     }
 
 

@@ -196,6 +196,19 @@ namespace Debond
       pointwise.setIdentity();
       pointwise.template topLeftCorner<dim, dim>().array() -= coupled;
       pointwise.diagonal().template tail<n - dim>() *= 2.;
+      if (material.orthotropy)
+        {
+          const auto compliance =
+            dealii::invert(material.elasticity_tensor<dim>());
+          for (int k = 0; k < n; ++k)
+            for (int l = 0; l < n; ++l)
+              {
+                const auto [a, b] = row_and_column<dim>(k);
+                const auto [c, d] = row_and_column<dim>(l);
+                pointwise(k, l)   = 2. * mu * (k < dim ? 1. : 2.) *
+                                  (l < dim ? 1. : 2.) * compliance[a][b][c][d];
+              }
+        }
       Eigen::Matrix<double, n_of_part<dim>, n_of_part<dim>> result;
       for (int i = 0; i <= dim; ++i)
         for (int j = 0; j <= dim; ++j)

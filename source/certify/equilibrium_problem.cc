@@ -336,15 +336,14 @@ namespace Debond
     for (const auto &rest : mesh.load_rests())
       {
         // Lambda of a rectangle, see doc/reference/certificate.md, with the
-        // least of 2 mu |epsilon|^2 + lambda (tr epsilon)^2.
+        // least of epsilon : E(epsilon).
         const Material &material = materials(rest.cell->material_id());
         const double    w = rest.width / dealii::numbers::PI, h = rest.height;
         const double    bound =
           64. / std::pow(h, 6) *
           (w * w * std::pow(h, 5) / 24. + std::pow(w, 4) * std::pow(h, 3) / 4. +
            std::pow(h, 7) / 64.);
-        const double       stiffness = 2. * (material.shear_modulus() +
-                                       std::min(0., material.lame_lambda<2>()));
+        const double       stiffness = material.least_stiffness<2>();
         const unsigned int cell      = rest.cell->active_cell_index();
         result[cell] +=
           std::sqrt(rest.square * energies[cell] * bound / stiffness);

@@ -74,6 +74,29 @@ namespace Debond
 
 
 
+    /// The material of the cell above the side as triangle() sees it.
+    Material
+    material_above(const ContactSide &side, const Material &material)
+    {
+      Material result = material;
+      if (!material.orthotropy)
+        return result;
+      const dealii::Tensor<1, 2> along =
+        (side.corners[1] - side.corners[0]) / side.measure;
+      const dealii::Tensor<1, 2> to_centre =
+        side.cell->center() - side.corners[0];
+      const bool is_below = along[0] * to_centre[1] < along[1] * to_centre[0];
+      // The apex is nearer to the second corner if the centre is.
+      const bool is_turned = to_centre * along > 0.5 * side.measure;
+      result.axis_angle -=
+        std::atan2(along[1], along[0]) * 180. / dealii::numbers::PI;
+      if (is_below != is_turned)
+        result.axis_angle = -result.axis_angle;
+      return result;
+    }
+
+
+
     /// The piece of the law on which all of the interval is, if it is one.
     std::optional<unsigned int>
     piece_of(const Interval &interval, const PiecewiseEnergy &law)
@@ -301,16 +324,16 @@ namespace Debond
     std::vector<double> constants;
     for (const ContactSide &side : equilibrium.contact_sides())
       {
-        const TriangleAboveSide own      = triangle(side);
-        const Material         &material = materials(side.cell->material_id());
-        const bool              is_fixed = conditions.fixes_tangential(side.id);
-        auto                    same =
+        const TriangleAboveSide own = triangle(side);
+        const Material          material =
+          material_above(side, materials(side.cell->material_id()));
+        const bool is_fixed = conditions.fixes_tangential(side.id);
+        auto       same =
           std::find_if(known.begin(), known.end(), [&](const Known &other) {
             return std::abs(other.shape.height - own.height) +
                        std::abs(other.shape.apex - own.apex) <=
                      Tolerance::certificate * own.height &&
-                   other.material.young_modulus == material.young_modulus &&
-                   other.material.poisson_ratio == material.poisson_ratio &&
+                   other.material == material &&
                    other.is_tangential_fixed == is_fixed;
           });
         if (same == known.end())

@@ -86,8 +86,15 @@ namespace Debond
                  const unsigned int       n)
   {
     // Scaled, so that systems of units do not matter.
-    Material unit      = material;
-    unit.young_modulus = 1.;
+    const double modulus = material.extreme_moduli()[1];
+    Material     unit    = material;
+    unit.young_modulus   = 1.;
+    if (material.orthotropy)
+      for (unsigned int i = 0; i < 3; ++i)
+        {
+          unit.orthotropy->young_moduli[i] /= modulus;
+          unit.orthotropy->shear_moduli[i] /= modulus;
+        }
     dealii::Triangulation<2> mesh;
     make_divided_triangle(Q, n, mesh);
     BoundaryConditions conditions;
@@ -115,6 +122,6 @@ namespace Debond
                           S, Eigen::EigenvaluesOnly)
                           .eigenvalues()(0));
       }
-    return (1. - Tolerance::certificate) * best * material.young_modulus;
+    return (1. - Tolerance::certificate) * best * modulus;
   }
 } // namespace Debond

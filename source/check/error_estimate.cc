@@ -78,14 +78,14 @@ namespace Debond
     /// cell, for a force on it that is constant.
     template <int dim>
     double
-    fall_inside(const SimplexValues<dim>     &of_cell,
-                const dealii::Tensor<1, dim> &force,
-                const double                  stiffness)
+    fall_inside(const SimplexValues<dim>              &of_cell,
+                const dealii::Tensor<1, dim>          &force,
+                const dealii::SymmetricTensor<2, dim> &yield)
     {
       const double mean   = dim == 2 ? 1. / 60. : 1. / 840.;
       const double energy = of_cell.measure() * sum_of_squares(of_cell) /
                             (dim == 2 ? 180. : 15120.);
-      return 0.5 * mean * mean * force.norm_square() / (stiffness * energy);
+      return 0.5 * mean * mean * (force * (yield * force)) / energy;
     }
 
 
@@ -196,9 +196,11 @@ namespace Debond
       /// What the next cells need of one that is done.
       struct DoneCell
       {
-        double mu;
-        double lambda;
-        double bubble_energy;
+        double lambda_and_2_mu;
+
+        /// Times the identity 1 / mu, what yields to forces.
+        dealii::SymmetricTensor<2, dim> yield;
+        double                          bubble_energy;
 
         /// int_K (f_0 + div sigma), of which faces bear their share; of degree
         /// 2 zero, for there fall_inside() has it.
@@ -223,7 +225,7 @@ namespace Debond
       };
 
       /// Of the next cell. Loads are evaluated where load_vector() and
-      /// thermal_stresses() do it: there they are finite.
+      /// temperature_changes() do it: there they are finite.
       template <typename CellIterator>
       void
       add_cell(const CellIterator &cell)
@@ -233,56 +235,60 @@ namespace Debond
         const double              mu       = material.shear_modulus();
         const double              lambda = material.template lame_lambda<dim>();
         const double part_of_lambda      = lambda / (2. * mu + dim * lambda);
-        cells.push_back({mu, lambda, bubble_energy(of_cell), {}});
+        cells.push_back(
+          {lambda + 2. * mu,
+           material.orthotropy ?
+             orthotropic_yield(of.problem.fields().elasticity_tensor(cell)) :
+             1. / mu * dealii::unit_symmetric_tensor<dim>(),
+           bubble_energy(of_cell),
+           {}});
         dealii::Tensor<1, dim> &force = cells.back().force;
 
-        std::array<double, dim + 1> thermal = {};
+        std::array<double, dim + 1> heat = {};
         if (has_volume_loads)
-          thermal = add_volume_loads(cell, force);
+          heat = add_volume_loads(cell, force);
+        const dealii::SymmetricTensor<2, dim> &of_heat =
+          of.problem.fields().thermal_stress(cell);
         const double mean =
-          std::accumulate(thermal.begin(), thermal.end(), 0.) / (dim + 1);
+          std::accumulate(heat.begin(), heat.end(), 0.) / (dim + 1);
         const dealii::SymmetricTensor<2, dim> in_middle = at_points.stress(0);
         for (unsigned int v = 0; v < n_stresses; ++v)
           {
             const dealii::SymmetricTensor<2, dim> stress =
               degree == 2 ? at_points.stress(1 + v) :
-                            in_middle - (thermal[v] - mean) *
-                                          dealii::unit_symmetric_tensor<dim>();
+                            in_middle - (heat[v] - mean) * of_heat;
+            const double thermal = heat[v] * dealii::trace(of_heat);
             stresses.push_back(
               {stress,
-               thermal[v] -
-                 part_of_lambda * (dealii::trace(stress) + dim * thermal[v])});
+               material.orthotropy ?
+                 0. :
+                 thermal / dim -
+                   part_of_lambda * (dealii::trace(stress) + thermal)});
             if (n_stresses > 1)
               force +=
                 of_cell.measure() * (stress * of_cell.barycentric_gradient(v));
           }
         if (degree == 2)
           {
-            parts[cell->active_cell_index()] = fall_inside(of_cell, force, mu);
-            force                            = 0.;
+            parts[cell->active_cell_index()] =
+              fall_inside(of_cell, force, cells.back().yield);
+            force = 0.;
           }
 
-        const double trace = dealii::trace(in_middle);
         if (cell->is_locally_owned())
           stress_energy +=
-            0.5 * (1. / (2. * mu)) * of_cell.measure() *
-            (in_middle * in_middle - part_of_lambda * trace * trace);
+            0.5 * of_cell.measure() *
+            (in_middle *
+             (of.problem.fields().compliance_tensor(cell) * in_middle));
       }
 
-      /// Adds to the force on a cell. Returns what keeps the cell from
-      /// expanding, at its vertices: the linear function with the same mean and
-      /// moments.
+      /// Adds to the force on a cell. Returns the change of temperature at its
+      /// vertices: the linear function with the same mean and moments.
       template <typename CellIterator>
       std::array<double, dim + 1>
       add_volume_loads(const CellIterator &cell, dealii::Tensor<1, dim> &force)
       {
-        const double stress_of_one =
-          of.loads.temperature_change ?
-            load_factor * of.problem.fields()
-                            .material(cell)
-                            .template thermal_stress<dim>() :
-            0.;
-        std::array<double, dim + 1> thermal = {};
+        std::array<double, dim + 1> heat = {};
         at_loads.reinit(*cell);
         for (const unsigned int q : at_loads.quadrature_point_indices())
           {
@@ -291,17 +297,17 @@ namespace Debond
               force += load_factor * at_loads.JxW(q) * of.loads.force_at(point);
             if (of.dead_loads != nullptr && of.dead_loads->body_force)
               force += at_loads.JxW(q) * of.dead_loads->force_at(point);
-            if (stress_of_one == 0.)
+            if (!of.loads.temperature_change)
               continue;
-            const double pressure =
-              at_loads.JxW(q) / at_loads.measure() * stress_of_one *
+            const double change =
+              at_loads.JxW(q) / at_loads.measure() * load_factor *
               field_value(*of.loads.temperature_change, point);
             for (unsigned int v = 0; v <= dim; ++v)
-              thermal[v] += (dim + 1.) *
-                            ((dim + 2.) * at_loads.shape_value(v, q) - 1.) *
-                            pressure;
+              heat[v] += (dim + 1.) *
+                         ((dim + 2.) * at_loads.shape_value(v, q) - 1.) *
+                         change;
           }
-        return thermal;
+        return heat;
       }
 
       /// At a vertex of a cell that is done.
@@ -340,6 +346,32 @@ namespace Debond
                 in_cell};
       }
 
+      /// The mean over all directions of a gradient, times what makes it 1 /
+      /// mu of an isotropic material with a Poisson ratio of 0.3.
+      static dealii::SymmetricTensor<2, dim>
+      orthotropic_yield(const dealii::SymmetricTensor<4, dim> &stiffness)
+      {
+        dealii::SymmetricTensor<2, dim> mean;
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = i; j < dim; ++j)
+            for (unsigned int k = 0; k < dim; ++k)
+              mean[i][j] += stiffness[i][k][j][k] / dim;
+        return (dim == 2 ? 1.93 : 1.83) * dealii::invert(mean);
+      }
+
+      /// What yields to forces in the direction of the mean of r.
+      static double
+      along(const std::array<dealii::Tensor<1, dim>, dim> &r,
+            const dealii::SymmetricTensor<2, dim>         &yield)
+      {
+        dealii::Tensor<1, dim> sum;
+        for (const dealii::Tensor<1, dim> &value : r)
+          sum += value;
+        return sum.norm_square() > 0. ?
+                 sum * (yield * sum) / sum.norm_square() :
+                 dealii::trace(yield) / dim;
+      }
+
       /// What J would fall by r, given the mean square of its product with the
       /// measure of the face.
       static double
@@ -363,7 +395,8 @@ namespace Debond
         const double       b     = there.bubble_energy;
         // At the interface of two materials only tractions have no jump.
         const bool is_one_material =
-          here.mu == there.mu && here.lambda == there.lambda;
+          here.yield == there.yield &&
+          here.lambda_and_2_mu == there.lambda_and_2_mu;
         // Linear on the face: r times the measure, without the jumps of the
         // pressure, and these, at its vertices.
         std::array<dealii::Tensor<1, dim>, dim> r;
@@ -387,8 +420,9 @@ namespace Debond
           }
         const double energy =
           fall(mean_square(jumps, degree) * face.area.norm_square(),
-               (here.lambda + 2. * here.mu) * (a + b)) +
-          fall(mean_square(r, degree), here.mu * a + there.mu * b);
+               here.lambda_and_2_mu * (a + b)) +
+          fall(mean_square(r, degree),
+               a / along(r, here.yield) + b / along(r, there.yield));
         parts[face.cell] += 0.5 * energy;
         parts[other] += 0.5 * energy;
       }
@@ -435,11 +469,11 @@ namespace Debond
                                   face,
                                   boundary.faces[contact_face],
                                   coordinates);
-            square +=
-              on_face.JxW(q) / measure * free_part(r, normal, id).norm_square();
+            r = free_part(r, normal, id);
+            square += on_face.JxW(q) / measure * (r * (here.yield * r));
           }
         parts[face.cell] +=
-          fall(square * measure * measure, here.mu * here.bubble_energy);
+          fall(square * measure * measure, here.bubble_energy);
       }
 
       /// With what bonds bear, as far as the foundation lets the body go.
@@ -465,9 +499,10 @@ namespace Debond
           r_nu = std::min(r_nu, 0.);
         // What yields stretches the bonds, too.
         if (trace != 0.)
-          r_nu /= std::sqrt(1. + mean_square_on_face<dim> * measure * traction /
-                                   (trace * cells[side.cell].mu *
-                                    cells[side.cell].bubble_energy));
+          r_nu /=
+            std::sqrt(1. + mean_square_on_face<dim> * measure * traction /
+                             (trace * cells[side.cell].bubble_energy) *
+                             (normal * (cells[side.cell].yield * normal)));
         return of.conditions.fixes_tangential(face.id) ?
                  r_nu * normal :
                  r + (r_nu - r * normal) * normal;

@@ -69,12 +69,10 @@ namespace Debond
       double largest = 0.;
       for (const auto &cell : owned_cells(unknowns.dof_handler()))
         {
-          const Material &material = problem.fields().material(cell);
-          largest =
-            std::max(largest,
-                     at_edge[cell->id().get_coarse_cell_id()] *
-                       (1. - material.poisson_ratio * material.poisson_ratio) /
-                       material.young_modulus);
+          largest = std::max(
+            largest,
+            at_edge[cell->id().get_coarse_cell_id()] /
+              problem.fields().material(cell).template plane_modulus<dim>());
         }
       return dealii::Utilities::MPI::max(largest, unknowns.communicator());
     }

@@ -76,12 +76,9 @@ namespace Debond
     for (const auto &cell : owned_cells(handler))
       {
         const Material &material = problem.fields().material(cell);
-        const double    mu       = material.shear_modulus();
-        const double    lambda   = material.lame_lambda<dim>();
-        const double    modulus  = 4. * mu * (lambda + mu) / (lambda + 2. * mu);
-        least =
-          std::min(least,
-                   modulus * faces_by_modulus[cell->id().get_coarse_cell_id()]);
+        least                    = std::min(least,
+                         material.plane_modulus<dim>() *
+                           faces_by_modulus[cell->id().get_coarse_cell_id()]);
       }
     return dealii::Utilities::MPI::min(least,
                                        problem.unknowns().communicator());

@@ -94,6 +94,32 @@ namespace Debond
 
 
 
+    /// The same with the elasticity tensor of any material.
+    template <int dim>
+    void
+    set_products(const SimplexValues<dim>              &values,
+                 const dealii::SymmetricTensor<4, dim> &stiffness,
+                 dealii::FullMatrix<double>            &cell_matrix)
+    {
+      cell_matrix = 0.;
+      for (const unsigned int q : values.quadrature_point_indices())
+        for (unsigned int k = 0; k < values.n_nodes(); ++k)
+          for (unsigned int l = 0; l < values.n_nodes(); ++l)
+            {
+              const dealii::Tensor<1, dim> &g = values.shape_grad(k, q);
+              const dealii::Tensor<1, dim>  h =
+                values.JxW(q) * values.shape_grad(l, q);
+              for (unsigned int c = 0; c < dim; ++c)
+                for (unsigned int d = 0; d < dim; ++d)
+                  for (unsigned int i = 0; i < dim; ++i)
+                    for (unsigned int j = 0; j < dim; ++j)
+                      cell_matrix(dim * k + c, dim * l + d) +=
+                        g[i] * stiffness[c][i][d][j] * h[j];
+            }
+    }
+
+
+
     /// In a row, of which the diagonal entry is the first one.
     unsigned int
     n_columns_below(const dealii::types::global_dof_index column,
@@ -131,15 +157,14 @@ namespace Debond
     });
     notes.clear();
     const MPI_Comm      ranks = elastic_unknowns.communicator();
-    std::vector<double> pressures;
+    std::vector<double> temperatures;
     DofVector           applied_forces, dead_forces;
     on_all_ranks(ranks, [&]() {
-      pressures      = thermal_stresses(dofs.get_triangulation(),
-                                   materials,
-                                   loads,
-                                   dofs.get_fe().degree);
+      temperatures   = temperature_changes(dofs.get_triangulation(),
+                                         loads,
+                                         dofs.get_fe().degree);
       applied_forces = load_vector(dofs, loads, &notes);
-      add_thermal_forces(dofs, pressures, applied_forces);
+      add_thermal_forces(dofs, materials, temperatures, applied_forces);
       if (dead_loads.body_force || !dead_loads.tractions.empty())
         dead_forces = load_vector(dofs, dead_loads, &notes);
     });
@@ -151,7 +176,7 @@ namespace Debond
         applied_forces += dead_forces;
       }
     elastic_fields = std::make_unique<ElasticFields<dim>>(
-      elastic_unknowns, materials, applied_forces, pressures, dead_forces);
+      elastic_unknowns, materials, applied_forces, temperatures, dead_forces);
 
     const auto load_with = [&](const LoadFactors factors) {
       DofVector load =
@@ -196,13 +221,20 @@ namespace Debond
     dealii::FullMatrix<double> cell_matrix(n);
     std::vector<dealii::types::global_dof_index> cell_dofs(n);
     std::vector<char>                            is_free(n);
+    const auto stiffness = materials.transformed([](const Material &material) {
+      return material.elasticity_tensor<dim>();
+    });
     for (const auto &cell : dofs.active_cell_iterators())
       {
         values.reinit(*cell);
         cell->get_dof_indices(cell_dofs);
         for (unsigned int i = 0; i < n; ++i)
           is_free[i] = !elastic_unknowns.is_constrained(cell_dofs[i]);
-        set_products(values, materials(cell->material_id()), cell_matrix);
+        if (const Material &material = materials(cell->material_id());
+            material.orthotropy)
+          set_products(values, stiffness(cell->material_id()), cell_matrix);
+        else
+          set_products(values, material, cell_matrix);
         elastic_unknowns.to_unknowns(cell_dofs, cell_matrix);
 
         // Where the columns of a node are in one row of another one they are in

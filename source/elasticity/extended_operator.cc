@@ -30,6 +30,8 @@ namespace Debond
         const Material &material = problem.fields().material(dof_cell);
         cell.lambda              = material.lame_lambda<dim>();
         cell.mu                  = material.shear_modulus();
+        if (material.orthotropy)
+          cell.stiffness = &problem.fields().elasticity_tensor(dof_cell);
         cells.push_back(cell);
       }
   }
@@ -156,6 +158,18 @@ namespace Debond
         gradient[d] += (cartesian_u(cell.dofs[(n + 1) * dim + d]) -
                         cartesian_u(cell.dofs[d])) *
                        gradients[n];
+    if (cell.stiffness != nullptr)
+      {
+        Stress sigma;
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            for (unsigned int k = 0; k < dim; ++k)
+              for (unsigned int l = 0; l < dim; ++l)
+                sigma[i][j] +=
+                  static_cast<long double>((*cell.stiffness)[i][j][k][l]) *
+                  gradient[k][l];
+        return sigma;
+      }
     Stress sigma = cell.mu * (gradient + dealii::transpose(gradient));
     for (unsigned int d = 0; d < dim; ++d)
       sigma[d][d] += cell.lambda * dealii::trace(gradient);

@@ -17,16 +17,21 @@ namespace Debond
   ElasticFields<dim>::ElasticFields(const ElasticUnknowns<dim> &unknowns,
                                     const ByRegion<Material>   &materials,
                                     const DofVector            &applied_forces,
-                                    const std::vector<double> &thermal_stresses,
-                                    const DofVector           &dead_forces)
+                                    const std::vector<double>  &changes,
+                                    const DofVector            &dead_forces)
     : elastic_unknowns(unknowns)
     , materials(materials)
     , stiffness(materials.transformed([](const Material &material) {
       return material.elasticity_tensor<dim>();
     }))
+    , compliance(stiffness.transformed(
+        [](const auto &tensor) { return dealii::invert(tensor); }))
+    , thermal_stresses(materials.transformed([](const Material &material) {
+      return material.thermal_stress<dim>();
+    }))
     , live_forces(applied_forces)
     , dead_forces(dead_forces)
-    , thermal_stresses(thermal_stresses)
+    , temperature_changes(changes)
   {
     if (dead_forces.size() > 0)
       live_forces -= dead_forces;
@@ -129,13 +134,14 @@ namespace Debond
 
   template <int dim>
   double
-  ElasticFields<dim>::thermal_stress(const Cell               &cell,
-                                     const dealii::Point<dim> &unit_point) const
+  ElasticFields<dim>::temperature_change(
+    const Cell               &cell,
+    const dealii::Point<dim> &unit_point) const
   {
-    if (thermal_stresses.empty())
+    if (temperature_changes.empty())
       return 0.;
     if (elastic_unknowns.degree() == 1)
-      return thermal_stresses[cell->active_cell_index()];
+      return temperature_changes[cell->active_cell_index()];
     // The linear function that has these values at the points, where the other
     // barycentric coordinates are small.
     std::array<double, dim + 1> barycentric;
@@ -149,7 +155,7 @@ namespace Debond
     double       sum   = 0.;
     for (unsigned int q = 0; q <= dim; ++q)
       sum += (barycentric[q] - small) / (1. - (dim + 1) * small) *
-             thermal_stresses[(dim + 1) * cell->active_cell_index() + q];
+             temperature_changes[(dim + 1) * cell->active_cell_index() + q];
     return sum;
   }
 
@@ -300,9 +306,7 @@ namespace Debond
   CellStresses<dim>::stress(const unsigned int q) const
   {
     return elastic_stress(q) -
-           load_factor *
-             fields.thermal_stress(cell, shape.get_quadrature().point(q)) *
-             dealii::unit_symmetric_tensor<dim>();
+           temperature_change(q) * fields.thermal_stress(cell);
   }
 
 
@@ -311,10 +315,17 @@ namespace Debond
   dealii::SymmetricTensor<2, 3>
   CellStresses<dim>::solid_stress(const unsigned int q) const
   {
-    return fields.material(cell).solid_stress(
-      stress(q),
-      load_factor *
-        fields.thermal_stress(cell, shape.get_quadrature().point(q)));
+    return fields.material(cell).solid_stress(stress(q), temperature_change(q));
+  }
+
+
+
+  template <int dim>
+  double
+  CellStresses<dim>::temperature_change(const unsigned int q) const
+  {
+    return load_factor *
+           fields.temperature_change(cell, shape.get_quadrature().point(q));
   }
 
 

@@ -1,35 +1,157 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/numbers.h>
+#include <deal.II/physics/notation.h>
+#include <deal.II/physics/transformations.h>
+
+#include <debond/base/text.h>
 #include <debond/elasticity/material.h>
 
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace Debond
 {
+  namespace
+  {
+    template <int rank>
+    using Solid = dealii::SymmetricTensor<rank, 3>;
+
+
+
+    /// From the material axes to those of the body, or back.
+    dealii::Tensor<2, 3>
+    rotation(const double degrees)
+    {
+      return dealii::Physics::Transformations::Rotations::rotation_matrix_3d(
+        dealii::Point<3>(0., 0., 1.), degrees * dealii::numbers::PI / 180.);
+    }
+
+
+
+    Solid<2>
+    rotated(const Solid<2> &tensor, const double degrees)
+    {
+      return degrees == 0. ?
+               tensor :
+               dealii::Physics::Transformations::basis_transformation(
+                 tensor, rotation(degrees));
+    }
+
+
+
+    /// The components in the plane, or all of them.
+    template <int dim>
+    dealii::SymmetricTensor<4, dim>
+    part_of(const Solid<4> &solid)
+    {
+      dealii::SymmetricTensor<4, dim> result;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = i; j < dim; ++j)
+          for (unsigned int k = 0; k < dim; ++k)
+            for (unsigned int l = k; l < dim; ++l)
+              result[i][j][k][l] = solid[i][j][k][l];
+      return result;
+    }
+
+
+
+    template <int dim>
+    dealii::SymmetricTensor<2, dim>
+    part_of(const Solid<2> &solid)
+    {
+      dealii::SymmetricTensor<2, dim> result;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = i; j < dim; ++j)
+          result[i][j] = solid[i][j];
+      return result;
+    }
+
+
+
+    /// What keeps energies from being positive; empty if nothing does.
+    std::string
+    fault(const Orthotropy &material)
+    {
+      const Orthotropy::Three &E = material.young_moduli;
+      const Orthotropy::Three &G = material.shear_moduli;
+      for (const Orthotropy::Three &moduli : {E, G})
+        for (const double modulus : moduli)
+          if (!(modulus > 0. && std::isfinite(modulus)))
+            return "three Young moduli and three shear moduli must be positive "
+                   "and finite";
+      const Orthotropy::Three &nu = material.poisson_ratios;
+      for (unsigned int i = 0, pair = 0; i < 3; ++i)
+        for (unsigned int j = i + 1; j < 3; ++j, ++pair)
+          if (!(nu[pair] * nu[pair] < E[i] / E[j]))
+            return words("nu_",
+                         i + 1,
+                         j + 1,
+                         " = ",
+                         nu[pair],
+                         " must be nearer to 0 than sqrt(E_",
+                         i + 1,
+                         " / E_",
+                         j + 1,
+                         ") = ",
+                         std::sqrt(E[i] / E[j]));
+      const double rest =
+        1. - nu[0] * nu[0] * E[1] / E[0] - nu[1] * nu[1] * E[2] / E[0] -
+        nu[2] * nu[2] * E[2] / E[1] - 2. * nu[0] * nu[1] * nu[2] * E[2] / E[0];
+      return rest > 0. ?
+               "" :
+               words("nu_12, nu_13 and nu_23 together make energies negative: "
+                     "1 - nu_12 nu_21 - nu_13 nu_31 - nu_23 nu_32 - 2 nu_12 "
+                     "nu_23 nu_31 = ",
+                     rest,
+                     " must be positive");
+    }
+  } // namespace
+
+
+
+  bool
+  Material::operator==(const Material &other) const
+  {
+    return young_modulus == other.young_modulus &&
+           poisson_ratio == other.poisson_ratio &&
+           hypothesis == other.hypothesis &&
+           thermal_expansions == other.thermal_expansions &&
+           orthotropy == other.orthotropy && axis_angle == other.axis_angle;
+  }
+
+
+
   template <int dim>
   void
   Material::validate() const
   {
-    std::ostringstream message;
+    if (orthotropy)
+      {
+        if (const std::string reason = fault(*orthotropy); !reason.empty())
+          throw std::invalid_argument(reason);
+        return;
+      }
     if (!(young_modulus > 0. && std::isfinite(young_modulus)))
-      message << "Young modulus = " << young_modulus
-              << " must be positive and finite.";
+      throw std::invalid_argument(words(
+        "Young modulus = ", young_modulus, " must be positive and finite."));
 
     const bool is_plane_stress =
       dim == 2 && hypothesis == Hypothesis::plane_stress;
     const double largest = is_plane_stress ? 1. : 0.5;
-    if (message.str().empty() &&
-        !(poisson_ratio > -1. && poisson_ratio < largest))
-      message << "Poisson ratio = " << poisson_ratio << " must lie in (-1, "
-              << largest << ") in "
-              << (dim == 3        ? "3D" :
-                  is_plane_stress ? "plane stress" :
-                                    "plane strain")
-              << ".";
-
-    if (!message.str().empty())
-      throw std::invalid_argument(message.str());
+    if (!(poisson_ratio > -1. && poisson_ratio < largest))
+      throw std::invalid_argument(words("Poisson ratio = ",
+                                        poisson_ratio,
+                                        " must lie in (-1, ",
+                                        largest,
+                                        ") in ",
+                                        dim == 3        ? "3D" :
+                                        is_plane_stress ? "plane stress" :
+                                                          "plane strain",
+                                        "."));
   }
 
 
@@ -38,6 +160,16 @@ namespace Debond
   double
   Material::lame_lambda() const
   {
+    if (orthotropy)
+      {
+        Material unturned    = *this;
+        unturned.axis_angle  = 0.;
+        const auto stiffness = unturned.elasticity_tensor<dim>();
+        double     largest   = 0.;
+        for (unsigned int d = 0; d < dim; ++d)
+          largest = std::max(largest, stiffness[d][d][d][d]);
+        return largest - 2. * shear_modulus();
+      }
     const double E  = young_modulus;
     const double nu = poisson_ratio;
     return dim == 2 && hypothesis == Hypothesis::plane_stress ?
@@ -47,14 +179,41 @@ namespace Debond
 
 
 
-  template <int dim>
   double
+  Material::shear_modulus() const
+  {
+    return orthotropy ? *std::min_element(orthotropy->shear_moduli.begin(),
+                                          orthotropy->shear_moduli.end()) :
+                        young_modulus / (2. * (1. + poisson_ratio));
+  }
+
+
+
+  std::array<double, 2>
+  Material::extreme_moduli() const
+  {
+    if (!orthotropy)
+      return {{young_modulus, young_modulus}};
+    const auto &E = orthotropy->young_moduli;
+    const auto &G = orthotropy->shear_moduli;
+    return {{std::min(*std::min_element(E.begin(), E.end()),
+                      *std::min_element(G.begin(), G.end())),
+             std::max(*std::max_element(E.begin(), E.end()),
+                      *std::max_element(G.begin(), G.end()))}};
+  }
+
+
+
+  template <int dim>
+  dealii::SymmetricTensor<2, dim>
   Material::thermal_stress() const
   {
     const bool is_plane_stress =
       dim == 2 && hypothesis == Hypothesis::plane_stress;
-    return young_modulus * thermal_expansion /
-           (1. - (is_plane_stress ? 1. : 2.) * poisson_ratio);
+    const Solid<2> strain = thermal_strain();
+    if (is_plane_stress)
+      return elasticity_tensor<dim>() * part_of<dim>(strain);
+    return part_of<dim>(elasticity_tensor<3>() * strain);
   }
 
 
@@ -63,6 +222,15 @@ namespace Debond
   dealii::SymmetricTensor<4, dim>
   Material::elasticity_tensor() const
   {
+    if (orthotropy)
+      {
+        const Solid<4> compliance =
+          dealii::Physics::Transformations::basis_transformation(
+            compliance_along_axes(), rotation(axis_angle));
+        return dim == 2 && hypothesis == Hypothesis::plane_stress ?
+                 dealii::invert(part_of<dim>(compliance)) :
+                 part_of<dim>(dealii::invert(compliance));
+      }
     const auto identity = dealii::unit_symmetric_tensor<dim>();
     return lame_lambda<dim>() * dealii::outer_product(identity, identity) +
            2. * shear_modulus() * dealii::identity_tensor<dim>();
@@ -71,17 +239,47 @@ namespace Debond
 
 
   template <int dim>
+  double
+  Material::least_stiffness() const
+  {
+    if (!orthotropy)
+      return 2. * shear_modulus() + dim * std::min(0., lame_lambda<dim>());
+    const dealii::FullMatrix<double> kelvin =
+      dealii::Physics::Notation::Kelvin::to_matrix(elasticity_tensor<dim>());
+    Eigen::MatrixXd matrix(kelvin.m(), kelvin.n());
+    for (unsigned int k = 0; k < kelvin.m(); ++k)
+      for (unsigned int l = 0; l < kelvin.n(); ++l)
+        matrix(k, l) = kelvin(k, l);
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
+             matrix, Eigen::EigenvaluesOnly)
+      .eigenvalues()(0);
+  }
+
+
+
+  template <int dim>
   dealii::SymmetricTensor<2, 3>
   Material::solid_stress(const dealii::SymmetricTensor<2, dim> &stress,
-                         const double thermal_stress) const
+                         const double temperature_change) const
   {
-    dealii::SymmetricTensor<2, 3> s;
+    Solid<2> s;
     for (unsigned int i = 0; i < dim; ++i)
       for (unsigned int j = i; j < dim; ++j)
         s[i][j] = stress[i][j];
     if (dim == 2 && hypothesis == Hypothesis::plane_strain)
-      s[2][2] = poisson_ratio * dealii::trace(stress) -
-                (1. - 2. * poisson_ratio) * thermal_stress;
+      {
+        // No strain along z.
+        const double free_strain = temperature_change * thermal_expansions[2];
+        if (!orthotropy)
+          s[2][2] =
+            poisson_ratio * dealii::trace(stress) - young_modulus * free_strain;
+        else
+          {
+            const Solid<4> compliance = compliance_along_axes();
+            s[2][2] = -((compliance * along_axes(s))[2][2] + free_strain) /
+                      compliance[2][2][2][2];
+          }
+      }
     return s;
   }
 
@@ -90,10 +288,53 @@ namespace Debond
   double
   Material::energy_density(const dealii::SymmetricTensor<2, 3> &stress) const
   {
+    if (orthotropy)
+      {
+        const Solid<2> along = along_axes(stress);
+        return 0.5 * (along * (compliance_along_axes() * along));
+      }
     const double trace = dealii::trace(stress);
     return ((1. + poisson_ratio) * (stress * stress) -
             poisson_ratio * trace * trace) /
            (2. * young_modulus);
+  }
+
+
+
+  dealii::SymmetricTensor<2, 3>
+  Material::along_axes(const dealii::SymmetricTensor<2, 3> &stress) const
+  {
+    return rotated(stress, -axis_angle);
+  }
+
+
+
+  dealii::SymmetricTensor<4, 3>
+  Material::compliance_along_axes() const
+  {
+    Solid<4> result;
+    for (unsigned int i = 0, pair = 0; i < 3; ++i)
+      {
+        result[i][i][i][i] = 1. / orthotropy->young_moduli[i];
+        for (unsigned int j = i + 1; j < 3; ++j, ++pair)
+          {
+            result[i][i][j][j] = result[j][j][i][i] =
+              -orthotropy->poisson_ratios[pair] / orthotropy->young_moduli[i];
+            result[i][j][i][j] = 0.25 / orthotropy->shear_moduli[pair];
+          }
+      }
+    return result;
+  }
+
+
+
+  dealii::SymmetricTensor<2, 3>
+  Material::thermal_strain() const
+  {
+    Solid<2> along_axes;
+    for (unsigned int d = 0; d < 3; ++d)
+      along_axes[d][d] = thermal_expansions[d];
+    return rotated(along_axes, axis_angle);
   }
 
 
@@ -114,14 +355,18 @@ namespace Debond
   Material::lame_lambda<2>() const;
   template double
   Material::lame_lambda<3>() const;
-  template double
+  template dealii::SymmetricTensor<2, 2>
   Material::thermal_stress<2>() const;
-  template double
+  template dealii::SymmetricTensor<2, 3>
   Material::thermal_stress<3>() const;
   template dealii::SymmetricTensor<4, 2>
   Material::elasticity_tensor<2>() const;
   template dealii::SymmetricTensor<4, 3>
   Material::elasticity_tensor<3>() const;
+  template double
+  Material::least_stiffness<2>() const;
+  template double
+  Material::least_stiffness<3>() const;
   template dealii::SymmetricTensor<2, 3>
   Material::solid_stress(const dealii::SymmetricTensor<2, 2> &,
                          const double) const;

@@ -32,14 +32,13 @@ namespace Debond
 
   template <int dim>
   std::vector<double>
-  thermal_stresses(const dealii::Triangulation<dim> &triangulation,
-                   const ByRegion<Material>         &materials,
-                   const Loads<dim>                 &loads,
-                   const unsigned int                degree)
+  temperature_changes(const dealii::Triangulation<dim> &triangulation,
+                      const Loads<dim>                 &loads,
+                      const unsigned int                degree)
   {
-    std::vector<double> stresses;
+    std::vector<double> changes;
     if (!loads.temperature_change)
-      return stresses;
+      return changes;
 
     SimplexValues<dim>         values(dealii::FE_SimplexP<dim>(1),
                               degree == 1 ? dealii::QGaussSimplex<dim>(2) :
@@ -49,21 +48,19 @@ namespace Debond
     for (const auto &cell : triangulation.active_cell_iterators())
       {
         values.reinit(*cell);
-        const double stress_of_one =
-          materials(cell->material_id()).template thermal_stress<dim>();
         double mean = 0.;
         for (const unsigned int q : values.quadrature_point_indices())
           {
-            const double stress =
-              stress_of_one * temperature_at(loads, values.quadrature_point(q));
-            mean += weights[q] / volume * stress;
+            const double change =
+              temperature_at(loads, values.quadrature_point(q));
+            mean += weights[q] / volume * change;
             if (degree > 1)
-              stresses.push_back(stress);
+              changes.push_back(change);
           }
         if (degree == 1)
-          stresses.push_back(mean);
+          changes.push_back(mean);
       }
-    return stresses;
+    return changes;
   }
 
 
@@ -71,11 +68,14 @@ namespace Debond
   template <int dim>
   void
   add_thermal_forces(const dealii::DoFHandler<dim> &dof_handler,
-                     const std::vector<double>     &thermal_stresses,
+                     const ByRegion<Material>      &materials,
+                     const std::vector<double>     &temperature_changes,
                      DofVector                     &forces)
   {
-    if (thermal_stresses.empty())
+    if (temperature_changes.empty())
       return;
+    const auto stresses = materials.transformed(
+      [](const Material &material) { return material.thermal_stress<dim>(); });
     const auto        &fe = dof_handler.get_fe();
     SimplexValues<dim> values(fe.base_element(0), strain_rule<dim>(fe.degree));
     std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
@@ -84,22 +84,24 @@ namespace Debond
       {
         values.reinit(*cell);
         cell->get_dof_indices(dofs);
-        auto stress =
-          thermal_stresses.begin() + cell->active_cell_index() * n_points;
+        const dealii::SymmetricTensor<2, dim> &stress =
+          stresses(cell->material_id());
         for (const unsigned int q : values.quadrature_point_indices())
           {
+            const double change =
+              temperature_changes[cell->active_cell_index() * n_points + q];
             for (unsigned int i = 0; i < dofs.size(); ++i)
-              forces(dofs[i]) += values.JxW(q) * *stress *
-                                 values.shape_grad(i / dim, q)[i % dim];
-            ++stress;
+              forces(dofs[i]) +=
+                values.JxW(q) * change *
+                (stress * values.shape_grad(i / dim, q))[i % dim];
           }
       }
   }
 
 
 
-  template decltype(thermal_stresses<2>)   thermal_stresses<2>;
-  template decltype(thermal_stresses<3>)   thermal_stresses<3>;
-  template decltype(add_thermal_forces<2>) add_thermal_forces<2>;
-  template decltype(add_thermal_forces<3>) add_thermal_forces<3>;
+  template decltype(temperature_changes<2>) temperature_changes<2>;
+  template decltype(temperature_changes<3>) temperature_changes<3>;
+  template decltype(add_thermal_forces<2>)  add_thermal_forces<2>;
+  template decltype(add_thermal_forces<3>)  add_thermal_forces<3>;
 } // namespace Debond

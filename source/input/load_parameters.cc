@@ -32,6 +32,8 @@ namespace Debond
     add_material_constants(const Material                &material,
                            std::map<std::string, double> &constants)
     {
+      if (material.orthotropy)
+        return;
       constants.emplace("E", material.young_modulus);
       constants.emplace("nu", material.poisson_ratio);
       constants.emplace("lambda", material.lame_lambda<dim>());

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/utilities.h>
+
 #include <debond/base/text.h>
 #include <debond/input/material_parameters.h>
 
+#include <algorithm>
+#include <array>
+#include <functional>
 #include <stdexcept>
 #include <vector>
 
@@ -9,12 +14,136 @@ namespace Debond
 {
   namespace
   {
-    /// @p region: with a blank in front, empty for the material everywhere.
+    using Three = std::array<double, 3>;
+
+    /// One number for all three of them if @p may_be_one.
+    bool
+    read_three(const std::string &text, const bool may_be_one, Three &numbers)
+    {
+      const std::vector<std::string> items =
+        dealii::Utilities::split_string_list(text, ',');
+      if (items.size() != 3 && !(may_be_one && items.size() == 1))
+        return false;
+      for (unsigned int i = 0; i < 3; ++i)
+        if (!read_number(items[items.size() == 1 ? 0 : i], numbers[i]))
+          return false;
+      return true;
+    }
+
+
+
+    /// Without a text there are none of them, and without any no orthotropy.
     void
-    check_numbers(const unsigned int dimension,
-                  const Material    &material,
-                  const std::string &region,
-                  ParameterTable    &table)
+    set_orthotropy(const std::string &text,
+                   Three Orthotropy::*const numbers,
+                   Material                &material)
+    {
+      Orthotropy own = material.orthotropy.value_or(Orthotropy());
+      if (text.empty())
+        own.*numbers = {};
+      else
+        read_three(text, false, own.*numbers);
+      if (own == Orthotropy())
+        material.orthotropy.reset();
+      else
+        material.orthotropy = own;
+    }
+
+
+
+    Pattern
+    three_numbers(const std::string &words, const bool may_be_one)
+    {
+      return Pattern(words, [may_be_one](const std::string &text) {
+        Three numbers;
+        return text.empty() || read_three(text, may_be_one, numbers);
+      });
+    }
+
+
+
+    /// An entry of the section, for the whole body and for regions.
+    struct Entry
+    {
+      std::string                                          name;
+      std::string                                          default_value;
+      Pattern                                              pattern;
+      std::string                                          documentation, units;
+      std::function<void(Material &, const std::string &)> set;
+    };
+
+    const std::vector<Entry> &
+    entries()
+    {
+      const auto three = [](Three Orthotropy::*const numbers) {
+        return [numbers](Material &material, const std::string &text) {
+          set_orthotropy(text, numbers, material);
+        };
+      };
+      const Pattern axes = three_numbers("nothing, or three numbers", false);
+      static const std::vector<Entry> all = {
+        {"Young modulus",
+         "69",
+         quantity(),
+         "E",
+         "force per area",
+         [](Material &material, const std::string &text) {
+           read_number(text, material.young_modulus);
+         }},
+        {"Poisson ratio",
+         "0.33",
+         number(),
+         "nu, in (-1, 1) in plane stress and in (-1, 0.5) in plane strain and 3D",
+         "none",
+         [](Material &material, const std::string &text) {
+           read_number(text, material.poisson_ratio);
+         }},
+        {"Young moduli",
+         "",
+         axes,
+         "E_1, E_2, E_3 along the axes of an orthotropic material, in place of Young modulus and Poisson ratio",
+         "force per area",
+         three(&Orthotropy::young_moduli)},
+        {"Poisson ratios",
+         "",
+         axes,
+         "nu_12, nu_13, nu_23 of an orthotropic material: a force along the first axis strains it by -nu times as much along the second one",
+         "none",
+         three(&Orthotropy::poisson_ratios)},
+        {"Shear moduli",
+         "",
+         axes,
+         "G_12, G_13, G_23 of an orthotropic material",
+         "force per area",
+         three(&Orthotropy::shear_moduli)},
+        {"Axis angle",
+         "0",
+         number(),
+         "From x to axis 1 of the material, about z, which is axis 3",
+         "degrees",
+         [](Material &material, const std::string &text) {
+           read_number(text, material.axis_angle);
+         }},
+        {"Thermal expansion",
+         "0",
+         three_numbers("a number, or three", true),
+         "alpha, the strain that a change of temperature by one makes, or alpha_1, alpha_2, alpha_3 along the material's axes",
+         "per temperature",
+         [](Material &material, const std::string &text) {
+           read_three(text, true, material.thermal_expansions);
+         }}};
+      return all;
+    }
+
+
+
+    /// @p region: empty for the material everywhere.
+    void
+    check_numbers(const unsigned int        dimension,
+                  const Material           &material,
+                  const MaterialParameters &materials,
+                  const std::string        &region,
+                  ParameterTable           &table)
     {
       try
         {
@@ -25,7 +154,7 @@ namespace Debond
         }
       catch (const std::invalid_argument &error)
         {
-          table.reject("Material/Poisson ratio" + region,
+          table.reject(materials.entry_of(region),
                        error.what(),
                        {"Dimension",
                         "Material/Young modulus",
@@ -40,17 +169,46 @@ namespace Debond
   MaterialParameters::of_regions() const
   {
     std::map<std::string, Material> materials;
-    const auto take = [&](const std::map<std::string, std::string> &texts,
-                          double Material::*const number) {
-      for (const auto &[region, text] : texts)
-        read_number(text,
-                    materials.emplace(region, everywhere).first->second.*
-                      number);
-    };
-    take(young_moduli, &Material::young_modulus);
-    take(poisson_ratios, &Material::poisson_ratio);
-    take(thermal_expansions, &Material::thermal_expansion);
+    for (const auto &[name, texts] : own)
+      for (const auto &[region, unused] : texts)
+        materials.emplace(region, everywhere);
+    for (auto &[region, material] : materials)
+      {
+        // In an orthotropic body.
+        if (own.at("Young modulus").count(region) > 0)
+          material.orthotropy.reset();
+        for (const Entry &entry : entries())
+          if (const auto text = own.at(entry.name).find(region);
+              text != own.at(entry.name).end())
+            entry.set(material, text->second);
+      }
     return materials;
+  }
+
+
+
+  bool
+  MaterialParameters::expands() const
+  {
+    return everywhere.thermal_expansions != Three() ||
+           !own.at("Thermal expansion").empty();
+  }
+
+
+
+  bool
+  MaterialParameters::has_axes() const
+  {
+    const auto has = [](const Material &material) {
+      const Three &alpha = material.thermal_expansions;
+      return material.orthotropy || alpha[0] != alpha[1] ||
+             alpha[0] != alpha[2];
+    };
+    const auto regions = of_regions();
+    return has(everywhere) ||
+           std::any_of(regions.begin(), regions.end(), [&](const auto &region) {
+             return has(region.second);
+           });
   }
 
 
@@ -58,12 +216,18 @@ namespace Debond
   std::string
   MaterialParameters::entry_of(const std::string &region) const
   {
-    return "Material/" +
-           std::string(young_moduli.count(region) > 0 ? "Young modulus " :
-                       poisson_ratios.count(region) > 0 ?
-                                                        "Poisson ratio " :
-                                                        "Thermal expansion ") +
-           region;
+    if (region.empty())
+      return everywhere.orthotropy ? "Material/Young moduli" :
+                                     "Material/Poisson ratio";
+    for (const std::string name : {"Poisson ratio",
+                                   "Poisson ratios",
+                                   "Young modulus",
+                                   "Young moduli",
+                                   "Shear moduli",
+                                   "Axis angle"})
+      if (own.at(name).count(region) > 0)
+        return "Material/" + name + ' ' + region;
+    return "Material/Thermal expansion " + region;
   }
 
 
@@ -71,39 +235,26 @@ namespace Debond
   void
   bind_material(MaterialParameters &materials, ParameterTable &table)
   {
-    Material         &material = materials.everywhere;
-    const std::string region   = ", in the region of this name";
-    const auto        bind     = [&](const std::string                  &path,
-                          double                             &everywhere,
-                          std::map<std::string, std::string> &regions,
-                          const Pattern                      &pattern,
-                          const std::string                  &documentation,
-                          const std::string                  &units) {
-      table.bind(path, everywhere, pattern, documentation, units);
-      table.bind_family(path, regions, pattern, documentation + region, units);
-    };
-    bind("Material/Young modulus",
-         material.young_modulus,
-         materials.young_moduli,
-         quantity(),
-         "E",
-         "force per area");
-    bind(
-      "Material/Poisson ratio",
-      material.poisson_ratio,
-      materials.poisson_ratios,
-      number(),
-      "nu, in (-1, 1) in plane stress and in (-1, 0.5) in plane strain and 3D",
-      "none");
-    bind("Material/Thermal expansion",
-         material.thermal_expansion,
-         materials.thermal_expansions,
-         number(),
-         "alpha, the strain that a change of temperature by one makes",
-         "per temperature");
+    for (const Entry &entry : entries())
+      {
+        const std::string path = "Material/" + entry.name;
+        table.declare(path,
+                      entry.default_value,
+                      entry.pattern,
+                      entry.documentation,
+                      entry.units,
+                      [&materials, &entry](const std::string &text) {
+                        entry.set(materials.everywhere, text);
+                      });
+        table.bind_family(path,
+                          materials.own[entry.name],
+                          entry.pattern,
+                          entry.documentation + ", in the region of this name",
+                          entry.units);
+      }
     table.bind_choice(
       "Material/Hypothesis",
-      material.hypothesis,
+      materials.everywhere.hypothesis,
       {{"plane stress", Material::Hypothesis::plane_stress},
        {"plane strain", Material::Hypothesis::plane_strain}},
       "How the plane body represents a solid one; not used in 3D");
@@ -117,23 +268,21 @@ namespace Debond
                  const std::set<std::string> &regions,
                  ParameterTable              &table)
   {
-    check_numbers(dimension, materials.everywhere, "", table);
+    check_numbers(dimension, materials.everywhere, materials, "", table);
+    if (materials.everywhere.orthotropy &&
+        materials.own.at("Young modulus").empty())
+      table.without_effect("Material/Young modulus, Material/Poisson ratio",
+                           "the material is orthotropic");
     const std::vector<std::string> known(regions.begin(), regions.end());
-    const auto                     check = [&](const std::string                        &path,
-                           const std::map<std::string, std::string> &texts) {
+    for (const auto &[name, texts] : materials.own)
       for (const auto &[region, unused] : texts)
         if (regions.count(region) == 0)
-          table.reject(path + ' ' + region,
+          table.reject("Material/" + name + ' ' + region,
                        "the body has no region " + region +
                          (known.empty() ? "; name one in Parts" :
-                                                              ", but " + join(known, ", ")));
-    };
-    check("Material/Young modulus", materials.young_moduli);
-    check("Material/Poisson ratio", materials.poisson_ratios);
-    check("Material/Thermal expansion", materials.thermal_expansions);
+                                          ", but " + join(known, ", ")));
     for (const auto &[region, material] : materials.of_regions())
-      if (regions.count(region) > 0 &&
-          materials.poisson_ratios.count(region) > 0)
-        check_numbers(dimension, material, ' ' + region, table);
+      if (regions.count(region) > 0)
+        check_numbers(dimension, material, materials, region, table);
   }
 } // namespace Debond

@@ -211,6 +211,11 @@ namespace Debond
         table.reject("Certificate/Kind",
                      "is for a single load",
                      {"Load path/Factors", "Load path/Dead loads"});
+      if (!p.loads.temperature_change.empty() && p.materials.has_axes())
+        table.reject("Certificate/Kind",
+                     "needs materials that expand alike along all axes, if "
+                     "there is a temperature change",
+                     {"Loads/Temperature change"});
     }
 
 
@@ -232,8 +237,7 @@ namespace Debond
                             search == BondSearchChoice::automatic ?
                                        p.solver.method == "automatic" :
                                        search != BondSearchChoice::none;
-      const bool is_cold  = p.materials.everywhere.thermal_expansion == 0. &&
-                           p.materials.thermal_expansions.empty();
+      const bool is_cold  = !p.materials.expands();
       for (const auto &[is_idle, reason, entries] :
            std::vector<std::tuple<bool, std::string, std::string>>{
              {body.source != BodyParameters::Source::box,

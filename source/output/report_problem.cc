@@ -37,13 +37,27 @@ namespace Debond
         return join({names.begin(), names.end()}, ", ");
       };
       const auto numbers = [](const Material &material) {
-        return words("E = ",
-                     material.young_modulus,
-                     ", nu = ",
-                     material.poisson_ratio,
-                     material.thermal_expansion == 0. ?
+        using Three      = std::array<double, 3>;
+        const auto three = [](const Three &of) {
+          return words(of[0], ", ", of[1], ", ", of[2]);
+        };
+        const Orthotropy own     = material.orthotropy.value_or(Orthotropy());
+        const Three     &alpha   = material.thermal_expansions;
+        const bool       is_even = alpha[0] == alpha[1] && alpha[0] == alpha[2];
+        return words(material.orthotropy ?
+                       "E = " + three(own.young_moduli) +
+                         ", nu = " + three(own.poisson_ratios) +
+                         ", G = " + three(own.shear_moduli) :
+                       words("E = ",
+                             material.young_modulus,
+                             ", nu = ",
+                             material.poisson_ratio),
+                     alpha == Three() ? "" :
+                     is_even          ? words(", alpha = ", alpha[0]) :
+                                        ", alpha = " + three(alpha),
+                     material.axis_angle == 0. ?
                        "" :
-                       words(", alpha = ", material.thermal_expansion));
+                       words(", axis 1 at ", material.axis_angle, " degrees"));
       };
       const auto lines =
         [&record](const std::string                        &label,

@@ -84,21 +84,29 @@ namespace Debond
       const auto &dofs        = problem.unknowns().dof_handler();
       const auto &first       = *dofs.begin_active();
       const auto &fields      = problem.fields();
-      bool        has_regions = false;
+      bool        has_regions = false, has_axes = false;
       for (const auto &cell : dofs.active_cell_iterators())
-        has_regions |= cell->material_id() != first.material_id();
+        {
+          has_regions |= cell->material_id() != first.material_id();
+          has_axes |= fields.material(cell).orthotropy &&
+                      fields.material(cell).axis_angle != 0.;
+        }
       has_regions = any_rank(has_regions);
+      has_axes    = any_rank(has_axes);
       const bool has_zz =
         dim == 2 && fields.material(dofs.begin_active()).hypothesis ==
                       Material::Hypothesis::plane_strain;
-      const std::string        axes = "xyz";
-      std::vector<std::string> components;
-      for (unsigned int c = 0; c < Stress::n_independent_components; ++c)
-        {
-          const auto ij = Stress::unrolled_to_component_indices(c);
-          components.push_back(std::string("stress_") + axes[ij[0]] +
-                               axes[ij[1]]);
-        }
+      const auto names_of_components = [](const std::string &axes) {
+        std::vector<std::string> names;
+        for (unsigned int c = 0; c < Stress::n_independent_components; ++c)
+          {
+            const auto ij = Stress::unrolled_to_component_indices(c);
+            names.push_back(std::string("stress_") + axes[ij[0]] + axes[ij[1]]);
+          }
+        return names;
+      };
+      const std::vector<std::string> components = names_of_components("xyz");
+      const std::vector<std::string> along_axes = names_of_components("123");
 
       // Each cell comes to the fields in the same order.
       std::vector<VtuGrid::Field> all;
@@ -124,6 +132,13 @@ namespace Debond
                 stress[Stress::unrolled_to_component_indices(c)]);
           if (has_zz)
             add("stress_zz", stress[2][2]);
+          if (has_axes)
+            {
+              const auto own = fields.material(cell).along_axes(stress);
+              for (unsigned int c = 0; c < along_axes.size(); ++c)
+                add(along_axes[c].c_str(),
+                    own[Stress::unrolled_to_component_indices(c)]);
+            }
           if (has_regions)
             add("region", cell->material_id());
           add("von_mises", von_mises(stress));

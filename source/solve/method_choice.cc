@@ -62,9 +62,13 @@ namespace Debond
       if (problem.dimension == 2 &&
           everywhere.hypothesis == Material::Hypothesis::plane_stress)
         return 1.;
-      double largest = everywhere.poisson_ratio;
+      // Orthotropic ones are not near to incompressible.
+      const auto poisson_ratio = [](const Material &material) {
+        return material.orthotropy ? 0. : material.poisson_ratio;
+      };
+      double largest = poisson_ratio(everywhere);
       for (const auto &[region, material] : problem.materials.of_regions())
-        largest = std::max(largest, material.poisson_ratio);
+        largest = std::max(largest, poisson_ratio(material));
       return std::pow(std::min(1., 3. * (1. - 2. * largest)), -0.4);
     }
 
@@ -133,8 +137,9 @@ namespace Debond
           if (!cell->at_boundary(f))
             {
               const auto   neighbor = cell->neighbor(f);
-              const double ratio    = fields.material(cell).young_modulus /
-                                   fields.material(neighbor).young_modulus;
+              const double ratio =
+                fields.material(cell).extreme_moduli()[1] /
+                fields.material(neighbor).extreme_moduli()[1];
               if (ratio > 1.)
                 {
                   ratios.push_back(ratio);

@@ -152,7 +152,9 @@ namespace Debond
     body_materials = make_materials(given.materials, names.regions);
     std::set<double> moduli;
     for (const auto &cell : owned_cells(*triangulation))
-      moduli.insert(body_materials(cell->material_id()).young_modulus);
+      for (const double modulus :
+           body_materials(cell->material_id()).extreme_moduli())
+        moduli.insert(modulus);
     for (const std::set<double> &of_rank :
          dealii::Utilities::MPI::all_gather(ranks, moduli))
       moduli.insert(of_rank.begin(), of_rank.end());

@@ -52,9 +52,9 @@ Material
 material()
 {
   Material result;
-  result.young_modulus     = 2.;
-  result.poisson_ratio     = 0.3;
-  result.thermal_expansion = 0.1;
+  result.young_modulus      = 2.;
+  result.poisson_ratio      = 0.3;
+  result.thermal_expansions = {{0.1, 0.1, 0.1}};
   return result;
 }
 
@@ -178,7 +178,7 @@ test_heat()
 {
   Triangulation<dim> mesh;
   make_mesh(mesh);
-  const double                alpha = material<dim>().thermal_expansion;
+  const double                alpha = material<dim>().thermal_expansions[0];
   const auto                  exact = field<dim>([alpha](const Point<dim> &x) {
     Tensor<1, dim> u;
     u[0] = alpha * x[0] * x[0] / 2.;

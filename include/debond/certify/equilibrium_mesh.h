@@ -78,7 +78,7 @@ namespace Debond
       double width, height;
     };
 
-    /// @p thermal_stresses: of each active cell, see thermal_stresses();
+    /// @p thermal_stresses: of each active cell, as a pressure;
     /// none if empty. Keeps a reference to the mesh. Throws EquilibriumError
     /// for what is not done: contact sides that are supported as well, and
     /// sides with several supports.

@@ -50,6 +50,9 @@ namespace Debond
       long double volume;
       long double lambda; ///< Lame's
       long double mu;
+
+      /// In place of them if the material is orthotropic.
+      const dealii::SymmetricTensor<4, dim> *stiffness = nullptr;
     };
 
     ExtendedVector

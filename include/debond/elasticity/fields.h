@@ -29,14 +29,13 @@ namespace Debond
     /// Keeps a reference to the unknowns. @p applied_forces: the Cartesian
     /// nodal forces of all loads, at every degree of freedom; @p dead_forces:
     /// those of them that do not grow with the load factor, empty for none.
-    /// @p thermal_stresses: of each point of strain_rule() in each active cell
-    /// the pressure that the change of temperature makes if the body cannot
-    /// expand; none if empty.
+    /// @p temperature_changes: of each point of strain_rule() in each active
+    /// cell; none if empty.
     ElasticFields(const ElasticUnknowns<dim> &unknowns,
                   const ByRegion<Material>   &materials,
                   const DofVector            &applied_forces,
-                  const std::vector<double>  &thermal_stresses = {},
-                  const DofVector            &dead_forces      = {});
+                  const std::vector<double>  &temperature_changes = {},
+                  const DofVector            &dead_forces         = {});
 
     const Material &
     material(const Cell &cell) const
@@ -75,17 +74,31 @@ namespace Debond
       return stiffness(cell->material_id());
     }
 
-    /// The pressure at a point of the reference cell that the whole change of
-    /// temperature makes; linear in each cell of degree 2, else constant.
+    /// Its inverse.
+    const dealii::SymmetricTensor<4, dim> &
+    compliance_tensor(const Cell &cell) const
+    {
+      return compliance(cell->material_id());
+    }
+
+    /// Material::thermal_stress().
+    const dealii::SymmetricTensor<2, dim> &
+    thermal_stress(const Cell &cell) const
+    {
+      return thermal_stresses(cell->material_id());
+    }
+
+    /// The whole change of temperature at a point of the reference cell; linear
+    /// in each cell of degree 2, else constant.
     double
-    thermal_stress(const Cell               &cell,
-                   const dealii::Point<dim> &unit_point) const;
+    temperature_change(const Cell               &cell,
+                       const dealii::Point<dim> &unit_point) const;
 
     /// Whether a change of temperature is among the loads.
     bool
     is_heated() const
     {
-      return !thermal_stresses.empty();
+      return !temperature_changes.empty();
     }
 
     const ElasticUnknowns<dim> &
@@ -124,10 +137,11 @@ namespace Debond
 
     const ElasticUnknowns<dim>               &elastic_unknowns;
     ByRegion<Material>                        materials;
-    ByRegion<dealii::SymmetricTensor<4, dim>> stiffness;
+    ByRegion<dealii::SymmetricTensor<4, dim>> stiffness, compliance;
+    ByRegion<dealii::SymmetricTensor<2, dim>> thermal_stresses;
     DofVector                                 live_forces;
     DofVector                                 dead_forces; ///< or empty
-    std::vector<double>                       thermal_stresses;
+    std::vector<double>                       temperature_changes;
   };
 
 
@@ -217,6 +231,9 @@ namespace Debond
     solid_stress(const unsigned int q) const;
 
   private:
+    double
+    temperature_change(const unsigned int q) const;
+
     const ElasticFields<dim> &fields;
     const DofVector          &cartesian_displacement;
     const double              load_factor;

@@ -24,25 +24,24 @@ namespace Debond
 
 
 
-  /// The stress of each active cell that the change of temperature makes if the
-  /// body does not move, Material::thermal_stress() times that, as a pressure,
-  /// as displacements of this @p degree see it: of degree 1 the mean, of degree
-  /// 2 the values at the points of strain_rule(). Empty if there is none.
-  /// Throws TemperatureError with the place if the change is not finite
-  /// somewhere.
+  /// The change of temperature of each active cell, as displacements of this
+  /// @p degree see it: of degree 1 the mean, of degree 2 the values at the
+  /// points of strain_rule(). Empty if there is none. Throws TemperatureError
+  /// with the place if the change is not finite somewhere.
   template <int dim>
   std::vector<double>
-  thermal_stresses(const dealii::Triangulation<dim> &triangulation,
-                   const ByRegion<Material>         &materials,
-                   const Loads<dim>                 &loads,
-                   const unsigned int                degree = 1);
+  temperature_changes(const dealii::Triangulation<dim> &triangulation,
+                      const Loads<dim>                 &loads,
+                      const unsigned int                degree = 1);
 
-  /// Adds the nodal forces that they are as a load, to the Cartesian ones at
-  /// every degree of freedom.
+  /// Adds the nodal forces that they are as a load, by
+  /// Material::thermal_stress(), to the Cartesian ones at every degree of
+  /// freedom.
   template <int dim>
   void
   add_thermal_forces(const dealii::DoFHandler<dim> &dof_handler,
-                     const std::vector<double>     &thermal_stresses,
+                     const ByRegion<Material>      &materials,
+                     const std::vector<double>     &temperature_changes,
                      DofVector                     &forces);
 } // namespace Debond
 

@@ -16,16 +16,23 @@ namespace Debond
   {
     Material everywhere;
 
-    /// Numbers by the names of the regions.
-    std::map<std::string, std::string> young_moduli;
-    std::map<std::string, std::string> poisson_ratios;
-    std::map<std::string, std::string> thermal_expansions;
+    /// What regions set, by the entry ("Young modulus") and the region's name.
+    std::map<std::string, std::map<std::string, std::string>> own;
 
     /// The materials of the regions that have a number of their own, by name.
     std::map<std::string, Material>
     of_regions() const;
 
-    /// An entry that gives the region a number of its own.
+    /// Whether some material expands with temperature.
+    bool
+    expands() const;
+
+    /// Whether the thermal stress of some material depends on the direction.
+    bool
+    has_axes() const;
+
+    /// An entry of the section that is the region's own, or the whole body's
+    /// if @p region is empty, on which its elasticity depends.
     std::string
     entry_of(const std::string &region) const;
   };
