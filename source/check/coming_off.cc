@@ -12,20 +12,21 @@ namespace Debond
 {
   namespace
   {
-    /// The sum with @p parts of the motions, of the displacement of @p centre
-    /// and of rotations.
+    /// The sum with @p parts of the motions of a body, of the displacement of
+    /// @p centre and of rotations.
     template <int dim>
     RigidMotion<dim>
-    combination(const std::vector<RigidMotion<dim>> &motions,
-                const Eigen::VectorXd               &parts,
-                const dealii::Point<dim>            &centre)
+    combination(const std::vector<std::vector<RigidMotion<dim>>> &motions,
+                const Eigen::VectorXd                            &parts,
+                const dealii::Point<dim>                         &centre,
+                const unsigned int                                body)
     {
       RigidMotion<dim> result;
       result.centre = centre;
       for (unsigned int k = 0; k < motions.size(); ++k)
         {
-          result.translation += parts[k] * motions[k](centre);
-          result.rotation += parts[k] * motions[k].rotation;
+          result.translation += parts[k] * motions[k][body](centre);
+          result.rotation += parts[k] * motions[k][body].rotation;
         }
       return result;
     }
@@ -68,9 +69,17 @@ namespace Debond
     for (const auto &node : nodes)
       radius = std::max(radius, centre.distance(node.position));
 
-    ComingOff<dim> result{combination(motions, parts, centre),
+    ComingOff<dim> result{combination(motions, parts, centre, 0),
                           work.along.dot(parts),
                           (towards.transpose() * parts).maxCoeff()};
+    // Of several bodies the one that moves most.
+    const auto size = [radius](const RigidMotion<dim> &motion) {
+      return motion.translation.norm() + radius * motion.rotation.norm();
+    };
+    for (unsigned int body = 1; body < motions[0].size(); ++body)
+      if (const auto motion = combination(motions, parts, centre, body);
+          size(motion) > (1. + Tolerance::motion_off) * size(result.motion))
+        result.motion = motion;
     for (unsigned int i = 0; i < result.motion.translation.dimension; ++i)
       if (std::abs(result.motion.translation[i]) <= Tolerance::motion_off)
         result.motion.translation[i] = 0.;

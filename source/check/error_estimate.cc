@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <unordered_map>
@@ -166,7 +167,11 @@ namespace Debond
         parts.assign(n, 0.);
         for (unsigned int f = static_cast<unsigned int>(boundary.faces.size());
              f-- > 0;)
-          first_contact_face[boundary.faces[f].cell] = f;
+          {
+            first_contact_face[boundary.faces[f].cell] = f;
+            if (of.conditions.high_sides.count(boundary.faces[f].id) > 0)
+              of_interfaces.emplace(place_of(boundary.faces[f].vertices), f);
+          }
         for (const auto &cell : dofs.active_cell_iterators())
           {
             at_points.reinit(cell);
@@ -436,10 +441,17 @@ namespace Debond
         const auto id         = cell->face(f)->boundary_id();
         const bool is_contact = of.conditions.contact.count(id) > 0;
         // Those of a cell follow each other.
-        const unsigned int contact_face =
-          is_contact ? first_contact_face.at(cell->id().get_coarse_cell_id()) +
-                         n_contact_faces++ :
-                       0;
+        const bool   is_low       = of.conditions.low_sides.count(id) > 0;
+        unsigned int contact_face = 0;
+        std::array<unsigned int, dim> vertices; // of the contact face
+        for (unsigned int v = 0; v < dim; ++v)
+          vertices[v] = v;
+        if (is_low)
+          contact_face = face_across(cell, f, vertices);
+        else if (is_contact)
+          contact_face =
+            first_contact_face.at(cell->id().get_coarse_cell_id()) +
+            n_contact_faces++;
         if (of.conditions.clamped.count(id) > 0)
           return;
 
@@ -465,15 +477,65 @@ namespace Debond
             if (of.dead_loads != nullptr)
               r += of.dead_loads->traction(id, point, normal);
             if (is_contact)
-              r = with_foundation(r,
-                                  face,
-                                  boundary.faces[contact_face],
-                                  coordinates);
+              {
+                std::array<double, dim> there;
+                for (unsigned int v = 0; v < dim; ++v)
+                  there[v] = coordinates[vertices[v]];
+                r =
+                  with_foundation(r, face, boundary.faces[contact_face], there);
+              }
             r = free_part(r, normal, id);
             square += on_face.JxW(q) / measure * (r * (here.yield * r));
           }
         parts[face.cell] +=
           fall(square * measure * measure, here.bubble_energy);
+      }
+
+      /// A number by which faces of an interface are sorted: that of their
+      /// middle along a line in no special direction.
+      template <typename Vertices>
+      static double
+      place_of(const Vertices &vertices)
+      {
+        double sum = 0., weight = 1.;
+        for (unsigned int d = 0; d < dim; ++d, weight *= 0.6180339887498949)
+          for (unsigned int v = 0; v < dim; ++v)
+            sum += weight * vertices[v][d];
+        return sum;
+      }
+
+      /// The contact face on the high side of an interface that a face of the
+      /// low side lies on, and for each of its vertices the one here. What
+      /// bonds bear is the same along the normals of both.
+      template <typename CellIterator>
+      unsigned int
+      face_across(const CellIterator            &cell,
+                  const unsigned int             f,
+                  std::array<unsigned int, dim> &vertices) const
+      {
+        std::array<dealii::Point<dim>, dim> here;
+        for (unsigned int v = 0; v < dim; ++v)
+          here[v] = cell->vertex(face_vertices[f][v]);
+        const double size  = here[0].distance(here[1]);
+        const double place = place_of(here);
+        for (auto other = of_interfaces.lower_bound(place - 1e-3 * size);
+             other != of_interfaces.end();
+             ++other)
+          {
+            unsigned int n_found = 0;
+            for (unsigned int v = 0; v < dim; ++v)
+              for (unsigned int w = 0; w < dim; ++w)
+                if (here[w].distance(
+                      boundary.faces[other->second].vertices[v]) < 1e-3 * size)
+                  {
+                    vertices[v] = w;
+                    ++n_found;
+                  }
+            if (n_found == dim)
+              return other->second;
+          }
+        Assert(false, dealii::ExcInternalError());
+        return 0;
       }
 
       /// With what bonds bear, as far as the foundation lets the body go.
@@ -545,6 +607,9 @@ namespace Debond
         make_face_vertices();
       std::vector<DoneCell> cells;
       std::vector<Stress>   stresses; ///< see stress_at()
+
+      /// Contact faces on interfaces by their place_of().
+      std::multimap<double, unsigned int> of_interfaces;
 
       /// Of each cell that has any.
       std::unordered_map<dealii::types::coarse_cell_id, unsigned int>

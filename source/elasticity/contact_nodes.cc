@@ -297,12 +297,13 @@ namespace Debond
         PrescribedNode<dim> prescribed =
           node_supports.prescribed_at(index, vertex.dofs, vertex.position);
         const auto &rows = prescribed.rows;
-        // As far from the foundation as at rest.
+        // As far from the foundation as at rest, and where an interface ends.
+        const bool is_end = node_supports.is_end_of_interface(index);
         const bool is_clamped =
-          node_supports.constraints().is_constrained(vertex.dofs[0]);
+          is_end || node_supports.constraints().is_constrained(vertex.dofs[0]);
         const auto   clamp   = clamps.find(vertex.dofs[0]);
         unsigned int support = no_node;
-        if (is_clamped && clamp != clamps.end())
+        if (is_clamped && !is_end && clamp != clamps.end())
           support = clamp->second;
         else if (!rows.empty())
           support = rows[0].support;

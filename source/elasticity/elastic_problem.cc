@@ -6,7 +6,11 @@
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/temperature_load.h>
 
+#include <boost/serialization/utility.hpp>
+#include <boost/serialization/vector.hpp>
+
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace Debond
@@ -26,17 +30,31 @@ namespace Debond
       dealii::DynamicSparsityPattern neighbors(n_nodes, n_nodes);
       std::vector<dealii::types::global_dof_index> cell_dofs(
         dofs.get_fe().dofs_per_cell);
-      std::vector<dealii::types::global_dof_index> nodes(cell_dofs.size() /
-                                                         dim);
+      std::vector<dealii::types::global_dof_index> nodes;
+      const auto add = [&neighbors](const auto &of_cell) {
+        for (const auto node : of_cell)
+          neighbors.add_entries(node, of_cell.begin(), of_cell.end(), true);
+      };
+      // Of interfaces, which other ranks may not have.
+      std::vector<std::vector<dealii::types::global_dof_index>> glued;
       for (const auto &cell : dofs.active_cell_iterators())
         {
+          cell_dofs.resize(dofs.get_fe().dofs_per_cell);
           cell->get_dof_indices(cell_dofs);
-          for (unsigned int k = 0; k < nodes.size(); ++k)
-            nodes[k] = cell_dofs[dim * k] / dim;
+          const std::size_t n_own = cell_dofs.size();
+          unknowns.pairs().add_seconds(cell_dofs);
+          nodes.clear();
+          for (unsigned int i = 0; i < cell_dofs.size(); i += dim)
+            nodes.push_back(cell_dofs[i] / dim);
           std::sort(nodes.begin(), nodes.end());
-          for (const auto node : nodes)
-            neighbors.add_entries(node, nodes.begin(), nodes.end(), true);
+          add(nodes);
+          if (cell_dofs.size() > n_own && cell->is_locally_owned())
+            glued.push_back(nodes);
         }
+      if (!unknowns.pairs().empty())
+        for (const auto &of_rank :
+             dealii::Utilities::MPI::all_gather(unknowns.communicator(), glued))
+          std::for_each(of_rank.begin(), of_rank.end(), add);
 
       const dealii::IndexSet   &own = dofs.locally_owned_dofs();
       std::vector<unsigned int> lengths(own.size(), 1);
@@ -218,59 +236,87 @@ namespace Debond
     SimplexValues<dim>         values(dofs.get_fe().base_element(0),
                               strain_rule<dim>(elastic_unknowns.degree()));
     const unsigned int         n = dofs.get_fe().dofs_per_cell;
-    dealii::FullMatrix<double> cell_matrix(n);
-    std::vector<dealii::types::global_dof_index> cell_dofs(n);
-    std::vector<char>                            is_free(n);
+    dealii::FullMatrix<double> cell_matrix;
+    std::vector<dealii::types::global_dof_index> cell_dofs;
+    std::vector<char>                            is_free;
     const auto stiffness = materials.transformed([](const Material &material) {
       return material.elasticity_tensor<dim>();
     });
+    // The own rows of some of the nodes. Where the columns of a node
+    // are in one row of another one they are in all its rows, but for the
+    // diagonal entry, which is the first and in constrained rows the only one.
+    const auto add_rows = [&](const unsigned int begin,
+                              const unsigned int end) {
+      is_free.resize(cell_dofs.size());
+      for (unsigned int i = 0; i < cell_dofs.size(); ++i)
+        is_free[i] = !elastic_unknowns.is_constrained(cell_dofs[i]);
+      for (unsigned int k = begin; k < end; k += dim)
+        {
+          if (!dofs.locally_owned_dofs().is_element(cell_dofs[k]))
+            continue;
+          unsigned int a_row = k;
+          while (!is_free[a_row] && a_row + 1 < k + dim)
+            ++a_row;
+          for (unsigned int l = 0; l < cell_dofs.size(); l += dim)
+            {
+              const unsigned int below =
+                n_columns_below(cell_dofs[l], sparsity, cell_dofs[a_row]);
+              for (unsigned int i = k; i < k + dim; ++i)
+                {
+                  // What follows is the rest of the row.
+                  double *const entries =
+                    &system_matrix.diag_element(cell_dofs[i]);
+                  unsigned int position = below;
+                  for (unsigned int j = l; j < l + dim; ++j)
+                    {
+                      if (i == j)
+                        entries[0] += cell_matrix(i, i);
+                      else if (is_free[i] && is_free[j])
+                        entries[position +
+                                (cell_dofs[j] < cell_dofs[i] ? 1 : 0)] +=
+                          cell_matrix(i, j);
+                      position += is_free[j];
+                    }
+                }
+            }
+        }
+    };
+    // Rows of second nodes of pairs, whose ranks may not have these cells.
+    using Dofs = std::vector<dealii::types::global_dof_index>;
+    std::vector<std::pair<Dofs, std::vector<double>>> glued;
     for (const auto &cell : dofs.active_cell_iterators())
       {
         values.reinit(*cell);
+        cell_dofs.resize(n);
         cell->get_dof_indices(cell_dofs);
-        for (unsigned int i = 0; i < n; ++i)
-          is_free[i] = !elastic_unknowns.is_constrained(cell_dofs[i]);
+        cell_matrix.reinit(n, n);
         if (const Material &material = materials(cell->material_id());
             material.orthotropy)
           set_products(values, stiffness(cell->material_id()), cell_matrix);
         else
           set_products(values, material, cell_matrix);
+        elastic_unknowns.pairs().add_seconds(cell_dofs);
         elastic_unknowns.to_unknowns(cell_dofs, cell_matrix);
-
-        // Where the columns of a node are in one row of another one they are in
-        // all its rows, but for the diagonal entry, which is the first and in
-        // constrained rows the only one.
-        for (unsigned int k = 0; k < n; k += dim)
-          {
-            if (!dofs.locally_owned_dofs().is_element(cell_dofs[k]))
-              continue;
-            unsigned int a_row = k;
-            while (!is_free[a_row] && a_row + 1 < k + dim)
-              ++a_row;
-            for (unsigned int l = 0; l < n; l += dim)
-              {
-                const unsigned int below =
-                  n_columns_below(cell_dofs[l], sparsity, cell_dofs[a_row]);
-                for (unsigned int i = k; i < k + dim; ++i)
-                  {
-                    // What follows is the rest of the row.
-                    double *const entries =
-                      &system_matrix.diag_element(cell_dofs[i]);
-                    unsigned int position = below;
-                    for (unsigned int j = l; j < l + dim; ++j)
-                      {
-                        if (i == j)
-                          entries[0] += cell_matrix(i, i);
-                        else if (is_free[i] && is_free[j])
-                          entries[position +
-                                  (cell_dofs[j] < cell_dofs[i] ? 1 : 0)] +=
-                            cell_matrix(i, j);
-                        position += is_free[j];
-                      }
-                  }
-              }
-          }
+        if (cell_dofs.size() > n && cell->is_locally_owned())
+          glued.emplace_back(cell_dofs,
+                             std::vector<double>(&cell_matrix(0, 0),
+                                                 &cell_matrix(0, 0) +
+                                                   cell_matrix.n_elements()));
+        add_rows(0, n);
       }
+    if (elastic_unknowns.pairs().empty())
+      return;
+    for (const auto &of_rank :
+         dealii::Utilities::MPI::all_gather(elastic_unknowns.communicator(),
+                                            glued))
+      for (const auto &[of_cell, entries] : of_rank)
+        {
+          cell_dofs           = of_cell;
+          const auto n_of_all = static_cast<unsigned int>(cell_dofs.size());
+          cell_matrix =
+            dealii::FullMatrix<double>(n_of_all, n_of_all, entries.data());
+          add_rows(n, n_of_all);
+        }
   }
 
 

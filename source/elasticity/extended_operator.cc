@@ -106,6 +106,7 @@ namespace Debond
       problem.unknowns().communicator(),
       dealii::ArrayView<long double>(forces.data(), forces.size()));
     problem.unknowns().edges().forces_to_conjugates(forces);
+    problem.unknowns().pairs().forces_to_conjugates(forces);
     multiply_in_frames(
       problem.unknowns().frames(),
       [](const auto &frame) { return dealii::transpose(frame.to_cartesian); },
@@ -127,6 +128,7 @@ namespace Debond
       problem.unknowns().frames(),
       [](const auto &frame) { return frame.to_cartesian; },
       result);
+    problem.unknowns().pairs().to_values(result);
     problem.unknowns().edges().to_values(result);
     return result;
   }

@@ -91,8 +91,9 @@ namespace Debond
             for (unsigned int d = 0; d < dim; ++d)
               {
                 constrain(face.dofs[n][d], 0., entry->second);
-                held.push_back(
-                  {face.positions[n], dealii::Point<dim>::unit_vector(d)});
+                held.push_back({face.positions[n],
+                                dealii::Point<dim>::unit_vector(d),
+                                face.indices[n]});
               }
       }
   }
@@ -238,6 +239,66 @@ namespace Debond
 
 
   template <int dim>
+  void
+  NodeSupports<dim>::glue(NodePairs<dim> &pairs)
+  {
+    const auto directions = [this](const unsigned int node) {
+      std::vector<dealii::Tensor<1, dim>> result;
+      if (fixed.is_constrained(dim * node))
+        for (unsigned int d = 0; d < dim; ++d)
+          result.push_back(dealii::Point<dim>::unit_vector(d));
+      else if (const auto entry = prescribed_nodes.find(node);
+               entry != prescribed_nodes.end())
+        for (const Row &row : entry->second.rows)
+          result.push_back(row.direction);
+      return result;
+    };
+    const auto is_within = [](const auto &some, const auto &others) {
+      for (dealii::Tensor<1, dim> rest : some)
+        {
+          for (const dealii::Tensor<1, dim> &other : others)
+            rest -= (rest * other) * other;
+          if (rest.norm() > Tolerance::same_normal)
+            return false;
+        }
+      return true;
+    };
+    ends_of_interfaces = pairs.ends();
+    for (unsigned int k = 0; k < pairs.all().size(); ++k)
+      {
+        auto       pair   = pairs.all()[k];
+        const auto first  = directions(pair.first),
+                   second = directions(pair.second);
+        if (!is_within(first, second))
+          {
+            if (!is_within(second, first))
+              throw std::invalid_argument(
+                "supports hold both bodies along different directions where "
+                "they are glued to each other, at " +
+                point_text(prescribed_nodes.at(pair.first).position) +
+                ": hold one of them as far as the other one there");
+            pairs.exchange(pair);
+            pair = pairs.all()[k];
+          }
+        if (prescribed.size() == 0)
+          continue;
+        const auto of_second           = prescribed_nodes.find(pair.second);
+        const dealii::Tensor<1, dim> u = of_second == prescribed_nodes.end() ?
+                                           dealii::Tensor<1, dim>() :
+                                           of_second->second.displacement();
+        if (fixed.is_constrained(dim * pair.first))
+          for (unsigned int d = 0; d < dim; ++d)
+            prescribed(dim * pair.first + d) = -pair.sign * u[d];
+        else if (const auto own = prescribed_nodes.find(pair.first);
+                 own != prescribed_nodes.end())
+          for (Row &row : own->second.rows)
+            row.value = pair.sign * (row.value - row.direction * u);
+      }
+  }
+
+
+
+  template <int dim>
   PrescribedNode<dim>
   NodeSupports<dim>::prescribed_at(const unsigned int        index,
                                    const NodeDofs<dim>      &node_dofs,
@@ -278,7 +339,7 @@ namespace Debond
         return;
       }
     for (const Row &row : node.rows)
-      held.push_back({node.position, row.direction});
+      held.push_back({node.position, row.direction, index});
     if (node.rows.size() == dim)
       {
         const dealii::Tensor<1, dim> displacement = node.displacement();
@@ -326,13 +387,13 @@ namespace Debond
     for (const Row &row : node.rows)
       {
         constrain(node.dofs[k++], row.value, row.support);
-        held.push_back({node.position, row.direction});
+        held.push_back({node.position, row.direction, index});
       }
     if (fixes_rest)
       for (; k < dim; ++k)
         {
           constrain(node.dofs[k], 0., dealii::numbers::invalid_unsigned_int);
-          held.push_back({node.position, frame.to_frame[k]});
+          held.push_back({node.position, frame.to_frame[k], index});
         }
   }
 

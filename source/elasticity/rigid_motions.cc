@@ -25,11 +25,13 @@ namespace Debond
   template <int dim>
   FreeRigidMotions<dim>
   free_rigid_motions(const std::vector<Support<dim>> &supports,
-                     const double                     diameter)
+                     const double                     diameter,
+                     const std::vector<std::string>  &bodies)
   {
-    constexpr unsigned int n_motions = dim * (dim + 1) / 2;
-    using Motions                    = Eigen::Matrix<double, n_motions, 1>;
-    using Gram = Eigen::Matrix<double, n_motions, n_motions>;
+    constexpr unsigned int n_of_body = dim * (dim + 1) / 2;
+    using Motions                    = Eigen::VectorXd;
+    const unsigned int n_motions =
+      n_of_body * static_cast<unsigned int>(bodies.size());
 
     const char *const axes[] = {"x", "y", "z"};
 
@@ -46,32 +48,37 @@ namespace Debond
 
     // Gram matrix of the supports' displacements under unit motions; its null
     // space holds the free motions.
-    Gram gram = Gram::Zero();
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n_motions, n_motions);
     for (const Support<dim> &support : supports)
       {
         const dealii::Tensor<1, dim>  x = (support.position - centre) / length;
         const dealii::Tensor<1, dim> &d = support.direction;
 
-        Motions row;
+        Motions            row   = Motions::Zero(n_motions);
+        const unsigned int first = n_of_body * support.body;
         for (unsigned int i = 0; i < dim; ++i)
-          row[i] = d[i];
+          row[first + i] = d[i];
         if constexpr (dim == 2)
-          row[2] = d[1] * x[0] - d[0] * x[1];
+          row[first + 2] = d[1] * x[0] - d[0] * x[1];
         else
           {
             const dealii::Tensor<1, 3> moment = dealii::cross_product_3d(x, d);
             for (unsigned int i = 0; i < 3; ++i)
-              row[3 + i] = moment[i];
+              row[first + 3 + i] = moment[i];
           }
+        if (support.other != dealii::numbers::invalid_unsigned_int)
+          row.segment<n_of_body>(n_of_body * support.other) =
+            -row.segment<n_of_body>(first);
         gram += row * row.transpose();
       }
 
-    const Eigen::SelfAdjointEigenSolver<Gram> eigen(gram);
-    const double                              threshold =
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
+    const double                                         threshold =
       Tolerance::free_motion * static_cast<double>(supports.size());
 
-    Gram    null_projector = Gram::Zero();
-    Motions null_vector    = Motions::Zero();
+    Eigen::MatrixXd null_projector =
+      Eigen::MatrixXd::Zero(n_motions, n_motions);
+    Motions null_vector = Motions::Zero(n_motions);
 
     FreeRigidMotions<dim> result;
     for (unsigned int k = 0; k < n_motions; ++k)
@@ -80,23 +87,29 @@ namespace Debond
           null_vector = eigen.eigenvectors().col(k);
           null_projector += null_vector * null_vector.transpose();
 
-          RigidMotion<dim> motion;
-          motion.centre = dealii::Point<dim>(centre);
-          for (unsigned int d = 0; d < dim; ++d)
-            motion.translation[d] = null_vector[d];
-          for (unsigned int d = dim; d < n_motions; ++d)
-            motion.rotation[d - dim] = null_vector[d] / length;
-          result.motions.push_back(motion);
+          result.motions.emplace_back();
+          for (unsigned int first = 0; first < n_motions; first += n_of_body)
+            {
+              RigidMotion<dim> motion;
+              motion.centre = dealii::Point<dim>(centre);
+              for (unsigned int d = 0; d < dim; ++d)
+                motion.translation[d] = null_vector[first + d];
+              for (unsigned int d = dim; d < n_of_body; ++d)
+                motion.rotation[d - dim] = null_vector[first + d] / length;
+              result.motions.back().push_back(motion);
+            }
         }
 
     std::vector<std::string> pure;
     std::vector<std::string> components;
     for (unsigned int k = 0; k < n_motions; ++k)
       {
-        const std::string name =
-          k < dim ?
-            std::string("translation in ") + axes[k] :
-            std::string("rotation about ") + axes[dim == 2 ? 2 : k - dim];
+        const unsigned int d = k % n_of_body;
+        const std::string  name =
+          (d < dim ?
+             std::string("translation in ") + axes[d] :
+             std::string("rotation about ") + axes[dim == 2 ? 2 : d - dim]) +
+          bodies[k / n_of_body];
         if (null_projector(k, k) > 1. - Tolerance::pure_motion)
           pure.push_back(name);
         if (std::abs(null_vector[k]) > 0.1)

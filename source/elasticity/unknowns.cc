@@ -2,6 +2,7 @@
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/fe/fe_simplex_p.h>
 
+#include <debond/base/field_value.h>
 #include <debond/base/owned_cells.h>
 #include <debond/base/ranks.h>
 #include <debond/base/text.h>
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <numeric>
 #include <set>
 #include <stdexcept>
@@ -67,10 +69,21 @@ namespace Debond
     // G of most scenes is zero, and then there is none.
     gap.reinit(supports.gaps.empty() ? 0 : dofs.n_dofs());
     const auto faces = [&](const std::set<dealii::types::boundary_id> &ids) {
-      return boundary_faces(dofs, ids, conditions.names);
+      return ids.empty() ? std::vector<BoundaryFace<dim>>() :
+                           boundary_faces(dofs, ids, conditions.names);
     };
-    const std::vector<BoundaryFace<dim>> contact = faces(conditions.contact);
-    contact_edges = EdgeCoefficients<dim>(dofs.n_dofs() / dim, contact);
+    // The foundation of a high side is the low one.
+    std::set<dealii::types::boundary_id> contact_ids = conditions.contact;
+    for (const dealii::types::boundary_id id : conditions.low_sides)
+      contact_ids.erase(id);
+    std::vector<BoundaryFace<dim>>       contact = faces(contact_ids);
+    const std::vector<BoundaryFace<dim>> low     = faces(conditions.low_sides);
+    std::vector<BoundaryFace<dim>>       with_coefficients = contact;
+    with_coefficients.insert(with_coefficients.end(), low.begin(), low.end());
+    contact_edges =
+      EdgeCoefficients<dim>(dofs.n_dofs() / dim, with_coefficients);
+    node_pairs =
+      NodePairs<dim>(dofs.n_dofs() / dim, faces(conditions.high_sides), low);
     node_supports =
       NodeSupports<dim>(dofs.n_dofs() / dim,
                         supports.displacements.empty() ? 0 : dofs.n_dofs());
@@ -80,19 +93,43 @@ namespace Debond
                               condition,
                               conditions,
                               contact_edges);
+    node_supports.glue(node_pairs);
+    for (BoundaryFace<dim> &face : contact)
+      for (unsigned int n = 0; n < face.n_nodes; ++n)
+        if (const auto *pair = node_pairs.find(face.indices[n]))
+          {
+            face.indices[n] = pair->first;
+            for (unsigned int d = 0; d < dim; ++d)
+              face.dofs[n][d] = dim * pair->first + d;
+          }
     contact_space = make_contact_space(
       contact, degree, conditions, supports, node_supports, gap);
     std::vector<Support<dim>> held = node_supports.finish();
     if (gap.size() > 0 && gap.all_zero())
       gap.reinit(0);
 
-    free_motions = free_rigid_motions(held, diameter);
+    const std::vector<std::string> places  = find_bodies();
+    const auto                     in_body = [this](Support<dim> &support) {
+      support.body           = body_of(support.node);
+      const auto *const pair = node_pairs.find_first(support.node);
+      if (pair != nullptr)
+        support.other = body_of(pair->second);
+    };
+    std::for_each(held.begin(), held.end(), in_body);
+    free_motions = free_rigid_motions(held, diameter, places);
     if (!free_motions.motions.empty())
       {
-        for (const auto &node : contact_space.boundary().nodes)
-          held.push_back({node.position, node.normal});
+        for (unsigned int i = 0; i < contact_space.normals().size(); ++i)
+          {
+            const auto &node = contact_space.boundary().nodes[i];
+            held.push_back(
+              {node.position,
+               node.normal,
+               static_cast<unsigned int>(contact_space.normals()[i] / dim)});
+            in_body(held.back());
+          }
         const std::vector<std::string> motions =
-          free_rigid_motions(held, diameter).names;
+          free_rigid_motions(held, diameter, places).names;
         if (!motions.empty())
           throw std::invalid_argument(
             "Boundary conditions leave a rigid motion free: " +
@@ -103,33 +140,82 @@ namespace Debond
 
 
   template <int dim>
+  std::vector<std::string>
+  ElasticUnknowns<dim>::find_bodies()
+  {
+    if (node_pairs.empty())
+      return {""};
+    // Of each node the least number of one that it is joined to.
+    bodies.resize(n_dofs() / dim);
+    std::iota(bodies.begin(), bodies.end(), 0u);
+    std::vector<unsigned int>                    before;
+    std::vector<dealii::types::global_dof_index> cell_dofs(fe.dofs_per_cell);
+    while (before != bodies)
+      {
+        before = bodies;
+        for (const auto &cell : owned_cells(dofs))
+          {
+            cell->get_dof_indices(cell_dofs);
+            unsigned int least = bodies[cell_dofs[0] / dim];
+            for (const auto dof : cell_dofs)
+              least = std::min(least, bodies[dof / dim]);
+            for (const auto dof : cell_dofs)
+              bodies[dof / dim] = least;
+          }
+        dealii::Utilities::MPI::min(bodies, communicator(), bodies);
+      }
+    const std::vector<dealii::Point<dim>> positions = node_positions();
+    std::map<unsigned int, unsigned int>  numbers;
+    std::vector<std::string>              places;
+    for (unsigned int node = 0; node < bodies.size(); ++node)
+      {
+        const auto [entry, is_new] =
+          numbers.emplace(bodies[node],
+                          static_cast<unsigned int>(places.size()));
+        if (is_new)
+          places.push_back(" of the body at " + point_text(positions[node]));
+        bodies[node] = entry->second;
+      }
+    if (places.size() == 1)
+      {
+        bodies.clear();
+        places[0].clear();
+      }
+    return places;
+  }
+
+
+
+  template <int dim>
   void
   ElasticUnknowns<dim>::to_unknowns(
     const std::vector<dealii::types::global_dof_index> &cell_dofs,
     dealii::FullMatrix<double>                         &cell_matrix) const
   {
-    const unsigned int n    = static_cast<unsigned int>(cell_dofs.size());
-    const auto         node = [&](const unsigned int i) {
+    const unsigned int n     = static_cast<unsigned int>(cell_dofs.size());
+    const auto         n_own = static_cast<unsigned int>(cell_matrix.m());
+    const auto         node  = [&](const unsigned int i) {
       return static_cast<unsigned int>(cell_dofs[i] / dim);
     };
     // Rows and columns alike.
     const auto add = [&](const unsigned int to, const unsigned int from) {
-      for (unsigned int j = 0; j < n; ++j)
+      for (unsigned int j = 0; j < n_own; ++j)
         cell_matrix(to, j) += 0.25 * cell_matrix(from, j);
-      for (unsigned int j = 0; j < n; ++j)
+      for (unsigned int j = 0; j < n_own; ++j)
         cell_matrix(j, to) += 0.25 * cell_matrix(j, from);
     };
-    for (unsigned int i = 0; i < n; ++i)
+    for (unsigned int i = 0; i < n_own; ++i)
       if (const auto *edge = contact_edges.find(node(i)))
         {
-          for (unsigned int j = i % dim; j < n; j += dim)
+          for (unsigned int j = i % dim; j < n_own; j += dim)
             if (node(j) == edge->ends[0] || node(j) == edge->ends[1])
               add(j, i);
-          for (unsigned int j = 0; j < n; ++j)
+          for (unsigned int j = 0; j < n_own; ++j)
             cell_matrix(i, j) *= 0.5;
-          for (unsigned int j = 0; j < n; ++j)
+          for (unsigned int j = 0; j < n_own; ++j)
             cell_matrix(j, i) *= 0.5;
         }
+    node_pairs.to_unknowns(cell_dofs, cell_matrix);
     for (unsigned int i = 0; i < n; i += dim)
       if (const DisplacementFrame<dim> *frame = node_supports.frame(node(i)))
         for (const bool are_rows : {true, false})
@@ -245,6 +331,7 @@ namespace Debond
       result += lifting(factors);
     multiply_in_frames(
       frames(), [](const auto &frame) { return frame.to_cartesian; }, result);
+    node_pairs.to_values(result);
     contact_edges.to_values(result);
     return result;
   }
@@ -256,6 +343,7 @@ namespace Debond
   ElasticUnknowns<dim>::to_frames(const DofVector &cartesian) const
   {
     DofVector result = cartesian;
+    node_pairs.to_jumps(result);
     multiply_in_frames(
       frames(), [](const auto &frame) { return frame.to_frame; }, result);
     return result;
@@ -285,6 +373,7 @@ namespace Debond
   {
     DofVector result = forces;
     contact_edges.forces_to_conjugates(result);
+    node_pairs.forces_to_conjugates(result);
     multiply_in_frames(
       frames(),
       [](const auto &frame) { return dealii::transpose(frame.to_cartesian); },
@@ -303,6 +392,7 @@ namespace Debond
       frames(),
       [](const auto &frame) { return dealii::transpose(frame.to_frame); },
       result);
+    node_pairs.forces_from_conjugates(result);
     return result;
   }
 

@@ -3,10 +3,13 @@
 
 #include <debond/base/field_value.h>
 #include <debond/base/text.h>
+#include <debond/base/tolerances.h>
 #include <debond/input/expression.h>
 #include <debond/input/mesh_parameters.h>
 #include <debond/mesh/body.h>
+#include <debond/mesh/box.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
@@ -107,6 +110,12 @@ namespace Debond
       number("in [-360, 360]", [](double x) { return std::abs(x) <= 360.; }),
       "Turns the body about the origin in the x-y plane. The sides keep their names; loads are not turned",
       "degrees");
+    table.bind(
+      "Mesh/Cuts",
+      body.cuts,
+      Pattern("a text"),
+      "Surfaces along which the body is cut into several: 'y = 2' is a line of the mesh (before the Rotation), 'y = 2 && x < 60' a part of it, and 'core | ring' is where these regions of a File meet; more of them after commas. Their names are cut_1, cut_2, ..., those of their sides cut_1_low, cut_1_high, ...; as a Contact boundary cut_1 glues the bodies to each other",
+      "length");
     table.bind(
       "Mesh/File",
       body.file,
@@ -233,6 +242,83 @@ namespace Debond
 
 
 
+    /// Throws std::invalid_argument if the text is no cut of this body.
+    template <int dim>
+    Cut<dim>
+    make_cut(const Body<dim>                     &body,
+             const std::string                   &text,
+             const double                         degrees,
+             const std::map<std::string, double> &constants)
+    {
+      Cut<dim> cut;
+      cut.text                     = text;
+      const std::size_t ampersands = text.find("&&");
+      const auto        sides      = dealii::Utilities::split_string_list(
+        text.substr(0, ampersands),
+        text.find('=') == std::string::npos ? '|' : '=');
+      if (sides.size() != 2)
+        throw std::invalid_argument(
+          text + " is neither a line of the mesh, as y = 2 or y = 2 && x < 60, "
+                 "nor two regions, as core | ring");
+      const std::size_t axis = std::string("xyz").substr(0, dim).find(sides[0]);
+      double            place = 0.;
+      if (text.find('=') == std::string::npos)
+        {
+          cut.low  = sides[0];
+          cut.high = sides[1];
+          for (const std::string &side : sides)
+            if (const auto regions = body.regions(); regions.count(side) == 0)
+              throw std::invalid_argument(
+                "the body has no region " + side +
+                (regions.empty() ?
+                   "" :
+                   ", but " + join({regions.begin(), regions.end()}, ", ")));
+          return cut;
+        }
+      if (axis >= dim || sides[0].size() != 1 || !read_number(sides[1], place))
+        throw std::invalid_argument(text +
+                                    ": expected a coordinate and a number");
+      const dealii::Tensor<2, dim> rotation = rotation_matrix<dim>(degrees);
+      cut.normal = rotation * dealii::Point<dim>::unit_vector(
+                                static_cast<unsigned int>(axis));
+      std::function<bool(const dealii::Point<dim> &)> condition;
+      if (ampersands != std::string::npos)
+        condition =
+          make_condition<dim>("", text.substr(ampersands + 2), constants);
+      const auto   extents  = body.extents();
+      const double rounding = Tolerance::same_coordinate *
+                              *std::max_element(extents.begin(), extents.end());
+      cut.contains = [=, normal = cut.normal](const auto &face) {
+        for (unsigned int v = 0; v < dim; ++v)
+          if (std::abs(face->vertex(v) * normal - place) > rounding)
+            return false;
+        return !condition || condition(dealii::Point<dim>(transpose(rotation) *
+                                                          face->center()));
+      };
+      return cut;
+    }
+
+
+
+    template <int dim>
+    void
+    make_cuts(BodyDescription                     &description,
+              const BodyParameters                &parameters,
+              const std::map<std::string, double> &constants)
+    {
+      auto &body = dynamic_cast<Body<dim> &>(description);
+      for (const std::string &text :
+           dealii::Utilities::split_string_list(parameters.cuts, ','))
+        {
+          Cut<dim> cut =
+            make_cut(body, text, parameters.box.rotation, constants);
+          cut.name = "cut_" + std::to_string(body.cuts.size() + 1);
+          body.cuts.push_back(cut);
+        }
+    }
+
+
+
     /// Throws std::invalid_argument if the text is no part of this body.
     template <int dim>
     Part<dim>
@@ -297,6 +383,28 @@ namespace Debond
       body.parts = parts;
     }
   } // namespace
+
+
+
+  void
+  add_cuts(BodyDescription                     &body,
+           const BodyParameters                &parameters,
+           const unsigned int                   dimension,
+           const std::map<std::string, double> &constants,
+           ParameterTable                      &table)
+  {
+    try
+      {
+        if (dimension == 2)
+          make_cuts<2>(body, parameters, constants);
+        else
+          make_cuts<3>(body, parameters, constants);
+      }
+    catch (const std::invalid_argument &error)
+      {
+        table.reject("Mesh/Cuts", error.what(), {"Dimension"});
+      }
+  }
 
 
 

@@ -211,6 +211,9 @@ namespace Debond
         table.reject("Certificate/Kind",
                      "is for a single load",
                      {"Load path/Factors", "Load path/Dead loads"});
+      if (!table.get("Mesh/Cuts").empty())
+        table.reject("Certificate/Kind",
+                     "needs one body, Mesh/Cuts makes several");
       if (!p.loads.temperature_change.empty() && p.materials.has_axes())
         table.reject("Certificate/Kind",
                      "needs materials that expand alike along all axes, if "
@@ -377,6 +380,8 @@ namespace Debond
     void
     check_accuracy(const Parameters &p, ParameterTable &table)
     {
+      if (p.accuracy.is_adaptive() && !table.get("Mesh/Cuts").empty())
+        table.reject("Mesh/Cuts", "several bodies are not refined so far");
       if (p.accuracy.is_adaptive() && p.solver.method == "euclidean bundle")
         table.reject("Solver/Method",
                      "meshes that are refined need automatic, energy bundle or "
@@ -400,6 +405,7 @@ namespace Debond
     body.memory = memory_left(p.solver.memory_limit);
     if (const auto made = make_body(scene, p.dimension, body, *this))
       {
+        add_cuts(*made, body, p.dimension, p.loads.constants, *this);
         add_parts(*made, parts, p.dimension, p.loads.constants, *this);
         p.body = made;
       }

@@ -4,6 +4,7 @@
 
 #include <debond/base/tolerances.h>
 #include <debond/mesh/body.h>
+#include <debond/mesh/cuts.h>
 #include <debond/mesh/parts.h>
 
 #include <algorithm>
@@ -32,6 +33,8 @@ namespace Debond
   Body<dim>::boundaries() const
   {
     std::set<std::string> names = whole_boundaries();
+    for (const Cut<dim> &cut : cuts)
+      names.insert({cut.name, cut.name + "_low", cut.name + "_high"});
     for (const Part<dim> &part : parts)
       if (!part.boundary.empty())
         names.insert(part.name);
@@ -57,7 +60,9 @@ namespace Debond
   PieceNames
   Body<dim>::make_mesh(dealii::Triangulation<dim> &mesh) const
   {
-    const PieceNames names = make_whole_mesh(mesh);
+    PieceNames names = make_whole_mesh(mesh);
+    if (!cuts.empty())
+      names = cut_into_bodies(cuts, names, mesh);
     return parts.empty() ? names : name_parts(parts, names, mesh);
   }
 
@@ -67,6 +72,8 @@ namespace Debond
   std::unique_ptr<Body<dim>>
   Body<dim>::coarser() const
   {
+    if (!cuts.empty())
+      return nullptr;
     std::unique_ptr<Body> body = coarser_whole();
     if (!body || parts.empty())
       return body;
@@ -187,7 +194,9 @@ namespace Debond
   std::unique_ptr<Body<dim>>
   Body<dim>::coarser_level() const
   {
-    return n_vertices() < fewest_vertices_of_level ? nullptr : coarser_whole();
+    return !cuts.empty() || n_vertices() < fewest_vertices_of_level ?
+             nullptr :
+             coarser_whole();
   }
 
 

@@ -26,7 +26,7 @@ namespace Debond
   void
   serialize(Archive &archive, PieceNames &names, const unsigned int)
   {
-    archive &names.boundaries &names.regions &names.notes;
+    archive &names.boundaries &names.regions &names.interfaces &names.notes;
   }
 
 
@@ -98,7 +98,7 @@ namespace Debond
 
 
 
-    /// Whether it is one that has no parts, and a layer for each rank.
+    /// Whether it is one that has no parts or cuts, and a layer for each rank.
     template <int dim>
     bool
     has_layers(const Box<dim> &box, const unsigned int n_ranks)
@@ -108,7 +108,7 @@ namespace Debond
       for (unsigned int d = 0; d < dim; ++d)
         if (!(of_box.lengths[d] > 0.) || of_box.cells[d] == 0)
           return false;
-      return box.parts.empty() &&
+      return box.parts.empty() && box.cuts.empty() &&
              of_box.cells[direction_of_layers<dim>(of_box)] >= n_ranks;
     }
 

@@ -160,7 +160,7 @@ namespace Debond
   {
     // Some generators have halved cells already, maybe not all of them.
     const dealii::Triangulation<dim> &mesh = source->mesh;
-    if (is_simplicial ||
+    if (is_simplicial || !this->cuts.empty() ||
         mesh.n_cells(mesh.n_levels() - 1) != mesh.n_active_cells())
       return false;
     unsigned int level = n_refinements;

@@ -135,7 +135,7 @@ namespace Debond
 
     const Stage stage("assembly");
     entry               = "Boundary conditions/Clamped boundaries";
-    boundary_conditions = make_conditions(given, boundaries);
+    boundary_conditions = make_conditions(given, names);
     body_supports       = make_supports<dim>(given, boundary_conditions);
     elastic_problem     = std::make_unique<ElasticProblem<dim>>(*triangulation,
                                                             boundary_conditions,

@@ -88,15 +88,30 @@ namespace Debond
 
 
   BoundaryConditions
-  make_conditions(const ProblemParameters &given,
-                  const BoundaryNames     &boundaries)
+  make_conditions(const ProblemParameters &given, const PieceNames &names)
   {
-    BoundaryConditions conditions;
+    const BoundaryNames &boundaries = names.boundaries;
+    BoundaryConditions   conditions;
     for (const std::string &name : given.clamped_boundaries)
       insert(boundaries.at(name), conditions.clamped);
     for (const std::string &name : given.contact_boundaries)
       insert(boundaries.at(name), conditions.contact);
     conditions.names = boundaries;
+    for (const std::string &name : names.interfaces)
+      {
+        const auto &sides = boundaries.at(name);
+        if (!std::includes(conditions.contact.begin(),
+                           conditions.contact.end(),
+                           sides.begin(),
+                           sides.end()))
+          throw PieceError("Boundary conditions/Contact boundary",
+                           "the bodies on both sides of " + name +
+                             " could go through each other: all of " + name +
+                             " has to be a contact boundary; Bond stiffness " +
+                             name + " = 0 leaves its bonds out");
+        insert(boundaries.at(name + "_high"), conditions.high_sides);
+        insert(boundaries.at(name + "_low"), conditions.low_sides);
+      }
     conditions.tangential_displacement_fixed =
       given.tangential_displacement_fixed;
     const auto &own = given.tangential_displacements;

@@ -30,6 +30,10 @@ namespace Debond
     /// For messages and reactions.
     BoundaryNames names = {};
 
+    /// The contact boundaries that are sides of interfaces between bodies.
+    std::set<dealii::types::boundary_id> low_sides  = {};
+    std::set<dealii::types::boundary_id> high_sides = {};
+
     /// The contact boundaries for which the other one of the two holds.
     std::set<dealii::types::boundary_id> tangential_exceptions = {};
 

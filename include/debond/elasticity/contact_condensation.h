@@ -74,11 +74,22 @@ namespace Debond
   free_motions_of_contact(const ElasticUnknowns<dim> &unknowns)
   {
     const auto     &nodes   = unknowns.contact().boundary().nodes;
+    const auto     &normals = unknowns.contact().normals();
     const auto     &motions = unknowns.held_by_contact().motions;
     Eigen::MatrixXd result(nodes.size(), motions.size());
     for (unsigned int k = 0; k < motions.size(); ++k)
       for (unsigned int i = 0; i < nodes.size(); ++i)
-        result(i, k) = motions[k](nodes[i].position) * nodes[i].normal;
+        {
+          const auto node = static_cast<unsigned int>(normals[i] / dim);
+          const auto way  = [&](const unsigned int of) {
+            return motions[k][unknowns.body_of(of)](nodes[i].position) *
+                   nodes[i].normal;
+          };
+          const auto *const pair = unknowns.pairs().find(node);
+          result(i, k)           = pair == nullptr ?
+                                     way(node) :
+                                     pair->sign * (way(pair->first) - way(pair->second));
+        }
     return result;
   }
 
@@ -113,9 +124,9 @@ namespace Debond
 
   template <int dim>
   WorkOfLoads
-  work_of_loads(const ElasticProblem<dim>           &problem,
-                const LoadFactors                    factors,
-                const std::vector<RigidMotion<dim>> &motions)
+  work_of_loads(const ElasticProblem<dim>                        &problem,
+                const LoadFactors                                 factors,
+                const std::vector<std::vector<RigidMotion<dim>>> &motions)
   {
     const DofVector    forces = problem.fields().applied_nodal_forces(factors);
     const Eigen::Index n      = static_cast<Eigen::Index>(motions.size());
@@ -129,7 +140,9 @@ namespace Debond
           force[d] = forces(i + d);
         for (Eigen::Index k = 0; k < n; ++k)
           {
-            const dealii::Tensor<1, dim> way = motions[k](positions[i / dim]);
+            const dealii::Tensor<1, dim> way =
+              motions[k][problem.unknowns().body_of(i / dim)](
+                positions[i / dim]);
             work.along[k] += force * way;
             work.largest[k] += force.norm() * way.norm();
           }

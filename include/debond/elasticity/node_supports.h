@@ -10,10 +10,12 @@
 #include <debond/elasticity/boundary_conditions.h>
 #include <debond/elasticity/boundary_face.h>
 #include <debond/elasticity/edge_coefficients.h>
+#include <debond/elasticity/node_pairs.h>
 #include <debond/elasticity/rigid_motions.h>
 
 #include <array>
 #include <map>
+#include <set>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -132,6 +134,20 @@ namespace Debond
               const BoundaryConditions             &conditions,
               const EdgeCoefficients<dim>          &edges);
 
+    /// Makes displacements that are prescribed at the first nodes of @p pairs
+    /// those of jumps, after exchanging both where only the first one is
+    /// supported. Throws std::invalid_argument if both nodes of a
+    /// pair are supported, and neither as far as the other one.
+    void
+    glue(NodePairs<dim> &pairs);
+
+    /// Whether the node is one of NodePairs::ends().
+    bool
+    is_end_of_interface(const unsigned int index) const
+    {
+      return ends_of_interfaces.count(index) > 0;
+    }
+
     /// What prescribe() has noted of a node; nothing of most.
     PrescribedNode<dim>
     prescribed_at(const unsigned int        index,
@@ -212,6 +228,7 @@ namespace Debond
     // Until it is finished.
     std::map<unsigned int, PrescribedNode<dim>> prescribed_nodes; ///< by index
     std::vector<Support<dim>>                   held;
+    std::set<unsigned int>                      ends_of_interfaces;
   };
 } // namespace Debond
 

@@ -17,6 +17,12 @@ namespace Debond
   {
     dealii::Point<dim>     position;
     dealii::Tensor<1, dim> direction;
+    unsigned int           node = 0; ///< that has it
+
+    /// Of several bodies that which has it, and the one to which the
+    /// displacement is relative, if there is one.
+    unsigned int body  = 0;
+    unsigned int other = dealii::numbers::invalid_unsigned_int;
   };
 
 
@@ -46,8 +52,9 @@ namespace Debond
     /// composed of.
     std::vector<std::string> names = {};
 
-    /// All free motions are combinations of these.
-    std::vector<RigidMotion<dim>> motions = {};
+    /// All free motions are combinations of these, of which each has one for
+    /// each body.
+    std::vector<std::vector<RigidMotion<dim>>> motions = {};
   };
 
 
@@ -55,10 +62,12 @@ namespace Debond
   /// The rigid motions that the supports leave free; none if the body is held.
   /// Lengths are measured in units of @p diameter, the body's size; motions
   /// that the supports resist by less than 1e-6 of full clamping count as free.
+  /// @p bodies: where they are, for names; nothing of a single one.
   template <int dim>
   FreeRigidMotions<dim>
   free_rigid_motions(const std::vector<Support<dim>> &supports,
-                     const double                     diameter);
+                     const double                     diameter,
+                     const std::vector<std::string>  &bodies = {""});
 } // namespace Debond
 
 #endif

@@ -15,6 +15,7 @@
 #include <debond/elasticity/boundary_conditions.h>
 #include <debond/elasticity/edge_coefficients.h>
 #include <debond/elasticity/load_factors.h>
+#include <debond/elasticity/node_pairs.h>
 #include <debond/elasticity/node_supports.h>
 #include <debond/elasticity/rigid_motions.h>
 
@@ -38,6 +39,9 @@ namespace Debond
    * of vertices below is true of edges, of degree 2: they are in their middles,
    * and as u_nu on a face is nowhere above its largest coefficient, u_nu <= 0
    * holds at every point.
+   *
+   * Where two bodies are glued to each other the unknowns of one node of each
+   * pair are those of the jump, in the same way (see NodePairs).
    *
    * All vectors have n_dofs() entries; the constrained ones are zero. So they
    * are w in u = w + G, where G, the lifting, has the prescribed displacements
@@ -112,8 +116,22 @@ namespace Debond
       return contact_edges;
     }
 
+    /// The nodes of bodies that are glued to each other.
+    const NodePairs<dim> &
+    pairs() const
+    {
+      return node_pairs;
+    }
+
+    /// The number of the body that a node belongs to.
+    unsigned int
+    body_of(const unsigned int node) const
+    {
+      return bodies.empty() ? 0 : bodies[node];
+    }
+
     /// Takes the matrix of a cell, for the Cartesian values at its nodes, to
-    /// the unknowns.
+    /// the unknowns @p cell_dofs, which have had NodePairs::add_seconds().
     void
     to_unknowns(const std::vector<dealii::types::global_dof_index> &cell_dofs,
                 dealii::FullMatrix<double> &cell_matrix) const;
@@ -235,10 +253,17 @@ namespace Debond
     const dealii::FESystem<dim>  fe;
     dealii::DoFHandler<dim>      dofs;
 
-    EdgeCoefficients<dim> contact_edges;
-    NodeSupports<dim>     node_supports;
-    ContactSpace<dim>     contact_space;
-    FreeRigidMotions<dim> free_motions;
+    /// Numbers the bodies that have no nodes in common. Returns where they are,
+    /// for names; an empty text if there is one.
+    std::vector<std::string>
+    find_bodies();
+
+    EdgeCoefficients<dim>     contact_edges;
+    NodePairs<dim>            node_pairs;
+    std::vector<unsigned int> bodies; ///< by node, or empty
+    NodeSupports<dim>         node_supports;
+    ContactSpace<dim>         contact_space;
+    FreeRigidMotions<dim>     free_motions;
 
     // G is what supports prescribe and this, which is empty if it is zero.
     DofVector gap;

@@ -26,6 +26,15 @@ namespace Debond
 
 
 
+  /// Cuts the @p body, a Body<dimension>, as Mesh/Cuts says. Conditions may use
+  /// the @p constants. Texts that make no cut are left in the table as errors.
+  void
+  add_cuts(BodyDescription                     &body,
+           const BodyParameters                &parameters,
+           const unsigned int                   dimension,
+           const std::map<std::string, double> &constants,
+           ParameterTable                      &table);
+
   /// The section Parts: the texts "BOUNDARY: CONDITION" or "CONDITION" by the
   /// names of the parts.
   void

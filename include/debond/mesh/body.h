@@ -68,10 +68,31 @@ namespace Debond
     std::function<bool(const dealii::Point<dim> &)> contains;
   };
 
+  /// A surface between cells along which a body is cut into several.
+  template <int dim>
+  struct Cut
+  {
+    std::string name; ///< of the boundary on both sides
+    std::string text; ///< for messages
+
+    /// Either all faces that are on it, where the normal points from the low to
+    /// the high side, ...
+    std::function<bool(
+      const typename dealii::Triangulation<dim>::face_iterator &)>
+                           contains = {};
+    dealii::Tensor<1, dim> normal   = {};
+
+    /// ... or those that these regions have in common.
+    std::string low = "", high = "";
+  };
+
   struct PieceNames
   {
     BoundaryNames boundaries;
     RegionNames   regions;
+
+    /// Boundaries NAME that are the two sides NAME_low and NAME_high of a cut.
+    std::set<std::string> interfaces = {};
 
     /// What the user should know of the pieces.
     std::vector<std::string> notes = {};
@@ -152,6 +173,9 @@ namespace Debond
   public:
     /// That have names beside those of the whole body's boundaries and regions.
     std::vector<Part<dim>> parts;
+
+    /// Where it is cut into several bodies. There are no coarser meshes then.
+    std::vector<Cut<dim>> cuts;
 
     std::set<std::string>
     boundaries() const final;

@@ -27,6 +27,7 @@ namespace Debond
     std::string   generator;         ///< a function of dealii::GridGenerator
     std::string   arguments;         ///< of that function
     unsigned int  n_refinements = 0; ///< unless it is a box
+    std::string   cuts;              ///< "y = 2, core | ring"
   };
 
   /// A Body<dimension>. Throws std::invalid_argument if there is no such

@@ -28,11 +28,10 @@ namespace Debond
     const std::string entry;
   };
 
-  /// What is clamped and in contact, on a mesh whose boundaries have these
-  /// names. Throws PieceError.
+  /// What is clamped and in contact, on a mesh whose pieces have these names.
+  /// Throws PieceError, also if bodies at an interface are not in contact.
   BoundaryConditions
-  make_conditions(const ProblemParameters &given,
-                  const BoundaryNames     &boundaries);
+  make_conditions(const ProblemParameters &given, const PieceNames &names);
 
   /// Throws PieceError if regions with materials of their own overlap.
   ByRegion<Material>
