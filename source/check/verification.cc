@@ -374,18 +374,17 @@ namespace Debond
           contact(dof) = residual(dof);
 
       const auto resultant = [&](const DofVector &forces) {
-        const DofVector cartesian = problem.unknowns().cartesian_forces(forces);
         dealii::Tensor<1, dim> sum;
-        for (unsigned int i = 0; i < cartesian.size(); ++i)
-          sum[i % dim] += cartesian(i);
+        for (unsigned int i = 0; i < forces.size(); ++i)
+          sum[i % dim] += forces(i);
         return sum;
       };
 
       const DofVector applied = problem.fields().applied_nodal_forces(factors);
       for (unsigned int i = 0; i < applied.size(); ++i)
         result.applied_force[i % dim] += applied(i);
-      result.clamped_reaction = resultant(clamped);
-      result.contact_reaction = resultant(contact);
+      result.clamped_reaction = resultant(unknowns.cartesian_forces(clamped));
+      result.contact_reaction = resultant(unknowns.contact_forces(contact));
 
       const std::vector<std::string> &names = unknowns.support_names();
       for (const std::string &name :
@@ -395,15 +394,33 @@ namespace Debond
           for (const auto &[dof, support] : unknowns.supported())
             if (names[support] == name)
               of_support(dof) = residual(dof);
-          result.reactions[name] = resultant(of_support);
+          result.reactions[name] =
+            resultant(unknowns.cartesian_forces(of_support));
         }
+      // Of glued nodes that two supports hold.
+      const DofVector on_high = unknowns.contact_forces(clamped);
+      std::map<unsigned int, std::string> support_of;
+      if (!unknowns.pairs().empty())
+        for (const auto &[dof, support] : unknowns.supported())
+          support_of[static_cast<unsigned int>(dof / dim)] = names[support];
+      for (const auto &pair : unknowns.pairs().all())
+        if (support_of.count(pair.first) > 0)
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const double force = pair.sign * on_high(dim * pair.first + d);
+              result.reactions[support_of[pair.first]][d] += force;
+              result.reactions[support_of[pair.second]][d] -= force;
+            }
       // Bonds of vertices that a support moves pull at it.
       const auto &held = unknowns.contact().boundary().held_vertices;
       for (unsigned int k = 0; k < held.size(); ++k)
         {
           const dealii::Tensor<1, dim> force = held_forces[k] * held[k].normal;
-          result.clamped_reaction += force;
           result.contact_reaction -= force;
+          if (held[k].low_support < names.size())
+            result.reactions[names[held[k].low_support]] -= force;
+          else
+            result.clamped_reaction += force;
           if (held[k].support < names.size())
             result.reactions[names[held[k].support]] += force;
         }
@@ -411,18 +428,24 @@ namespace Debond
       DofVector tangential = contact;
       for (const auto normal : normals)
         tangential(normal) = 0.;
-      result.tangential_reaction = resultant(tangential);
+      result.tangential_reaction =
+        resultant(unknowns.contact_forces(tangential));
       result.tangential_forces =
-        at_contact_nodes<dim>(problem.unknowns().cartesian_forces(tangential),
-                              normals);
+        at_contact_nodes<dim>(unknowns.contact_forces(tangential), normals);
 
       // Resultants can vanish where forces do not.
       DofVector supports = clamped;
       supports += contact;
-      const double scale     = supports.l1_norm() + applied.l1_norm();
-      const double imbalance = (result.applied_force + result.clamped_reaction +
-                                result.contact_reaction)
-                                 .norm();
+      const double scale = supports.l1_norm() + applied.l1_norm();
+      // Of each body.
+      supports = unknowns.cartesian_forces(supports);
+      supports += applied;
+      std::map<unsigned int, dealii::Tensor<1, dim>> sums;
+      for (unsigned int i = 0; i < supports.size(); ++i)
+        sums[unknowns.body_of(i / dim)][i % dim] += supports(i);
+      double imbalance = 0.;
+      for (const auto &[unused, sum] : sums)
+        imbalance = std::max(imbalance, sum.norm());
       result.force_imbalance =
         imbalance > 0. ? imbalance / std::max(scale, resolved) : 0.;
     }

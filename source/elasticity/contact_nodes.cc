@@ -308,6 +308,13 @@ namespace Debond
         else if (!rows.empty())
           support = rows[0].support;
 
+        unsigned int low_support = no_node;
+        if (const auto *glued = node_supports.supports_of_pair(index))
+          {
+            support     = (*glued)[0];
+            low_support = (*glued)[1];
+          }
+
         // A normal displacement is unknown unless supports prescribe it.
         std::vector<unsigned int> unknown;
         for (unsigned int k = 0; k < normals.size(); ++k)
@@ -367,7 +374,8 @@ namespace Debond
                                    gaps[k],
                                    support,
                                    normals[k],
-                                   vertex.position});
+                                   vertex.position,
+                                   low_support});
         if (unknown.empty())
           return;
 

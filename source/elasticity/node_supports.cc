@@ -269,7 +269,12 @@ namespace Debond
         auto       pair   = pairs.all()[k];
         const auto first  = directions(pair.first),
                    second = directions(pair.second);
-        if (!is_within(first, second))
+        // Of a clamped first node the second one is clamped, too.
+        const auto is_clamped = [this](const unsigned int node) {
+          return fixed.is_constrained(dim * node);
+        };
+        if (!is_within(first, second) ||
+            (is_clamped(pair.first) && !is_clamped(pair.second)))
           {
             if (!is_within(second, first))
               throw std::invalid_argument(
@@ -282,15 +287,28 @@ namespace Debond
           }
         if (prescribed.size() == 0)
           continue;
+        const auto support_of = [&](const unsigned int node) {
+          if (const auto entry = prescribed_nodes.find(node);
+              entry != prescribed_nodes.end())
+            return entry->second.rows[0].support;
+          for (const auto &[dof, support] : supported_dofs)
+            if (dof == dim * node)
+              return support;
+          return dealii::numbers::invalid_unsigned_int;
+        };
+        if (!first.empty() && !second.empty())
+          {
+            auto &both = glued_supports[pair.first];
+            both       = {{support_of(pair.first), support_of(pair.second)}};
+            if (pair.sign < 0.)
+              std::swap(both[0], both[1]);
+          }
         const auto of_second           = prescribed_nodes.find(pair.second);
         const dealii::Tensor<1, dim> u = of_second == prescribed_nodes.end() ?
                                            dealii::Tensor<1, dim>() :
                                            of_second->second.displacement();
-        if (fixed.is_constrained(dim * pair.first))
-          for (unsigned int d = 0; d < dim; ++d)
-            prescribed(dim * pair.first + d) = -pair.sign * u[d];
-        else if (const auto own = prescribed_nodes.find(pair.first);
-                 own != prescribed_nodes.end())
+        if (const auto own = prescribed_nodes.find(pair.first);
+            own != prescribed_nodes.end())
           for (Row &row : own->second.rows)
             row.value = pair.sign * (row.value - row.direction * u);
       }

@@ -387,12 +387,22 @@ namespace Debond
   DofVector
   ElasticUnknowns<dim>::cartesian_forces(const DofVector &forces) const
   {
+    DofVector result = contact_forces(forces);
+    node_pairs.forces_from_conjugates(result);
+    return result;
+  }
+
+
+
+  template <int dim>
+  DofVector
+  ElasticUnknowns<dim>::contact_forces(const DofVector &forces) const
+  {
     DofVector result = forces;
     multiply_in_frames(
       frames(),
       [](const auto &frame) { return dealii::transpose(frame.to_frame); },
       result);
-    node_pairs.forces_from_conjugates(result);
     return result;
   }
 

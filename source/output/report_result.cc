@@ -289,6 +289,7 @@ namespace Debond
     template <int dim>
     void
     report_verification(const ProblemParameters &problem,
+                        const bool               has_interfaces,
                         const RunResult<dim>    &result,
                         Record                  &record)
     {
@@ -345,7 +346,8 @@ namespace Debond
         report_force(
           "reactions/" + name, "  of " + name, force, details, record);
       report_force("contact_reaction",
-                   "force of foundation",
+                   has_interfaces ? "force between bodies" :
+                                    "force of foundation",
                    verification.contact_reaction,
                    details,
                    record);
@@ -580,7 +582,10 @@ namespace Debond
       return;
     report_state(result.verification, result.largest, record);
     report_probes(result, record);
-    report_verification(scene.parameters(), result, record);
+    report_verification(scene.parameters(),
+                        !scene.problem().unknowns().pairs().empty(),
+                        result,
+                        record);
   }
 
 

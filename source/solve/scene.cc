@@ -73,6 +73,8 @@ namespace Debond
     dealii::Timer timer;
     std::string   entry    = "Mesh/Source"; // that errors belong to
     const auto    describe = [&](const std::invalid_argument &error) {
+      if (entry == "Mesh/Source" && !elastic_body->cuts.empty())
+        entry = "Mesh/Cuts";
       if (const auto *load = dynamic_cast<const LoadError *>(&error))
         entry = load->entry;
       if (dynamic_cast<const TemperatureError *>(&error) != nullptr)
@@ -82,7 +84,8 @@ namespace Debond
       if (const auto *part = dynamic_cast<const PartError *>(&error))
         entry = "Parts/" + part->part;
       if (const auto *support = dynamic_cast<const SupportError *>(&error))
-        entry = entry_of(*support);
+        if (entry = entry_of(*support); given.locations.count(entry) == 0)
+          entry = "Boundary conditions/Clamped boundaries";
       if (const auto *probe = dynamic_cast<const ProbeError *>(&error))
         entry = "Probes/" + probe->probe;
       if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))

@@ -265,7 +265,10 @@ namespace Debond
                                  point_text(vertex.position));
           throw SupportError(SupportError::Subject::displacement,
                              unknowns.support_names().at(vertex.support),
-                             "it pushes the body into the foundation at " +
+                             (vertex.low_support <
+                                  unknowns.support_names().size() ?
+                                "supports push the bodies into each other at " :
+                                "it pushes the body into the foundation at ") +
                                point_text(vertex.position));
         }
   }

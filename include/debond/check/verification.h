@@ -126,7 +126,8 @@ namespace Debond
     /// Of each of ElasticUnknowns::support_names() on the body.
     std::map<std::string, dealii::Tensor<1, dim>> reactions;
 
-    /// Of the foundation on the body, with the tangential part.
+    /// Of the foundation on the body, with the tangential part; of bodies that
+    /// are glued to each other on those on the high sides.
     dealii::Tensor<1, dim> contact_reaction;
 
     /// The tangential part of contact_reaction, zero if tangential

@@ -52,6 +52,9 @@ namespace Debond
       dealii::Tensor<1, dim> normal;
 
       dealii::Point<dim> position;
+
+      /// That of the body on the low side of an interface, if there is one.
+      unsigned int low_support = dealii::numbers::invalid_unsigned_int;
     };
 
     struct Face

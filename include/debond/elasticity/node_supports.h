@@ -141,6 +141,15 @@ namespace Debond
     void
     glue(NodePairs<dim> &pairs);
 
+    /// Of a first node of a pair that is supported, the supports of the bodies
+    /// on the high and on the low side; null of others.
+    const std::array<unsigned int, 2> *
+    supports_of_pair(const unsigned int first) const
+    {
+      const auto entry = glued_supports.find(first);
+      return entry == glued_supports.end() ? nullptr : &entry->second;
+    }
+
     /// Whether the node is one of NodePairs::ends().
     bool
     is_end_of_interface(const unsigned int index) const
@@ -229,6 +238,7 @@ namespace Debond
     std::map<unsigned int, PrescribedNode<dim>> prescribed_nodes; ///< by index
     std::vector<Support<dim>>                   held;
     std::set<unsigned int>                      ends_of_interfaces;
+    std::map<unsigned int, std::array<unsigned int, 2>> glued_supports;
   };
 } // namespace Debond
 

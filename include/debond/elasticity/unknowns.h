@@ -239,6 +239,11 @@ namespace Debond
     DofVector
     cartesian_forces(const DofVector &forces) const;
 
+    /// The same of forces between bodies, that on the high side alone: it is in
+    /// the place of the jump.
+    DofVector
+    contact_forces(const DofVector &forces) const;
+
     /// Translations and rotations about the origin in the unknowns, zero where
     /// constrained: the near null space of A.
     std::vector<DofVector>

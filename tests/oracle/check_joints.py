@@ -1,0 +1,332 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""check_joints.py DEBOND: two bodies that are glued to each other. Two equal strips are twice the
+half of them on a foundation; strips of different stiffness and bonds that soften beside a
+program of its own (dense matrices, a change of basis, full enumeration); bonds without end make
+one body; a film on a substrate that is as good as rigid; arms of different thickness beside beam
+theory; quarter rings from Gmsh; supports of either side; bodies that only bonds hold."""
+import itertools
+import math
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from run_scenes import Scenes
+
+scenes = Scenes(sys.argv[1])
+solve, check, close = scenes.solve, scenes.check, scenes.close
+NODAL, FREE = "Contact law/Quadrature=nodal", "Contact law/Tangential displacement=free"
+NO_HEALING = "Load path/Bonds heal=false"
+JOINT = ["Mesh/Lengths=40, 4", "Mesh/Cells=20, 4", "Mesh/Cuts=y = 2", "Parts/upper=y > 2",
+         "Parts/tl=left: y > 3", "Parts/bl=left: y < 1", "Material/Poisson ratio=0.3",
+         "Boundary conditions/Clamped boundaries=right",
+         "Boundary conditions/Contact boundary=cut_1"]
+
+
+def ends(upper, lower):
+    return ["Boundary conditions/Displacement tl=" + upper,
+            "Boundary conditions/Displacement bl=" + lower]
+
+
+def bonds(stiffness, threshold):
+    return [f"Contact law/Bond stiffness={stiffness!r}",
+            f"Contact law/Bond threshold={threshold!r}"]
+
+
+def check_different_strips():
+    """E 1000 above 2000: J from rest, and the least one over all states."""
+    scenes.section("Different strips")
+    table = {"fixed": ((.2, 3.773938581183e-01, 3.303907810615e-01),
+                       (.6, 1.275625332398, 1.216779655958), (1., 2.775499044327, 2.635338038816),
+                       (1.5, 5.370488170676, 5.215716899210)),
+             "free": ((.2, 3.181851038168e-01, 2.798324281873e-01),
+                      (.6, 9.495981660160e-01, 8.405892559315e-01),
+                      (1., 1.730525710921, 1.645934390332), (1.5, 3.196842193184, 3.054051243393))}
+    for tangential, rows in table.items():
+        for factor, from_rest, least in rows:
+            scene = [*JOINT, NODAL, "Contact law/Tangential displacement=" + tangential,
+                     "Material/Young modulus=2000", "Material/Young modulus upper=1000",
+                     *bonds(50, 0.0282842712474619),
+                     *ends(f"{.2 * factor!r}; {factor!r}", f"free; {-.2 * factor!r}")]
+            name = f"{tangential}, {factor}"
+            result = solve(*scene, "Solver/Search=none")
+            close(name + ", from rest", result["functional"], from_rest, 1e-10)
+            result = solve(*scene, "Solver/Prove=true")
+            close(name + ", least", result["functional"], least, 1e-10)
+            check(name + " is proved", result["proof"]["status"] == "proved")
+            check(name + ", balance", result["force_imbalance"] < 1e-10)
+
+
+def turned(entry, degrees):
+    """A condition on x and y for the body turned about the origin."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return entry.replace("y", f"({c!r} * y - {s!r} * x)")
+
+
+def check_twice_the_half():
+    scenes.section("Twice the half")
+    factors = [NO_HEALING,
+               "Load path/Displacement factors=0.05, 0.1, 0.3, 0.6, 1, 1.5, 1, 0.3, 0, 2"]
+    k, M = 50., math.sqrt(2 * 0.02 / 50)
+    strips = [*JOINT, "Material/Young modulus=1000", FREE]
+    half = ["Mesh/Lengths=40, 2", "Mesh/Cells=20, 2", "Parts/tl=left: y > 1", FREE,
+            "Material/Young modulus=1000", "Material/Poisson ratio=0.3",
+            "Boundary conditions/Clamped boundaries=right",
+            "Boundary conditions/Contact boundary=bottom",
+            "Boundary conditions/Displacement tl=free; 0.5"]
+
+    def compare(name, two, one, length=1., tolerance=1e-10):
+        check(name + " has all steps", len(two) == len(one) == 10, (len(two), len(one)))
+        for a, b in zip(two, one):
+            at = f"{name} at {b['displacement_factor']}"
+            close(at + ": J", a["J"], 2 * b["J"], tolerance, one[-1]["J"])
+            close(at + ": dissipated", a["dissipated_energy"], 2 * b["dissipated_energy"],
+                  tolerance, one[-1]["J"])
+            close(at + ": opening", a["largest_gap"], 2 * b["largest_gap"], tolerance, length)
+            close(at + ": force", a["normal_force"], b["normal_force"], tolerance,
+                  max(abs(row["normal_force"]) for row in one))
+
+    for name, more in (("nodal", [NODAL]), ("midpoint", ["Contact law/Quadrature=midpoint"]),
+                       ("degree 2", ["Mesh/Degree=2", "Contact law/Quadrature=gauss 3"]),
+                       ("multigrid", [NODAL, "Solver/Linear solver=multigrid"]),
+                       ("energy bundle", [NODAL, "Solver/Method=energy bundle"])):
+        two = solve(*strips, *ends("free; 0.5", "free; -0.5"), *bonds(k, M), *factors, *more)
+        one = solve(*half, *bonds(2 * k, M / 2), *factors, *more)
+        compare(name, two["path"], one["path"],
+                tolerance=1e-8 if name in ("multigrid", "energy bundle") else 1e-10)
+        if name in ("nodal", "degree 2"):
+            close(name + ": error of the mesh", two["estimated_error"], one["estimated_error"],
+                  0.05)
+    one = solve(*half, *bonds(2 * k, M / 2), *factors, NODAL)["path"]
+    # Also unequal in the supports: only the arm above moves, twice as far.
+    for degrees in (37, 180, -90):
+        c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+        moved = [f"{-.5 * s!r}; {.5 * c!r}", f"{.5 * s!r}; {-.5 * c!r}"]
+        rolled = solve(*(turned(e, degrees) if e.startswith("Parts") else e for e in strips),
+                       *ends(*moved), f"Mesh/Rotation={degrees}", *bonds(k, M), *factors, NODAL)
+        straight = solve(*strips, *ends("0; 0.5", "0; -0.5"), *bonds(k, M), *factors, NODAL)
+        check(f"turned by {degrees} arrives", len(rolled["path"]) == 10, rolled["errors"])
+        for a, b in zip(rolled["path"], straight["path"]):
+            close(f"turned by {degrees} at {b['displacement_factor']}", a["J"], b["J"], 1e-10,
+                  straight["path"][-1]["J"])
+    # Cut along x: left and right, as the axes are named otherwise.
+    across = solve("Mesh/Lengths=4, 40", "Mesh/Cells=4, 20", "Mesh/Cuts=x = 2",
+                   "Parts/tl=bottom: x > 3", "Parts/bl=bottom: x < 1", FREE, NODAL,
+                   "Material/Young modulus=1000", "Material/Poisson ratio=0.3",
+                   "Boundary conditions/Clamped boundaries=top",
+                   "Boundary conditions/Contact boundary=cut_1",
+                   *ends("0.5; free", "-0.5; free"), *bonds(k, M), *factors)
+    compare("cut in x", across["path"], one)
+    metres = solve("Mesh/Lengths=0.04, 0.004", *JOINT[1:2], "Mesh/Cuts=y = 0.002",
+                   "Parts/tl=left: y > 0.003", "Parts/bl=left: y < 0.001", FREE, NODAL,
+                   "Material/Young modulus=1e9", *JOINT[6:], *ends("free; 5e-4", "free; -5e-4"),
+                   *bonds(k * 1e9, M * 1e-3), *factors)["path"]
+    for a, b in zip(metres, one):
+        close(f"m, Pa at {b['displacement_factor']}", a["J"], 2 * b["J"], 1e-10, one[-1]["J"])
+    # In 3D.
+    solid = ["Dimension=3", "Material/Young modulus=1000", *JOINT[6:], FREE, NODAL,
+             "Parts/tl=left: y > 3", "Parts/bl=left: y < 1"]
+    two = solve(*solid, "Mesh/Lengths=10, 4, 2", "Mesh/Cells=5, 4, 1", "Mesh/Cuts=y = 2",
+                *ends("free; 0.1; free", "free; -0.1; free"), *bonds(k, M), *factors)
+    one = solve("Dimension=3", *half[2:3], *half[3:8], NODAL, "Mesh/Lengths=10, 2, 2",
+                "Mesh/Cells=5, 2, 1", "Boundary conditions/Displacement tl=free; 0.1; free",
+                *bonds(2 * k, M / 2), *factors)
+    compare("3D", two["path"], one["path"])
+
+
+def check_softening():
+    scenes.section("Softening")
+    law = ["Contact law/Law=bilinear", "Contact law/Bond stiffness=100",
+           "Contact law/Bond strength=1", "Contact law/Fracture energy=0.02", FREE, NODAL]
+    strips = [*JOINT, "Material/Young modulus=2000", "Material/Young modulus upper=1000", *law]
+    rows = ((.2, .2864078722124, .1754830054967), (.6, .8467306761819, .34),
+            (1, 1.652375239849, .46), (1.5, 3.060742443207, .58), (1, 1.682552196981, .58),
+            (.5, .8556380492452, .58), (0, .58, .58), (1, 1.682552196981, .58),
+            (2, 4.939875760118, .6603608497643))
+    path = solve(*strips, *ends("0.2; 1", "free; -0.2"), NO_HEALING,
+                 "Load path/Displacement factors=" + ", ".join(str(row[0]) for row in rows))["path"]
+    check("all steps", len(path) == len(rows))
+    for row, (factor, total, dissipated) in zip(path, rows):
+        close(f"total at {factor}", row["J"], total, 1e-8)
+        close(f"dissipated at {factor}", row["dissipated_energy"], dissipated, 1e-6)
+    for b, least in ((.1, .1129336508311), (.3, .2380871003703), (.5, .3211289199003),
+                     (1, .4783148178381), (2, .7050006315771)):
+        result = solve(*strips, *ends(f"free; {b / 2!r}", f"free; {-b / 2!r}"),
+                       "Solver/Prove=true")
+        close(f"least at {b}", result["functional"], least, 1e-9)
+        check(f"{b} is proved", result["proof"]["status"] == "proved")
+
+
+def check_limits():
+    scenes.section("Limits")
+    strips = [*JOINT, "Material/Young modulus=2000", "Material/Young modulus upper=1000",
+              *ends("0.2; 0.3", "free; -0.2")]
+    for name, more in (("degree 1", [NODAL]),
+                       ("degree 2", ["Mesh/Degree=2", "Contact law/Quadrature=gauss 3"])):
+        one = solve(*(e for e in strips if "Cuts" not in e and "Contact" not in e), *more,
+                    "Boundary conditions/Contact boundary=")["functional"]
+        last = None
+        for k in (1e6, 1e8, 1e10):
+            off = 1 - solve(*strips, *more, *bonds(k, 1.))["functional"] / one
+            check(f"{name}, one body but for 1 / {k}", 0 < off < 1e4 / k, off)
+            check(f"{name}, {k}: in proportion", last is None or abs(last / off / 100 - 1) < 0.1)
+            last = off
+    # A film of 1 on a block.
+    film = ["Material/Poisson ratio=0.3", "Material/Young modulus=500", NODAL,
+            "Boundary conditions/Clamped boundaries=", "Boundary conditions/Roller boundaries=right",
+            "Boundary conditions/Displacement up=free; 0.02", *bonds(50, 0.01)]
+    alone = solve(*film, "Mesh/Lengths=10, 1", "Mesh/Cells=20, 2", "Parts/up=left: y > 0.5",
+                  "Boundary conditions/Contact boundary=bottom")
+    for modulus in (1e6, 1e8):
+        both = solve(*film, "Mesh/Lengths=10, 3", "Mesh/Cells=20, 6", "Mesh/Cuts=y = 2",
+                     "Parts/up=left: y > 2.5", "Parts/block=y < 2",
+                     f"Material/Young modulus block={modulus}",
+                     "Boundary conditions/Contact boundary=cut_1",
+                     "Boundary conditions/Clamped boundaries=bottom")
+        close(f"film on a block of {modulus}", both["functional"], alone["functional"],
+              3000 / modulus)
+    # Pressure in a gap that is open and bears nothing is a load on each body.
+    for side in ("cut_1_low", "cut_1_high", "cut_1"):
+        result = solve(*JOINT, "Material/Young modulus=1000", NODAL, *bonds(0, 1.),
+                       f"Loads/Pressure {side}=0.01", "Boundary conditions/Clamped boundaries=left")
+        close("pressure on " + side, result["applied_force"][1],
+              {"cut_1_low": -.4, "cut_1_high": .4, "cut_1": 0.}[side], 1e-12, 0.4)
+
+
+def check_arms():
+    """C^(1/3) of an arm is linear in the length of the crack, with the slope (1 / (3 E I))^(1/3)."""
+    scenes.section("Arms of different thickness")
+    roots = {}
+    for length in (60, 80):
+        result = solve("Mesh/Lengths=100, 3", "Mesh/Cells=100, 3", "Mesh/Cuts=y = 1",
+                       "Mesh/Degree=2", "Contact law/Quadrature=gauss 3", FREE,
+                       "Parts/up=left: y > 1", "Parts/down=left: y < 1",
+                       "Parts/open=cut_1: x < " + str(length), "Contact law/Bond stiffness open=0",
+                       "Material/Young modulus=1000", "Material/Poisson ratio=0.3",
+                       "Boundary conditions/Clamped boundaries=right",
+                       "Boundary conditions/Contact boundary=cut_1", *bonds(1e5, 1.),
+                       "Loads/Traction up=0; 5e-7", "Loads/Traction down=0; -1e-6")
+        for side in ("up", "down"):
+            roots[side, length] = abs(
+                result["mean_displacements"][side][1] / 1e-6)**(1 / 3)
+    for side, thickness in (("up", 2), ("down", 1)):
+        slope = (roots[side, 80] - roots[side, 60]) / 20
+        close(side, slope, (4 / (1000 * thickness**3))**(1 / 3), 0.01)
+
+
+def check_supports():
+    """Where either body is held at the end of the interface the answer is the same."""
+    scenes.section("Supports")
+    base = ["Mesh/Lengths=4, 2", "Mesh/Cells=4, 2", "Mesh/Cuts=y = 1", "Parts/tl=left: y > 1",
+            "Parts/bl=left: y < 1", "Parts/tr=right: y > 1", "Parts/br=right: y < 1",
+            "Material/Young modulus=100", "Material/Poisson ratio=0.3", NODAL, *bonds(20, 0.1),
+            "Boundary conditions/Contact boundary=cut_1"]
+    mirrored = {"tl": "bl", "bl": "tl", "tr": "br", "br": "tr"}
+    for tangential, held, other in itertools.product(("fixed", "free"), ("tl", "bl"),
+                                                     ("tr", "br", "tl", "bl")):
+        if tangential == "free" and held == other:
+            continue
+        results = []
+        for side, load, sign in ((held, other, 1), (mirrored[held], mirrored[other], -1)):
+            results.append(solve(
+                *base, "Contact law/Tangential displacement=" + tangential,
+                f"Boundary conditions/Displacement {side}=0.01; {sign * 0.02}",
+                "Boundary conditions/Clamped boundaries=" + (load if load != side else ""),
+                f"Loads/Traction {'tr' if sign == 1 else 'br'}=0; {sign * 0.1}"))
+        a, b = results
+        name = f"{tangential}, {held} and {other}"
+        check(name + ", exits", a["exit_code"] == b["exit_code"], (a["errors"], b["errors"]))
+        if tangential == "fixed" and {held, other} == {"tl", "bl"}:
+            check(name + ", a slip is refused", "Tangential displacement = fixed" in a["errors"],
+                  a["errors"])
+        if a["exit_code"] == b["exit_code"] == 0:
+            close(name + ", mirrored", a["functional"], b["functional"], 1e-10)
+            check(name + ", balance", max(a["force_imbalance"], b["force_imbalance"]) < 1e-10)
+            for key in a["reactions"]:
+                for d, sign in ((0, 1), (1, -1)):
+                    close(f"{name}, reaction {key} {d}", b["reactions"][mirrored.get(key, key)][d],
+                          sign * a["reactions"][key][d], 1e-9,
+                          max(1e-3, *(abs(x) for f in a["reactions"].values() for x in f)))
+    lap = [*base, "Boundary conditions/Clamped boundaries=bl"]
+    pulled = solve(*lap, "Loads/Traction tr=0.2; 0.05")
+    check("bonds hold the upper body", pulled["status"] == "success", pulled["errors"])
+    check("which the log says", "held by contact       translation in y of the body at"
+          in pulled["log"])
+    off = solve(*lap, "Loads/Traction tr=0.2; 9")
+    check("it comes off", (off["status"], off["exit_code"]) == ("comes off", 0), off["status"])
+    check("and how", off["comes_off"]["translation"][1] > 0, off.get("comes_off"))
+    errors = solve(*lap, "Loads/Traction tr=0.2; 0", FREE)["errors"]
+    check("nothing holds it along x", "translation in x of the body at" in errors, errors)
+
+
+RINGS = """h = 0.2;
+Point(1) = {1,0,0,h}; Point(2) = {2,0,0,h}; Point(3) = {3,0,0,h};
+Point(4) = {0,1,0,h}; Point(5) = {0,2,0,h}; Point(6) = {0,3,0,h}; Point(7) = {0,0,0,h};
+Circle(1) = {1,7,4}; Circle(2) = {2,7,5}; Circle(3) = {3,7,6};
+Line(4) = {1,2}; Line(5) = {2,3}; Line(6) = {4,5}; Line(7) = {5,6};
+Curve Loop(1) = {4,2,-6,-1}; Plane Surface(1) = {1};
+Curve Loop(2) = {5,3,-7,-2}; Plane Surface(2) = {2};
+Physical Surface("inner") = {1}; Physical Surface("outer") = {2};
+Physical Curve("bore") = {1}; Physical Curve("rim") = {3};
+Physical Curve("low") = {4,5}; Physical Curve("up") = {6,7};
+"""
+
+
+def check_rings():
+    """Against the ring as one body, and a press fit of two in closed form."""
+    scenes.section("Quarter rings from Gmsh")
+    (scenes.directory / "rings.geo").write_text(RINGS)
+    rings = ["Mesh/Source=file", "Mesh/File=rings.geo", "Material/Young modulus=100",
+             "Material/Young modulus outer=300", "Material/Poisson ratio=0.3",
+             "Boundary conditions/Clamped boundaries=",
+             "Boundary conditions/Roller boundaries=low, up"]
+    loads = ["Loads/Pressure rim=if(x > y, -1, 0.3)"]
+    one = solve(*rings, *loads, "Boundary conditions/Contact boundary=")["functional"]
+    glued = [*rings, "Boundary conditions/Contact boundary=cut_1", NODAL]
+    for cuts in ("inner | outer", "outer | inner"):
+        off = []
+        for k in (1e5, 1e7):
+            result = solve(*glued, *loads, "Mesh/Cuts=" + cuts, *bonds(k, 1.))
+            off.append(result["functional"] / one - 1)
+            check(f"{cuts}, {k}: balance", result["force_imbalance"] < 1e-9)
+        check(f"{cuts}: one body but for 1 / k", 0 < off[1] < 1e-5
+              and abs(off[0] / off[1] / 100 - 1) < 0.1, off)
+    # The outer ring is shrunk by heat: the pressure between both in plane stress.
+    for degree, tolerance in ((1, 0.03), (2, 0.003)):
+        result = solve(*glued, "Mesh/Cuts=inner | outer", FREE, *bonds(0, 1.),
+                       "Loads/Temperature change=-1", "Material/Thermal expansion outer=0.01",
+                       f"Mesh/Degree={degree}", *(["Contact law/Quadrature=gauss 3"]
+                                                  if degree == 2 else []))
+
+        def yields(E, inner, outer, is_inner):
+            factor = (outer**2 + inner**2) / (outer**2 - inner**2)
+            return 2 * (factor - 0.3 if is_inner else factor + 0.3) / E
+        pressure = 2 * 0.01 / (yields(100, 1, 2, True) + yields(300, 2, 3, False))
+        close(f"press fit, degree {degree}", result["contact_reaction"][0], 2 * pressure, tolerance)
+
+
+def check_errors():
+    scenes.section("Refused")
+    joint = [*JOINT, *ends("0; 1", "0; -1")]
+    for settings, words in (
+            (["Mesh/Cuts=y = 1.7"], "Mesh/Cuts: y = 1.7 is no line of faces inside the mesh"),
+            (["Mesh/Cuts=y = 4"], "Mesh/Cuts: y = 4 is no line of faces inside the mesh"),
+            (["Mesh/Cuts=y < 2"], "neither a line of the mesh"),
+            (["Mesh/Cuts=core | ring"], "the body has no region core"),
+            (["Mesh/Cuts=y = 2, x = 20"], "more than two bodies meet in the point (20, 2)"),
+            (["Boundary conditions/Contact boundary=bottom"], "could go through each other"),
+            (["Boundary conditions/Contact boundary=cut_1_low"], "could go through each other"),
+            (["Certificate/Kind=global"], "needs one body"),
+            (["Accuracy/Target=0.01"], "several bodies are not refined so far"),
+            (["Boundary conditions/Displacement tl=0; free",
+              "Boundary conditions/Displacement bl=free; 0", "Parts/tl=left: y > 2",
+              "Parts/bl=left: y < 2"], "hold one of them as far as the other one there")):
+        names = {e.split("=")[0] for e in settings}
+        errors = solve(*(e for e in joint if e.split("=")[0] not in names), *settings)["errors"]
+        check(words, words in errors, errors)
+
+
+scenes.together(*((check_.__name__, check_) for check_ in (
+    check_different_strips, check_twice_the_half, check_softening, check_limits, check_arms,
+    check_supports, check_rings, check_errors)))
+scenes.end()
