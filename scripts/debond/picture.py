@@ -57,10 +57,13 @@ class Grid:
 
     def boundary(self):
         """The faces (2D: edges) that belong to one cell, and the cells. Files
-        of ranks have points of their own: those at one place are one."""
-        vertex = numpy.unique(
-            numpy.round(self.points / self.size * 1e6).astype(int), axis=0,
-            return_inverse=True)[1].ravel()
+        of ranks have points of their own: those at one place are one. In a
+        single file these are of bodies that are glued to each other."""
+        vertex = numpy.arange(len(self.points))
+        if len(self.meshes) > 1:
+            vertex = numpy.unique(
+                numpy.round(self.points / self.size * 1e6).astype(int), axis=0,
+                return_inverse=True)[1].ravel()
         faces = numpy.concatenate([numpy.delete(self.cells, k, axis=1)
                                    for k in range(self.dim + 1)])
         _, first, count = numpy.unique(
@@ -143,16 +146,21 @@ def draw_body(directory, length, stress, field):
                                            linestyles="--", label="at rest"))
         axes.set(xlabel="x" + length, ylabel="y" + length)
     if grid.dim == 2 and profile:
-        # With displacements between the two nearest points of the boundary.
+        # With displacements between the two nearest points of the boundary; of
+        # bodies that are glued to each other in the middle between both.
         nodes = numpy.array([profile["x"], profile["y"]]).T
         own = numpy.unique(faces)
-        own = own[numpy.unique((rest[own] / grid.size).round(6), axis=0,
-                               return_index=True)[1]]
+        _, first, place = numpy.unique((rest[own] / grid.size).round(6), axis=0,
+                                       return_index=True, return_inverse=True)
+        means = numpy.zeros((len(first), 2))
+        numpy.add.at(means, place, u[own, :2])
+        means /= numpy.bincount(place)[:, None]
+        own = own[first]
         for k, node in enumerate(nodes.copy()):
             distance = numpy.linalg.norm(rest[own] - node, axis=1)
             i, j = numpy.argsort(distance)[:2]
             nodes[k] += scale * numpy.average(
-                u[own[[i, j]], :2], 0, [distance[j], distance[i]])
+                means[[i, j]], 0, [distance[j], distance[i]])
         show_nodes(axes, profile, nodes, max(4., min(20., 2000. / len(nodes))))
     if grid.dim == 2:
         axes.legend(**ABOVE)

@@ -266,6 +266,19 @@ def main(debond, directory):
         if not least < peak < least + 0.05:
             failures.append(f"softening cantilever, peak {peak} for {strength}")
 
+    # Both layers of the double cantilever beam of Alfano and Crisfield, 20 wide.
+    couple = math.sqrt(135300. / (1. - 0.24 * 0.24 * 9. / 135.3) * 1.5**3 / 12.)
+    run(debond, directory + "/delamination.prm", [])
+    rows = path_rows()
+    for row in rows:
+        opening = row["displacement_factor"]
+        if opening in {2.5, 3., 4.}:
+            within(f"delamination, force at {opening}",
+                   20. * math.sqrt(2. * 0.28**1.5 * couple / (3. * opening)),
+                   20. * row["reaction_upper_end_y"], 0.03)
+    within("delamination, largest force", 62.2,
+           20. * max(row["reaction_upper_end_y"] for row in rows), 0.02)
+
     # The opening p of the glue has the traction 1.1 (1 - p / p_c); the cube is stretched by
     # 2 mm per MPa.
     run(debond, directory + "/snap-back.prm", [])
