@@ -440,11 +440,11 @@ namespace Debond
       // Of each body.
       supports = unknowns.cartesian_forces(supports);
       supports += applied;
-      std::map<unsigned int, dealii::Tensor<1, dim>> sums;
+      std::vector<dealii::Tensor<1, dim>> sums(unknowns.n_bodies());
       for (unsigned int i = 0; i < supports.size(); ++i)
         sums[unknowns.body_of(i / dim)][i % dim] += supports(i);
       double imbalance = 0.;
-      for (const auto &[unused, sum] : sums)
+      for (const dealii::Tensor<1, dim> &sum : sums)
         imbalance = std::max(imbalance, sum.norm());
       result.force_imbalance =
         imbalance > 0. ? imbalance / std::max(scale, resolved) : 0.;

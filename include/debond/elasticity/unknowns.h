@@ -19,6 +19,7 @@
 #include <debond/elasticity/node_supports.h>
 #include <debond/elasticity/rigid_motions.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -121,6 +122,15 @@ namespace Debond
     pairs() const
     {
       return node_pairs;
+    }
+
+    /// Without nodes in common.
+    unsigned int
+    n_bodies() const
+    {
+      return bodies.empty() ?
+               1 :
+               1 + *std::max_element(bodies.begin(), bodies.end());
     }
 
     /// The number of the body that a node belongs to.
