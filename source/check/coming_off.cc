@@ -45,8 +45,12 @@ namespace Debond
     if (motions.empty() || nodes.empty() || !law.lets_go())
       return {};
 
-    const Eigen::MatrixXd towards =
+    Eigen::MatrixXd towards =
       free_motions_of_contact(problem.unknowns()).transpose();
+    // Of nodes that a rotation does not move only rounding is left.
+    const double rounding =
+      Tolerance::motion_off * towards.cwiseAbs().maxCoeff();
+    towards = (towards.array().abs() < rounding).select(0., towards);
     const WorkOfLoads work = work_of_loads(problem, factors, motions);
     // Twice, as its errors are relative to what it projects.
     std::optional<Eigen::VectorXd> projection =

@@ -72,7 +72,7 @@ namespace Debond
           largest = std::max(
             largest,
             at_edge[cell->id().get_coarse_cell_id()] /
-              problem.fields().material(cell).template plane_modulus<dim>());
+              problem.fields().material(cell).template plane_modulus<3>());
         }
       return dealii::Utilities::MPI::max(largest, unknowns.communicator());
     }

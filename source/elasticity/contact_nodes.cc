@@ -294,11 +294,14 @@ namespace Debond
         for (unsigned int k = 0; k < vertex.gaps.size(); ++k)
           gaps[vertex.groups[k]] =
             std::min(gaps[vertex.groups[k]], vertex.gaps[k]);
+        // Where an interface ends there is neither jump nor bond.
+        const bool is_end = node_supports.is_end_of_interface(index);
+        if (is_end)
+          std::fill(gaps.begin(), gaps.end(), 0.);
         PrescribedNode<dim> prescribed =
           node_supports.prescribed_at(index, vertex.dofs, vertex.position);
         const auto &rows = prescribed.rows;
-        // As far from the foundation as at rest, and where an interface ends.
-        const bool is_end = node_supports.is_end_of_interface(index);
+        // As far from the foundation as at rest.
         const bool is_clamped =
           is_end || node_supports.constraints().is_constrained(vertex.dofs[0]);
         const auto   clamp   = clamps.find(vertex.dofs[0]);

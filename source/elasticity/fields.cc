@@ -99,6 +99,14 @@ namespace Debond
     const DofVector displacement =
       elastic_unknowns.cartesian_displacement(u, factors);
 
+    // Of glued nodes it is the sum of a jump and the other displacement.
+    DofVector sizes = displacement;
+    for (double &size : sizes)
+      size = std::abs(size);
+    for (const auto &pair : elastic_unknowns.pairs().all())
+      for (unsigned int d = 0; d < dim; ++d)
+        sizes[dim * pair.first + d] += 2. * sizes[dim * pair.second + d];
+
     DofVector         rounding(elastic_unknowns.n_dofs());
     CellStresses<dim> cell_stresses(*this,
                                     displacement,
@@ -115,8 +123,8 @@ namespace Debond
           {
             double size_gradient = 0.;
             for (unsigned int i = 0; i < dofs.size(); ++i)
-              size_gradient += std::abs(displacement(dofs[i])) *
-                               values.shape_grad(i / dim, q).norm();
+              size_gradient +=
+                sizes(dofs[i]) * values.shape_grad(i / dim, q).norm();
             for (unsigned int i = 0; i < dofs.size(); ++i)
               rounding(dofs[i]) += values.JxW(q) * modulus * size_gradient *
                                    values.shape_grad(i / dim, q).norm();
@@ -127,6 +135,10 @@ namespace Debond
     for (unsigned int i = 0; i < rounding.size(); ++i)
       rounding[i] = std::numeric_limits<double>::epsilon() *
                     (rounding[i] + std::abs(forces[i]));
+    // The forces on glued nodes are those on both.
+    for (const auto &pair : elastic_unknowns.pairs().all())
+      for (unsigned int d = 0; d < dim; ++d)
+        rounding[dim * pair.second + d] += rounding[dim * pair.first + d];
     return rounding;
   }
 

@@ -66,9 +66,10 @@ namespace Debond
             for (unsigned int i = 0; i < 3; ++i)
               row[first + 3 + i] = moment[i];
           }
+        // Nothing if both are the same, as beside a cut that ends inside.
         if (support.other != dealii::numbers::invalid_unsigned_int)
-          row.segment<n_of_body>(n_of_body * support.other) =
-            -row.segment<n_of_body>(first);
+          row.segment<n_of_body>(n_of_body * support.other) -=
+            Motions(row.segment<n_of_body>(first));
         gram += row * row.transpose();
       }
 

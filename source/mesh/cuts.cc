@@ -73,8 +73,11 @@ namespace Debond
                     is_in(cell, cuts[k].low) && is_in(other, cuts[k].high);
                 if (!is_cut)
                   continue;
-                faces[cut_key<dim>(cell->face(f))] = {
+                const CutFace face = {
                   k, {{cell->active_cell_index(), other->active_cell_index()}}};
+                if (!faces.emplace(cut_key<dim>(cell->face(f)), face).second)
+                  throw std::invalid_argument(cuts[k].text +
+                                              " overlaps a cut before it");
                 has_faces[k] = 1;
               }
           }
@@ -133,7 +136,7 @@ namespace Debond
     // in common.
     for (const auto &[v, cells] : cells_at)
       {
-        std::map<unsigned int, unsigned int>              body; // of a cell
+        std::map<unsigned int, unsigned int>             body; // of a cell
         std::map<CutKey<dim>, std::vector<unsigned int>> sharers;
         for (const unsigned int cell : cells)
           {
@@ -193,7 +196,7 @@ namespace Debond
         names.interfaces.insert(cut.name);
       }
     const auto add_face = [&](const unsigned int               cell,
-                              const CutKey<dim>              &key,
+                              const CutKey<dim>               &key,
                               const dealii::types::boundary_id id) {
       auto &all = [&]() -> auto &
       {
@@ -208,7 +211,9 @@ namespace Debond
       for (unsigned int v = 0, k = 0; v <= dim; ++v)
         if (std::count(key.begin(), key.end(), whole[cell].vertices[v]) > 0)
           all.back().vertices[k++] = result.cells[cell].vertices[v];
-      return all.back().vertices;
+      std::vector<unsigned int> vertices = all.back().vertices;
+      std::sort(vertices.begin(), vertices.end());
+      return vertices;
     };
     for (const auto &cell : mesh.active_cell_iterators())
       for (const auto &face : cell->face_iterators())
@@ -225,7 +230,7 @@ namespace Debond
             words(cuts[face.cut].text,
                   " has a single face at ",
                   point_text(mesh.get_vertices()[key[0]]),
-                  ", which does not open"));
+                  " between two points inside, which does not open"));
       }
     mesh.clear();
     mesh.create_triangulation(result.vertices, result.cells, result.faces);

@@ -85,7 +85,9 @@ namespace Debond
         entry = "Parts/" + part->part;
       if (const auto *support = dynamic_cast<const SupportError *>(&error))
         if (entry = entry_of(*support); given.locations.count(entry) == 0)
-          entry = "Boundary conditions/Clamped boundaries";
+          entry = given.supports.rollers.count(support->name) > 0 ?
+                       "Boundary conditions/Roller boundaries" :
+                       "Boundary conditions/Clamped boundaries";
       if (const auto *probe = dynamic_cast<const ProbeError *>(&error))
         entry = "Probes/" + probe->probe;
       if (const auto *bonds = dynamic_cast<const BondFieldError *>(&error))

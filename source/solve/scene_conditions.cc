@@ -106,9 +106,9 @@ namespace Debond
                            sides.end()))
           throw PieceError("Boundary conditions/Contact boundary",
                            "the bodies on both sides of " + name +
-                             " could go through each other: all of " + name +
-                             " has to be a contact boundary; Bond stiffness " +
-                             name + " = 0 leaves its bonds out");
+                             " could go through each other: it has to have " +
+                             name + ", which is both sides; Bond stiffness " +
+                             name + " = 0 leaves the bonds out");
         insert(boundaries.at(name + "_high"), conditions.high_sides);
         insert(boundaries.at(name + "_low"), conditions.low_sides);
       }

@@ -259,6 +259,76 @@ def check_supports():
     check("nothing holds it along x", "translation in x of the body at" in errors, errors)
 
 
+SMALL = ["Mesh/Lengths=5, 2", "Mesh/Cells=5, 2", "Mesh/Cuts=y = 1", "Material/Young modulus=1000",
+         "Material/Poisson ratio=0.3", "Boundary conditions/Contact boundary=cut_1",
+         "Boundary conditions/Clamped boundaries=", "Parts/lr=right: y < 1", "Parts/ur=right: y > 1",
+         "Parts/ul=left: y > 1", *bonds(10, 0.05)]
+CLAMPED = "Boundary conditions/Clamped boundaries="
+MOVED = "Boundary conditions/Displacement "
+
+
+def small(*settings):
+    names = {entry.split("=")[0] for entry in settings}
+    return solve(*(e for e in SMALL if e.split("=")[0] not in names), *settings)
+
+
+def check_edges():
+    """What random joints, enumerated by another program, have shown to be hard."""
+    scenes.section("Edges")
+    for settings, words in (
+            ([CLAMPED + "ur", MOVED + "lr=0; 0.06"], "push the bodies into each other at (5, 1)"),
+            ([CLAMPED + "ur", MOVED + "lr=0.03; 0"], "by Tangential displacement = fixed"),
+            ([MOVED + "lr=0.03; 0", "Boundary conditions/Roller boundaries=ur"],
+             "by Tangential displacement = fixed"),
+            # A body with a crack has no support in it.
+            (["Mesh/Cuts=y = 1 && x < 3"], "translation in x, translation in y, rotation"),
+            (["Mesh/Cuts=y = 1 && x < 3", "Boundary conditions/Roller boundaries=left"],
+             "translation in y"),
+            (["Mesh/Cuts=y = 1 && x < 3", MOVED + "lr=free; 0"], "translation in x"),
+            (["Mesh/Cuts=y = 1 && x > 1 && x < 2", CLAMPED + "right"], "which does not open"),
+            (["Mesh/Cuts=y = 1, y = 1"], "overlaps a cut before it")):
+        errors = small(*settings)["errors"]
+        check(words, words in errors and "Mesh/Source" not in errors, errors)
+
+    # The bond at the end of the interface, which both supports stretch, is in J and in the
+    # reactions, whichever way the supports are said.
+    for settings in ([CLAMPED + "ur", MOVED + "lr=0; -0.03"], [MOVED + "ur=0; 0",
+                     MOVED + "lr=0; -0.03"], [CLAMPED + "lr", MOVED + "ur=0; 0.03"]):
+        result = small(*settings)
+        close("both ends held: J", result["functional"], 9.3766e-03, 1e-5)
+        # Of a parabola in what is prescribed.
+        for name, sign in (("ur", 1), ("lr", -1)):
+            close("reaction of " + name, result["reactions"][name][1],
+                  sign * 2 * result["functional"] / 0.03, 1e-10)
+
+    # Nothing is left of the forces.
+    for settings in ([CLAMPED + "ur", MOVED + "lr=0.03; 0"],
+                     [CLAMPED + "lr", "Boundary conditions/Roller boundaries=ul",
+                      MOVED + "ur=free; 0.1", "Load path/Factors=0:0.1:2"]):
+        result = small(FREE, *settings)
+        check("without forces", result["status"] == "success", result["errors"])
+
+    # Neither jump nor bond at the end of a cut.
+    for gap, sign in ((0.01, -1), (-0.01, 1)):
+        result = small("Mesh/Cuts=y = 1 && x < 3", CLAMPED + "bottom, top",
+                       f"Contact law/Initial gap={gap}")
+        check(f"gap {gap}", result["status"] == "success", result["errors"])
+        close(f"gap {gap}, supports", result["clamped_reaction"][1], 0, 1e-9, 0.1)
+        check(f"gap {gap}, sign", sign * result["reactions"]["bottom"][1] > 0.1)
+
+    # Off, about the end that its support holds, and with bonds that soften.
+    off = small(CLAMPED + "bottom", MOVED + "ur=free; 0", "Loads/Traction top=0; 1")
+    check("turns off", off["status"] == "comes off", off["status"])
+    soft = solve("Mesh/Lengths=2, 3", "Mesh/Cells=4, 3", "Mesh/Cuts=x = 1.5",
+                 "Material/Poisson ratio=0.231", "Boundary conditions/Contact boundary=cut_1",
+                 CLAMPED + "held", "Parts/held=top: x > 1.5", "Parts/low=left: y < 1",
+                 "Parts/middle=left: y > 1 && y < 2", "Loads/Traction low=0; -0.534",
+                 "Loads/Traction middle=-4.576; 0.661", "Contact law/Law=bilinear",
+                 "Contact law/Bond stiffness=32.17", "Contact law/Bond strength=2.195",
+                 "Contact law/Fracture energy=0.31988")
+    check("softening bonds let go", soft["status"] == "comes off", soft["status"])
+
+
 RINGS = """h = 0.2;
 Point(1) = {1,0,0,h}; Point(2) = {2,0,0,h}; Point(3) = {3,0,0,h};
 Point(4) = {0,1,0,h}; Point(5) = {0,2,0,h}; Point(6) = {0,3,0,h}; Point(7) = {0,0,0,h};
@@ -328,5 +398,5 @@ def check_errors():
 
 scenes.together(*((check_.__name__, check_) for check_ in (
     check_different_strips, check_twice_the_half, check_softening, check_limits, check_arms,
-    check_supports, check_rings, check_errors)))
+    check_supports, check_edges, check_rings, check_errors)))
 scenes.end()

@@ -270,7 +270,8 @@ namespace Debond
                    curvature > 0. ? -slope / curvature : std::max(1., t));
         const double part = phi.first_change(s, ds, step);
         // What nothing holds would fall for ever: the next majorant says so.
-        if (N.cols() > 0 && curvature <= 0. && part >= step && step < limit - t)
+        if (N.cols() > 0 && curvature <= loose_stiffness * ds.squaredNorm() &&
+            part >= step && step < limit - t)
           return;
         // Beyond a kink, as on it the piece before it holds: by rounding, and
         // further for those that hardly move.
