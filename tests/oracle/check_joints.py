@@ -155,6 +155,12 @@ def check_softening():
                        "Solver/Prove=true")
         close(f"least at {b}", result["functional"], least, 1e-9)
         check(f"{b} is proved", result["proof"]["status"] == "proved")
+    arc = solve(*strips, *ends("free; 0.5", "free; -0.5"), "Load path/Arc=true",
+                "Load path/Displacement factors=0:0.1:2")
+    check("27 segments of the arc are unstable", "75 states, 27 unstable" in arc["log"])
+    for row, corner in zip(arc["arc"][1:], (.01205812654710, .03950052612617, .03998748699107,
+                                            .04033382741685, .04297578240915, .05228980594408)):
+        close(f"corner at {corner}", row["displacement_factor"], corner, 1e-8)
 
 
 def check_limits():
