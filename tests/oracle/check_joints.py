@@ -157,7 +157,9 @@ def check_softening():
         check(f"{b} is proved", result["proof"]["status"] == "proved")
     arc = solve(*strips, *ends("free; 0.5", "free; -0.5"), "Load path/Arc=true",
                 "Load path/Displacement factors=0:0.1:2")
-    check("27 segments of the arc are unstable", "75 states, 27 unstable" in arc["log"])
+    found = arc["load_path"]["arc"]
+    check("74 corners, 27 segments are unstable", (found["states"], found["unstable"]) == (75, 27))
+    close("the longest way back", found["back_from"] - found["back_to"], .4227714142, 1e-8)
     for row, corner in zip(arc["arc"][1:], (.01205812654710, .03950052612617, .03998748699107,
                                             .04033382741685, .04297578240915, .05228980594408)):
         close(f"corner at {corner}", row["displacement_factor"], corner, 1e-8)
