@@ -380,8 +380,6 @@ namespace Debond
     void
     check_accuracy(const Parameters &p, ParameterTable &table)
     {
-      if (p.accuracy.is_adaptive() && !table.get("Mesh/Cuts").empty())
-        table.reject("Mesh/Cuts", "several bodies are not refined so far");
       if (p.accuracy.is_adaptive() && p.solver.method == "euclidean bundle")
         table.reject("Solver/Method",
                      "meshes that are refined need automatic, energy bundle or "

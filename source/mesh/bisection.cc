@@ -100,6 +100,7 @@ namespace Debond
               }
         cells.push_back(simplex);
       }
+    find_twins();
 
     if (is_compatible_as_it_is())
       return;
@@ -110,6 +111,33 @@ namespace Debond
         "the mesh cannot be refined locally: its tetrahedra are not those of "
         "crossed hexahedra, and its vertices cannot have four colours such that "
         "no two of a tetrahedron are alike");
+  }
+
+
+
+  template <int dim>
+  void
+  Bisection<dim>::find_twins()
+  {
+    std::vector<unsigned int> order(points.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto is_less = [this](const unsigned int a, const unsigned int b) {
+      return std::lexicographical_compare(points[a].begin_raw(),
+                                          points[a].end_raw(),
+                                          points[b].begin_raw(),
+                                          points[b].end_raw());
+    };
+    std::stable_sort(order.begin(), order.end(), is_less);
+    twins.resize(points.size());
+    bool has_twins = false;
+    for (unsigned int k = 0; k < order.size(); ++k)
+      {
+        const bool is_twin = k > 0 && !is_less(order[k - 1], order[k]);
+        twins[order[k]]    = is_twin ? twins[order[k - 1]] : order[k];
+        has_twins          = has_twins || is_twin;
+      }
+    if (!has_twins)
+      twins.clear();
   }
 
 
@@ -127,6 +155,7 @@ namespace Debond
           for (unsigned int i = 0, w = 0; w <= dim; ++w)
             if (w != v)
               face[i++] = cells[c].vertices[w];
+          face = joined(face);
           std::sort(face.begin(), face.end());
           const auto [entry, is_first] =
             open.emplace(face, std::array<unsigned int, 2>{{c, v}});
@@ -148,8 +177,8 @@ namespace Debond
   {
     for (const auto &[pair, opposite] : neighbours())
       {
-        const auto &x       = cells[pair[0]].vertices;
-        const auto &y       = cells[pair[1]].vertices;
+        const auto x        = joined(cells[pair[0]].vertices);
+        const auto y        = joined(cells[pair[1]].vertices);
         const auto [i, j]   = opposite;
         const bool has_edge = i >= 2;
         if (has_edge != (j >= 2))
@@ -207,10 +236,11 @@ namespace Debond
     constexpr unsigned int    none = dim + 1;
     std::vector<unsigned int> colours(points.size(), none);
     const auto                colour = [&](const unsigned int c) {
-      std::array<bool, dim + 2> used = {};
-      for (const unsigned int v : cells[c].vertices)
+      std::array<bool, dim + 2> used     = {};
+      const auto                vertices = joined(cells[c].vertices);
+      for (const unsigned int v : vertices)
         used[colours[v]] = true;
-      for (const unsigned int v : cells[c].vertices)
+      for (const unsigned int v : vertices)
         if (colours[v] == none)
           {
             const auto free = std::find(used.begin(), used.end() - 1, false);
@@ -248,7 +278,7 @@ namespace Debond
         const Simplex before = cell;
         for (unsigned int v = 0; v <= dim; ++v)
           {
-            const unsigned int place = colours[before.vertices[v]];
+            const unsigned int place = colours[joined(before.vertices)[v]];
             cell.vertices[place]     = before.vertices[v];
             cell.boundaries[place]   = before.boundaries[v];
           }
@@ -267,6 +297,7 @@ namespace Debond
 
     // The middle of an edge is a vertex only until all its cells are cut.
     EdgeMiddles               middles;
+    EdgeMiddles               joined_middles; // of edges with joined() ends
     std::vector<unsigned int> left = times;
     whole_cells.resize(cells.size());
     std::iota(whole_cells.begin(), whole_cells.end(), 0u);
@@ -282,7 +313,9 @@ namespace Debond
         for (unsigned int c = 0; c < cells.size(); ++c)
           {
             const Simplex &cell = cells[c];
-            if (left[c] == 0 && !has_middle(cell.vertices, middles))
+            if (left[c] == 0 &&
+                !has_middle(joined(cell.vertices),
+                            twins.empty() ? middles : joined_middles))
               {
                 next.push_back(cell);
                 next_left.push_back(0);
@@ -296,7 +329,14 @@ namespace Debond
               middles.emplace(key(a, b),
                               static_cast<unsigned int>(points.size()));
             if (is_new)
-              points.push_back(points[a] + 0.5 * (points[b] - points[a]));
+              {
+                points.push_back(points[a] + 0.5 * (points[b] - points[a]));
+                if (!twins.empty())
+                  twins.push_back(
+                    joined_middles
+                      .emplace(key(twins[a], twins[b]), middle->second)
+                      .first->second);
+              }
             for (const Simplex &half : halves(cell, middle->second))
               {
                 next.push_back(half);

@@ -267,6 +267,30 @@ def check_supports():
     check("nothing holds it along x", "translation in x of the body at" in errors, errors)
 
 
+def check_refined():
+    """Both sides are bisected alike, where only one of them needs it, too."""
+    scenes.section("Refined")
+    strips = [*JOINT, "Material/Young modulus=100", "Material/Young modulus upper=10000", FREE,
+              *bonds(50, 0.0282842712474619), *ends("free; 0.5", "free; -0.5")]
+    fine = solve(*(e for e in strips if "Cells" not in e), "Mesh/Cells=320, 32", "Mesh/Degree=2",
+                 "Contact law/Quadrature=gauss 3", "Solver/Search=none")["functional"]
+    for target, more in ((0.02, [NODAL]), (0.02, [NODAL, "Mesh/Cuts=y = 2 && x < 30"]),
+                         (0.001, ["Mesh/Degree=2", "Contact law/Quadrature=gauss 3"])):
+        names = {e.split("=")[0] for e in more}
+        result = solve(*(e for e in strips if e.split("=")[0] not in names), *more,
+                       f"Accuracy/Target={target}")
+        check(f"{target}: success", result["status"] == "success", result["errors"])
+        check(f"{target}: refined", result["degrees_of_freedom"] > 1000)
+        check(f"{target}: balance", result["force_imbalance"] < 1e-9)
+        close(f"{target}, {more}: J", result["functional"], fine, 1.5 * target)
+    solid = solve("Dimension=3", "Mesh/Lengths=4, 2, 1", "Mesh/Cells=4, 2, 1", "Mesh/Cuts=y = 1",
+                  "Parts/tl=left: y > 1", "Parts/bl=left: y < 1", *JOINT[6:],
+                  *ends("free; 0.01; free", "free; -0.01; free"), *bonds(50, 0.01),
+                  "Accuracy/Maximum unknowns=2000")
+    check("3D: success", solid["status"] == "success" and solid["degrees_of_freedom"] > 800,
+          solid["errors"])
+
+
 SMALL = ["Mesh/Lengths=5, 2", "Mesh/Cells=5, 2", "Mesh/Cuts=y = 1", "Material/Young modulus=1000",
          "Material/Poisson ratio=0.3", "Boundary conditions/Contact boundary=cut_1",
          "Boundary conditions/Clamped boundaries=", "Parts/lr=right: y < 1", "Parts/ur=right: y > 1",
@@ -395,7 +419,6 @@ def check_errors():
             (["Boundary conditions/Contact boundary=bottom"], "could go through each other"),
             (["Boundary conditions/Contact boundary=cut_1_low"], "could go through each other"),
             (["Certificate/Kind=global"], "needs one body"),
-            (["Accuracy/Target=0.01"], "several bodies are not refined so far"),
             (["Boundary conditions/Displacement tl=0; free",
               "Boundary conditions/Displacement bl=free; 0", "Parts/tl=left: y > 2",
               "Parts/bl=left: y < 2"], "hold one of them as far as the other one there")):
@@ -406,5 +429,5 @@ def check_errors():
 
 scenes.together(*((check_.__name__, check_) for check_ in (
     check_different_strips, check_twice_the_half, check_softening, check_limits, check_arms,
-    check_supports, check_edges, check_rings, check_errors)))
+    check_supports, check_refined, check_edges, check_rings, check_errors)))
 scenes.end()

@@ -46,6 +46,8 @@ SCENES = [
     ("path of a joint that ends inside", "benchmark-40x4",
      MM + JOINT + SOFT + ["Mesh/Cuts=y = 0.02 && x < 0.3", "Load path/Factors=0.5, 1, 0.5",
                           "Load path/Bonds heal=false"]),
+    ("joint, refined", "benchmark-40x4",
+     MM + JOINT + ["Mesh/Cells=10, 4", "Accuracy/Maximum unknowns=2000"]),
     ("orthotropic", "benchmark-40x4", MM + PLIES),
     ("orthotropic bar by levels", "benchmark-40x4", MG + BAR + PLIES),
     ("proof", "benchmark-40x4", MM + ["Solver/Prove=true", "Solver/Search=full"]),

@@ -25,6 +25,9 @@ namespace Debond
    * each simplex of the first mesh there are only finitely many similarity
    * classes.
    *
+   * Vertices at one place, as the two sides of a Cut have them, count as one in
+   * all of this, so that both sides stay alike.
+   *
    * The first mesh needs orders and tags that fit together. These are
    *  - the order in which crossed_subdivision() lists the vertices, with the
    *    tag 1, if neighbours satisfy the condition of Stevenson (Math. Comp. 77,
@@ -81,6 +84,20 @@ namespace Debond
       dealii::types::material_id                      material;
     };
 
+    /// With one number for vertices at one place.
+    template <std::size_t n>
+    std::array<unsigned int, n>
+    joined(std::array<unsigned int, n> numbers) const
+    {
+      if (!twins.empty())
+        for (unsigned int &v : numbers)
+          v = twins[v];
+      return numbers;
+    }
+
+    void
+    find_twins();
+
     /// Tries the tag 1 with the order of the vertices as it is.
     bool
     is_compatible_as_it_is() const;
@@ -104,6 +121,7 @@ namespace Debond
     neighbours() const;
 
     std::vector<dealii::Point<dim>> points;
+    std::vector<unsigned int>       twins; ///< of each point; or empty
     std::vector<Simplex>            cells;
     std::vector<unsigned int>       whole_cells; ///< see ancestors()
   };
