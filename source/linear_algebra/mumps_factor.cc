@@ -22,6 +22,10 @@ namespace Debond
   namespace
   {
     /// MUMPS' workspace. It prints nothing: errors are thrown, on all ranks.
+    /// Of its buffers over what it estimates, in percent: by more than that it
+    /// is memory that is short.
+    constexpr MUMPS_INT largest_increase = 1000;
+
     class Mumps : public DMUMPS_STRUC_C
     {
     public:
@@ -62,8 +66,16 @@ namespace Debond
         // Allocations that fail, and work and message buffers too small.
         const std::set<int> no_memory = {
           -5, -7, -8, -9, -11, -13, -14, -15, -17, -18, -19, -20, -22};
-        job = what;
+        // Work and message buffers that are too small are made larger.
+        const std::set<int> too_small = {-8, -9, -14, -15, -17, -18, -20};
+        job                           = what;
         dmumps_c(this);
+        while (what == 2 && too_small.count(infog[0]) > 0 &&
+               control(14) < largest_increase)
+          {
+            control(14) = std::max(100, 3 * control(14));
+            dmumps_c(this);
+          }
         const int  error       = infog[0];
         const bool is_definite = infog[11] == 0 && infog[24] == 0;
         if (error == -10 || (what == 2 && error >= 0 && !is_definite))
