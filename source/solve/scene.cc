@@ -82,7 +82,7 @@ namespace Debond
       if (const auto *piece = dynamic_cast<const PieceError *>(&error))
         entry = piece->entry;
       if (const auto *part = dynamic_cast<const PartError *>(&error))
-        entry = "Parts/" + part->part;
+        entry = part->part.empty() ? "Mesh/Cuts" : "Parts/" + part->part;
       if (const auto *support = dynamic_cast<const SupportError *>(&error))
         if (entry = entry_of(*support); given.locations.count(entry) == 0)
           entry = given.supports.rollers.count(support->name) > 0 ?
