@@ -15,6 +15,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
 #include <unordered_map>
 
 namespace Debond
@@ -170,7 +171,8 @@ namespace Debond
           {
             first_contact_face[boundary.faces[f].cell] = f;
             if (of.conditions.high_sides.count(boundary.faces[f].id) > 0)
-              of_interfaces.emplace(place_of(boundary.faces[f].vertices), f);
+              of_interfaces.emplace(
+                place_on_line(middle_of(boundary.faces[f].vertices)), f);
           }
         for (const auto &cell : dofs.active_cell_iterators())
           {
@@ -491,17 +493,13 @@ namespace Debond
           fall(square * measure * measure, here.bubble_energy);
       }
 
-      /// A number by which faces of an interface are sorted: that of their
-      /// middle along a line in no special direction.
-      template <typename Vertices>
-      static double
-      place_of(const Vertices &vertices)
+      static dealii::Point<dim>
+      middle_of(const std::array<dealii::Point<dim>, dim> &vertices)
       {
-        double sum = 0., weight = 1.;
-        for (unsigned int d = 0; d < dim; ++d, weight *= 0.6180339887498949)
-          for (unsigned int v = 0; v < dim; ++v)
-            sum += weight * vertices[v][d];
-        return sum;
+        dealii::Point<dim> middle;
+        for (const dealii::Point<dim> &vertex : vertices)
+          middle += vertex / static_cast<double>(dim);
+        return middle;
       }
 
       /// The contact face on the high side of an interface that a face of the
@@ -516,17 +514,17 @@ namespace Debond
         std::array<dealii::Point<dim>, dim> here;
         for (unsigned int v = 0; v < dim; ++v)
           here[v] = cell->vertex(face_vertices[f][v]);
-        const double size  = here[0].distance(here[1]);
-        const double place = place_of(here);
-        for (auto other = of_interfaces.lower_bound(place - 1e-3 * size);
-             other != of_interfaces.end();
+        const double near  = Tolerance::same_place * here[0].distance(here[1]);
+        const double place = place_on_line(middle_of(here));
+        for (auto other = of_interfaces.lower_bound(place - 2. * near);
+             other != of_interfaces.end() && other->first <= place + 2. * near;
              ++other)
           {
+            const auto  &there   = boundary.faces[other->second].vertices;
             unsigned int n_found = 0;
             for (unsigned int v = 0; v < dim; ++v)
               for (unsigned int w = 0; w < dim; ++w)
-                if (here[w].distance(
-                      boundary.faces[other->second].vertices[v]) < 1e-3 * size)
+                if (here[w].distance(there[v]) <= near)
                   {
                     vertices[v] = w;
                     ++n_found;
@@ -534,8 +532,7 @@ namespace Debond
             if (n_found == dim)
               return other->second;
           }
-        Assert(false, dealii::ExcInternalError());
-        return 0;
+        throw std::logic_error("a face of an interface has no other side");
       }
 
       /// With what bonds bear, as far as the foundation lets the body go.
@@ -608,7 +605,7 @@ namespace Debond
       std::vector<DoneCell> cells;
       std::vector<Stress>   stresses; ///< see stress_at()
 
-      /// Contact faces on interfaces by their place_of().
+      /// Contact faces on interfaces by place_on_line() of their middles.
       std::multimap<double, unsigned int> of_interfaces;
 
       /// Of each cell that has any.

@@ -576,6 +576,12 @@ namespace Debond
 
     displacement = problem.unknowns().cartesian_displacement(u, factors);
     problem.unknowns().edges().to_coefficients(displacement);
+    // Of glued nodes that of the body on the high side.
+    for (const auto &pair : problem.unknowns().pairs().all())
+      if (pair.sign < 0.)
+        for (unsigned int d = 0; d < dim; ++d)
+          displacement(dim * pair.first + d) =
+            displacement(dim * pair.second + d);
     result.displacements =
       at_contact_nodes<dim>(displacement, contact.normals());
     return result;

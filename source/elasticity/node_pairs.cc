@@ -16,13 +16,6 @@ namespace Debond
   {
     if (high.empty())
       return;
-    // Along a line in no special direction places differ as nodes do.
-    const auto place = [](const dealii::Point<dim> &point) {
-      double sum = 0., weight = 1.;
-      for (unsigned int d = 0; d < dim; ++d, weight *= 0.6180339887498949)
-        sum += weight * point[d];
-      return sum;
-    };
     std::multimap<double, std::pair<unsigned int, dealii::Point<dim>>> of_low;
     std::vector<char> is_known(n_nodes, 0);
     for (const BoundaryFace<dim> &face : low)
@@ -30,7 +23,7 @@ namespace Debond
         if (is_known[face.indices[n]] == 0)
           {
             is_known[face.indices[n]] = 1;
-            of_low.emplace(place(face.positions[n]),
+            of_low.emplace(place_on_line(face.positions[n]),
                            std::pair(face.indices[n], face.positions[n]));
           }
     number_of_node.assign(n_nodes, dealii::numbers::invalid_unsigned_int);
@@ -44,11 +37,11 @@ namespace Debond
               number_of_node[node] != dealii::numbers::invalid_unsigned_int)
             continue;
           const dealii::Point<dim> &point = face.positions[n];
-          const double              near =
-            1e-6 * face.positions[0].distance(face.positions[1]);
-          auto other = of_low.lower_bound(place(point) - 2. * near);
-          while (other != of_low.end() &&
-                 other->first <= place(point) + 2. * near &&
+          const double              near  = Tolerance::same_place *
+                              face.positions[0].distance(face.positions[1]);
+          const double place = place_on_line(point);
+          auto         other = of_low.lower_bound(place - 2. * near);
+          while (other != of_low.end() && other->first <= place + 2. * near &&
                  point.distance(other->second.second) > near)
             ++other;
           if (other == of_low.end() ||

@@ -82,6 +82,9 @@ namespace Debond
 
     // ------------------------------------------------------------------ laws
 
+    /// Nodes on both sides of an interface, to the length of an edge.
+    constexpr double same_place = 1e-6;
+
     /// Energies of bonds that are not negative, to the largest one.
     constexpr double negative_energy = 1e-12;
 

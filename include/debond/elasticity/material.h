@@ -83,6 +83,10 @@ namespace Debond
     double
     plane_modulus() const
     {
+      if (!orthotropy)
+        return dim == 2 && hypothesis == Hypothesis::plane_stress ?
+                 young_modulus :
+                 young_modulus / (1. - poisson_ratio * poisson_ratio);
       const double mu     = shear_modulus();
       const double lambda = lame_lambda<dim>();
       return 4. * mu * (lambda + mu) / (lambda + 2. * mu);

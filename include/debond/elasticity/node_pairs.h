@@ -12,6 +12,21 @@
 
 namespace Debond
 {
+  /// A number by which points are sorted to be found again: where they are
+  /// along a line in no special direction. Points that are d apart have numbers
+  /// less than 2 d apart.
+  template <int dim>
+  double
+  place_on_line(const dealii::Point<dim> &point)
+  {
+    double sum = 0., weight = 1.;
+    for (unsigned int d = 0; d < dim; ++d, weight *= 0.6180339887498949)
+      sum += weight * point[d];
+    return sum;
+  }
+
+
+
   /**
    * Nodes of two bodies at one place, where these are glued to each other. The
    * unknowns of the first one are the jump [u] = u_high - u_low of the two

@@ -10,8 +10,7 @@
 
 namespace Debond
 {
-  /// f(s) = c/2 s^2 + some pieces of a PiecewiseEnergy that follow each other,
-  /// c
+  /// f(s) = c/2 s^2 + pieces of a PiecewiseEnergy that follow each other, c
   /// >= 0.
   struct BranchEnergy
   {
