@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/tolerances.h>
 #include <debond/certify/certificate.h>
+#include <debond/certify/exact_energy.h>
+#include <debond/certify/positive_part.h>
 #include <debond/certify/side_moments.h>
-#include <debond/contact/exact_energy.h>
 #include <debond/elasticity/temperature_load.h>
-#include <debond/mesh/positive_part.h>
 #include <debond/optimization/global/convex_envelope.h>
 #include <debond/optimization/majorise/bound_qp.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
-#include <debond/base/field_value.h>
 #include <debond/base/tolerances.h>
 #include <debond/certify/equilibrium_mesh.h>
 #include <debond/certify/side_moments.h>
 #include <debond/elasticity/contact_frame.h>
+#include <debond/mesh/field_value.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,11 +2,11 @@
 #include <deal.II/base/auto_derivative_function.h>
 #include <deal.II/base/quadrature_lib.h>
 
-#include <debond/base/field_value.h>
-#include <debond/base/owned_cells.h>
 #include <debond/base/ranks.h>
 #include <debond/base/text.h>
 #include <debond/check/displacement_error.h>
+#include <debond/mesh/field_value.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <cmath>
 #include <stdexcept>

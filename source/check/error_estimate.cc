@@ -3,11 +3,11 @@
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/fe_values.h>
 
-#include <debond/base/field_value.h>
-#include <debond/base/owned_cells.h>
 #include <debond/base/ranks.h>
 #include <debond/base/tolerances.h>
 #include <debond/check/error_estimate.h>
+#include <debond/mesh/field_value.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/owned_cells.h>
 #include <debond/base/text.h>
 #include <debond/check/plausibility.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <algorithm>
 #include <array>

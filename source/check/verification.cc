@@ -305,7 +305,7 @@ namespace Debond
                       const DofVector           &residual)
     {
       std::vector<bool> supported(problem.unknowns().n_dofs(), false);
-      for (const auto normal : problem.unknowns().contact().normals())
+      for (const auto normal : problem.unknowns().contact().normal_dofs())
         supported[normal] = true;
 
       LargestResiduals result;
@@ -353,7 +353,7 @@ namespace Debond
                           const std::vector<double> &held_forces,
                           Verification<dim>         &result)
     {
-      const auto       &normals = problem.unknowns().contact().normals();
+      const auto       &normals = problem.unknowns().contact().normal_dofs();
       std::vector<bool> is_normal(problem.unknowns().n_dofs(), false);
       for (const auto normal : normals)
         is_normal[normal] = true;
@@ -583,7 +583,7 @@ namespace Debond
           displacement(dim * pair.first + d) =
             displacement(dim * pair.second + d);
     result.displacements =
-      at_contact_nodes<dim>(displacement, contact.normals());
+      at_contact_nodes<dim>(displacement, contact.normal_dofs());
     return result;
   }
 

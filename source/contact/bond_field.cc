@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/field_value.h>
 #include <debond/base/tolerances.h>
 #include <debond/contact/bond_field.h>
+#include <debond/mesh/field_value.h>
 
 namespace Debond
 {

@@ -5,9 +5,9 @@
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_fe.h>
 
-#include <debond/base/owned_cells.h>
 #include <debond/base/ranks.h>
 #include <debond/elasticity/boundary_face.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <boost/serialization/array.hpp>
 

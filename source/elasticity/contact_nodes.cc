@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/field_value.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/contact_frame.h>
 #include <debond/elasticity/contact_nodes.h>
+#include <debond/mesh/field_value.h>
 
 #include <algorithm>
 #include <array>

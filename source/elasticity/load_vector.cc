@@ -4,12 +4,12 @@
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_fe.h>
 
-#include <debond/base/field_value.h>
-#include <debond/base/owned_cells.h>
 #include <debond/base/text.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/load_vector.h>
 #include <debond/elasticity/simplex_values.h>
+#include <debond/mesh/field_value.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <algorithm>
 #include <array>

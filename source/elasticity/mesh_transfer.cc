@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/owned_cells.h>
 #include <debond/elasticity/mesh_transfer.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <vector>
 

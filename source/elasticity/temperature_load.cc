@@ -2,10 +2,10 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_simplex_p.h>
 
-#include <debond/base/field_value.h>
-#include <debond/base/owned_cells.h>
 #include <debond/elasticity/fields.h>
 #include <debond/elasticity/temperature_load.h>
+#include <debond/mesh/field_value.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <numeric>
 

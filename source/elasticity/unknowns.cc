@@ -2,14 +2,14 @@
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/fe/fe_simplex_p.h>
 
-#include <debond/base/field_value.h>
-#include <debond/base/owned_cells.h>
 #include <debond/base/ranks.h>
 #include <debond/base/text.h>
 #include <debond/elasticity/boundary_face.h>
 #include <debond/elasticity/contact_nodes.h>
 #include <debond/elasticity/rigid_motions.h>
 #include <debond/elasticity/unknowns.h>
+#include <debond/mesh/field_value.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -119,13 +119,13 @@ namespace Debond
     free_motions = free_rigid_motions(held, diameter, places);
     if (!free_motions.motions.empty())
       {
-        for (unsigned int i = 0; i < contact_space.normals().size(); ++i)
+        for (unsigned int i = 0; i < contact_space.normal_dofs().size(); ++i)
           {
             const auto &node = contact_space.boundary().nodes[i];
-            held.push_back(
-              {node.position,
-               node.normal,
-               static_cast<unsigned int>(contact_space.normals()[i] / dim)});
+            held.push_back({node.position,
+                            node.normal,
+                            static_cast<unsigned int>(
+                              contact_space.normal_dofs()[i] / dim)});
             in_body(held.back());
           }
         const std::vector<std::string> motions =

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/field_value.h>
 #include <debond/base/text.h>
 #include <debond/mesh/crossed_mesh.h>
 #include <debond/mesh/cuts.h>
+#include <debond/mesh/field_value.h>
 
 #include <algorithm>
 #include <array>

@@ -2,10 +2,10 @@
 #include <deal.II/base/mpi.h>
 
 #include <debond/base/atomic_file.h>
-#include <debond/base/bernstein.h>
-#include <debond/base/owned_cells.h>
 #include <debond/base/processes.h>
 #include <debond/base/ranks.h>
+#include <debond/mesh/bernstein.h>
+#include <debond/mesh/owned_cells.h>
 #include <debond/output/vtu.h>
 #include <debond/output/vtu_grid.h>
 

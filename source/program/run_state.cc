@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/atomic_file.h>
-#include <debond/base/owned_cells.h>
 #include <debond/input/bad_input.h>
+#include <debond/mesh/owned_cells.h>
 #include <debond/program/run_state.h>
 
 #include <boost/archive/binary_iarchive.hpp>

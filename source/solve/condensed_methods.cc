@@ -5,13 +5,13 @@
 #include <debond/base/run_watch.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/elasticity/contact_condensation.h>
-#include <debond/elasticity/refinement.h>
 #include <debond/optimization/bundle/metric_direction.h>
 #include <debond/optimization/majorise/coarse_start.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/solve/condensed_methods.h>
 #include <debond/solve/multigrid_method.h>
 #include <debond/solve/refine_result.h>
+#include <debond/solve/refinement.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/elasticity/refinement.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/solve/global_branch.h>
+#include <debond/solve/refinement.h>
 
 namespace Debond
 {

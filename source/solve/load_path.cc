@@ -5,13 +5,13 @@
 #include <debond/base/run_watch.h>
 #include <debond/base/text.h>
 #include <debond/elasticity/contact_condensation.h>
-#include <debond/elasticity/refinement.h>
 #include <debond/solve/bond_change.h>
 #include <debond/solve/condensed_methods.h>
 #include <debond/solve/global_branch.h>
 #include <debond/solve/load_path.h>
 #include <debond/solve/load_path_arc.h>
 #include <debond/solve/multigrid_method.h>
+#include <debond/solve/refinement.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/memory.h>
-#include <debond/base/owned_cells.h>
 #include <debond/input/bad_input.h>
 #include <debond/linear_algebra/cholmod_factor.h>
+#include <debond/mesh/owned_cells.h>
 #include <debond/solve/method_choice.h>
 
 #include <algorithm>
@@ -302,7 +302,7 @@ namespace Debond
           factorisation_cost({scene.problem().matrix(),
                               unknowns.dof_handler().locally_owned_dofs(),
                               scene.ranks()},
-                             unknowns.contact().normals(),
+                             unknowns.contact().normal_dofs(),
                              dim);
         // The factor, A in it while it is made, S and what is made of it.
         direct_bytes = 8. * cost.entries + 300. * n + 4. * 8. * n_c * n_c;

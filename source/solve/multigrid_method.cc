@@ -3,12 +3,12 @@
 
 #include <debond/base/processes.h>
 #include <debond/elasticity/contact_condensation.h>
-#include <debond/elasticity/displacement_problem.h>
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/elasticity/prolongations.h>
 #include <debond/linear_algebra/aggregation.h>
 #include <debond/linear_algebra/multigrid_factor.h>
 #include <debond/solve/condensed_methods.h>
+#include <debond/solve/displacement_problem.h>
 #include <debond/solve/multigrid_method.h>
 #include <debond/solve/refine_result.h>
 
@@ -239,7 +239,7 @@ namespace Debond
     const Stage                 stage("condensation by multigrid");
     const ElasticProblem<dim>  &problem  = scene.problem();
     const ElasticUnknowns<dim> &unknowns = problem.unknowns();
-    const auto                 &normals  = unknowns.contact().normals();
+    const auto                 &normals  = unknowns.contact().normal_dofs();
     return Condensation(
       make_multigrid_factor(problem.distributed_matrix(),
                             eliminate_all_but(

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/base/owned_cells.h>
 #include <debond/base/ranks.h>
 #include <debond/base/run_watch.h>
 #include <debond/base/text.h>
@@ -10,6 +9,7 @@
 #include <debond/input/bad_input.h>
 #include <debond/input/probe_parameters.h>
 #include <debond/mesh/distributed_mesh.h>
+#include <debond/mesh/owned_cells.h>
 #include <debond/solve/displacement.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/scene_conditions.h>

@@ -2,10 +2,10 @@
 #include <debond/base/interrupt.h>
 #include <debond/base/text.h>
 #include <debond/elasticity/contact_condensation.h>
-#include <debond/elasticity/refinement.h>
 #include <debond/input/bad_input.h>
 #include <debond/solve/condensed_methods.h>
 #include <debond/solve/multigrid_method.h>
+#include <debond/solve/refinement.h>
 #include <debond/solve/solve.h>
 #include <debond/solve/watch.h>
 

@@ -319,7 +319,7 @@ namespace
     ElasticProblem<2> problem(mesh, conditions, supports);
     problem.assemble(material, Loads<2>());
     const auto        &contact = problem.unknowns().contact();
-    const auto        &normals = contact.normals();
+    const auto        &normals = contact.normal_dofs();
     const auto        &nodes   = contact.boundary().nodes;
     const Condensation condensed(
       problem.matrix(),

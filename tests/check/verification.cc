@@ -61,7 +61,7 @@ namespace
       dealii::FullMatrix<double> matrix;
       matrix.copy_from(problem->matrix());
       DofVector rhs = problem->load();
-      for (const auto dof : problem->unknowns().contact().normals())
+      for (const auto dof : problem->unknowns().contact().normal_dofs())
         {
           for (unsigned int j = 0; j < matrix.n(); ++j)
             matrix(dof, j) = 0.;
@@ -291,7 +291,7 @@ namespace
           body.check_law(u, "winkler", a, M).equilibrium_residual,
           1e-13);
 
-    const auto       &normals = unknowns.contact().normals();
+    const auto       &normals = unknowns.contact().normal_dofs();
     std::vector<bool> is_free(unknowns.n_dofs());
     for (unsigned int i = 0; i < is_free.size(); ++i)
       is_free[i] =

@@ -7,10 +7,10 @@
 
 #include <deal.II/base/numbers.h>
 
+#include <debond/certify/exact_energy.h>
 #include <debond/check/broken_zone.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/contact/boundary_graph.h>
-#include <debond/contact/exact_energy.h>
 #include <debond/contact/laws/winkler.h>
 
 #include <cmath>

@@ -10,8 +10,8 @@
 #include <deal.II/numerics/vector_tools_interpolate.h>
 
 #include <debond/check/displacement_error.h>
-#include <debond/elasticity/extended_operator.h>
 #include <debond/mesh/crossed_mesh.h>
+#include <debond/solve/extended_operator.h>
 
 #include <cmath>
 #include <functional>

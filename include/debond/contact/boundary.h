@@ -6,7 +6,7 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/base/types.h>
 
-#include <debond/base/bernstein.h>
+#include <debond/mesh/bernstein.h>
 
 #include <array>
 #include <vector>

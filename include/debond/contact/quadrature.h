@@ -2,7 +2,7 @@
 #ifndef debond_contact_quadrature_h
 #define debond_contact_quadrature_h
 
-#include <debond/base/bernstein.h>
+#include <debond/mesh/bernstein.h>
 
 #include <array>
 #include <string>

@@ -6,8 +6,8 @@
 #include <deal.II/base/tensor.h>
 #include <deal.II/dofs/dof_handler.h>
 
-#include <debond/base/bernstein.h>
 #include <debond/elasticity/boundary_conditions.h>
+#include <debond/mesh/bernstein.h>
 
 #include <array>
 #include <set>

@@ -37,7 +37,7 @@ namespace Debond
                       const AdhesionIntegral<dim> &adhesion)
   {
     const Stage stage("factorisation");
-    const auto &normals = problem.unknowns().contact().normals();
+    const auto &normals = problem.unknowns().contact().normal_dofs();
     return Condensation(
       {problem.matrix(),
        problem.unknowns().dof_handler().locally_owned_dofs(),
@@ -74,7 +74,7 @@ namespace Debond
   free_motions_of_contact(const ElasticUnknowns<dim> &unknowns)
   {
     const auto     &nodes   = unknowns.contact().boundary().nodes;
-    const auto     &normals = unknowns.contact().normals();
+    const auto     &normals = unknowns.contact().normal_dofs();
     const auto     &motions = unknowns.held_by_contact().motions;
     Eigen::MatrixXd result(nodes.size(), motions.size());
     for (unsigned int k = 0; k < motions.size(); ++k)
@@ -101,7 +101,7 @@ namespace Debond
   double
   stiffness_at_contact(const ElasticProblem<dim> &problem)
   {
-    const auto     &normals  = problem.unknowns().contact().normals();
+    const auto     &normals  = problem.unknowns().contact().normal_dofs();
     const DofVector diagonal = problem.diagonal();
     double          sum      = 0.;
     for (const dealii::types::global_dof_index normal : normals)

@@ -3,9 +3,9 @@
 #define debond_elasticity_contact_nodes_h
 
 #include <debond/base/dof_vector.h>
-#include <debond/contact/contact_space.h>
 #include <debond/elasticity/boundary_conditions.h>
 #include <debond/elasticity/boundary_face.h>
+#include <debond/elasticity/contact_space.h>
 #include <debond/elasticity/node_supports.h>
 
 #include <vector>

@@ -11,8 +11,8 @@
 #include <deal.II/lac/full_matrix.h>
 
 #include <debond/base/dof_vector.h>
-#include <debond/contact/contact_space.h>
 #include <debond/elasticity/boundary_conditions.h>
+#include <debond/elasticity/contact_space.h>
 #include <debond/elasticity/edge_coefficients.h>
 #include <debond/elasticity/load_factors.h>
 #include <debond/elasticity/node_pairs.h>

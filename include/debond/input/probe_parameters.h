@@ -3,7 +3,7 @@
 #define debond_input_probe_parameters_h
 
 #include <debond/base/parameter_table.h>
-#include <debond/check/probes.h>
+#include <debond/elasticity/probes.h>
 
 #include <map>
 #include <set>

@@ -5,10 +5,10 @@
 #include <debond/base/dof_vector.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/load_factors.h>
-#include <debond/elasticity/refinement.h>
 #include <debond/input/solver_parameters.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
+#include <debond/solve/refinement.h>
 
 #include <functional>
 

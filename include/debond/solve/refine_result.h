@@ -2,7 +2,7 @@
 #ifndef debond_solve_refine_result_h
 #define debond_solve_refine_result_h
 
-#include <debond/elasticity/refinement.h>
+#include <debond/solve/refinement.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve_result.h>
 #include <debond/solve/watch.h>

@@ -3,12 +3,12 @@
 #define debond_solve_scene_h
 
 #include <debond/base/dof_vector.h>
-#include <debond/check/probes.h>
-#include <debond/contact/functional.h>
 #include <debond/elasticity/elastic_problem.h>
+#include <debond/elasticity/probes.h>
 #include <debond/input/problem_parameters.h>
 #include <debond/mesh/body.h>
 #include <debond/mesh/by_region.h>
+#include <debond/solve/functional.h>
 
 #include <memory>
 

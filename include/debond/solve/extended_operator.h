@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_elasticity_extended_operator_h
-#define debond_elasticity_extended_operator_h
+#ifndef debond_solve_extended_operator_h
+#define debond_solve_extended_operator_h
 
 #include <deal.II/base/tensor.h>
 

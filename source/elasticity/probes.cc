@@ -2,10 +2,10 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
-#include <debond/base/owned_cells.h>
 #include <debond/base/ranks.h>
 #include <debond/base/tolerances.h>
-#include <debond/check/probes.h>
+#include <debond/elasticity/probes.h>
+#include <debond/mesh/owned_cells.h>
 
 #include <algorithm>
 #include <limits>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_elasticity_displacement_problem_h
-#define debond_elasticity_displacement_problem_h
+#ifndef debond_solve_displacement_problem_h
+#define debond_solve_displacement_problem_h
 
-#include <debond/elasticity/contact_unknowns.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
+#include <debond/solve/contact_unknowns.h>
 
 #include <functional>
 

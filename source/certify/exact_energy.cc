@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
-#include <debond/contact/exact_energy.h>
+#include <debond/certify/exact_energy.h>
 
 #include <algorithm>
 #include <cmath>

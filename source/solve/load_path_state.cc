@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/owned_cells.h>
 #include <debond/base/text.h>
 #include <debond/check/broken_zone.h>
-#include <debond/check/load_path_state.h>
+#include <debond/mesh/owned_cells.h>
+#include <debond/solve/load_path_state.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/contact/contact_space.h>
+#include <debond/elasticity/contact_space.h>
 
 #include <algorithm>
 #include <numeric>
@@ -11,7 +11,7 @@ namespace Debond
     const ContactBoundary<dim>                         &boundary,
     const std::vector<dealii::types::global_dof_index> &normals)
     : nodes_and_faces(boundary)
-    , normal_dofs(normals)
+    , dofs(normals)
   {
     AssertDimension(boundary.nodes.size(), normals.size());
   }
@@ -22,7 +22,7 @@ namespace Debond
   unsigned int
   ContactSpace<dim>::size() const
   {
-    return static_cast<unsigned int>(normal_dofs.size());
+    return static_cast<unsigned int>(dofs.size());
   }
 
 
@@ -33,7 +33,7 @@ namespace Debond
   {
     Eigen::VectorXd s(size());
     for (unsigned int i = 0; i < size(); ++i)
-      s(i) = u(normal_dofs[i]);
+      s(i) = u(dofs[i]);
     return s;
   }
 
@@ -44,7 +44,7 @@ namespace Debond
   ContactSpace<dim>::add_normal(const VectorView &s, DofVector &u) const
   {
     for (unsigned int i = 0; i < size(); ++i)
-      u(normal_dofs[i]) += s(i);
+      u(dofs[i]) += s(i);
   }
 
 
@@ -53,8 +53,8 @@ namespace Debond
   bool
   ContactSpace<dim>::is_admissible(const DofVector &u) const
   {
-    return std::all_of(normal_dofs.begin(),
-                       normal_dofs.end(),
+    return std::all_of(dofs.begin(),
+                       dofs.end(),
                        [&u](const dealii::types::global_dof_index normal) {
                          return u(normal) <= 0.;
                        });

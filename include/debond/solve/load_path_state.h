@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_check_load_path_state_h
-#define debond_check_load_path_state_h
+#ifndef debond_solve_load_path_state_h
+#define debond_solve_load_path_state_h
 
 #include <debond/base/dof_vector.h>
-#include <debond/check/probes.h>
 #include <debond/check/verification.h>
+#include <debond/elasticity/probes.h>
 
 #include <string>
 #include <utility>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_contact_contact_space_h
-#define debond_contact_contact_space_h
+#ifndef debond_elasticity_contact_space_h
+#define debond_elasticity_contact_space_h
 
 #include <deal.II/base/types.h>
 
@@ -43,9 +43,9 @@ namespace Debond
 
     /// The degrees of freedom of s.
     const std::vector<dealii::types::global_dof_index> &
-    normals() const
+    normal_dofs() const
     {
-      return normal_dofs;
+      return dofs;
     }
 
     /// s = N'u.
@@ -60,8 +60,7 @@ namespace Debond
     UpperBounds
     bounds() const
     {
-      return {{normal_dofs.begin(), normal_dofs.end()},
-              std::vector<double>(size(), 0.)};
+      return {{dofs.begin(), dofs.end()}, std::vector<double>(size(), 0.)};
     }
 
     /// Whether u satisfies them.
@@ -79,7 +78,7 @@ namespace Debond
 
   private:
     ContactBoundary<dim>                         nodes_and_faces;
-    std::vector<dealii::types::global_dof_index> normal_dofs;
+    std::vector<dealii::types::global_dof_index> dofs;
   };
 } // namespace Debond
 

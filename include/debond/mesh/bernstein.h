@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_base_bernstein_h
-#define debond_base_bernstein_h
+#ifndef debond_mesh_bernstein_h
+#define debond_mesh_bernstein_h
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_base_field_value_h
-#define debond_base_field_value_h
+#ifndef debond_mesh_field_value_h
+#define debond_mesh_field_value_h
 
 #include <deal.II/base/function.h>
 #include <deal.II/base/point.h>

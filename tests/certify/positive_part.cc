@@ -2,7 +2,7 @@
 // The mean square of the positive part of an affine function beside sums over
 // many small parts of the line or the triangle, for all signs of the values.
 
-#include <debond/mesh/positive_part.h>
+#include <debond/certify/positive_part.h>
 
 #include <cmath>
 #include <iostream>

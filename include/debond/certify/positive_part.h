@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_mesh_positive_part_h
-#define debond_mesh_positive_part_h
+#ifndef debond_certify_positive_part_h
+#define debond_certify_positive_part_h
 
 #include <algorithm>
 #include <array>

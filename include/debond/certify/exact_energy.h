@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_contact_exact_energy_h
-#define debond_contact_exact_energy_h
+#ifndef debond_certify_exact_energy_h
+#define debond_certify_exact_energy_h
 
 #include <debond/contact/adhesion_integral.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/tolerances.h>
-#include <debond/elasticity/extended_operator.h>
-#include <debond/elasticity/refinement.h>
+#include <debond/solve/extended_operator.h>
+#include <debond/solve/refinement.h>
 
 #include <algorithm>
 #include <cmath>
@@ -74,7 +74,7 @@ namespace Debond
         , phi(nonsmooth)
         , solver(correction_solver)
         , may_go_on(go_on)
-        , normals(problem.unknowns().contact().normals())
+        , normals(problem.unknowns().contact().normal_dofs())
         , lifting(to_extended(problem.unknowns().lifting(factors)))
         , u(to_extended(start) + lifting)
         , f(load_at(problem, factors))

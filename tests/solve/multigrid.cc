@@ -8,12 +8,12 @@
 
 #include <debond/contact/adhesion_integral.h>
 #include <debond/contact/laws/winkler.h>
-#include <debond/elasticity/displacement_problem.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/elasticity/mesh_transfer.h>
 #include <debond/linear_algebra/aggregation.h>
 #include <debond/mesh/box.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
+#include <debond/solve/displacement_problem.h>
 
 #include <cmath>
 #include <iostream>

@@ -3,8 +3,8 @@
 #include <deal.II/lac/solver_control.h>
 
 #include <debond/base/tolerances.h>
-#include <debond/elasticity/displacement_problem.h>
 #include <debond/linear_algebra/stagnation.h>
+#include <debond/solve/displacement_problem.h>
 
 #include <boost/serialization/utility.hpp>
 
@@ -43,7 +43,7 @@ namespace Debond
     , phi(nonsmooth)
     , contact(problem)
     , contact_block(contact.block_of(problem.matrix()))
-    , rows_of_contact(A.rows_of(problem.unknowns().contact().normals()))
+    , rows_of_contact(A.rows_of(problem.unknowns().contact().normal_dofs()))
     , cycle(multigrid_cycle)
     , u(start)
     , internal(start)

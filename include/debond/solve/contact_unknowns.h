@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_elasticity_contact_unknowns_h
-#define debond_elasticity_contact_unknowns_h
+#ifndef debond_solve_contact_unknowns_h
+#define debond_solve_contact_unknowns_h
 
 #include <debond/base/views.h>
 #include <debond/elasticity/elastic_problem.h>
@@ -21,7 +21,7 @@ namespace Debond
   public:
     template <int dim>
     explicit ContactUnknowns(const ElasticProblem<dim> &problem)
-      : normals(problem.unknowns().contact().normals())
+      : normals(problem.unknowns().contact().normal_dofs())
       , own(problem.unknowns().dof_handler().locally_owned_dofs())
       , ranks(problem.unknowns().communicator())
     {}

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_contact_functional_h
-#define debond_contact_functional_h
+#ifndef debond_solve_functional_h
+#define debond_solve_functional_h
 
 #include <debond/contact/adhesion_integral.h>
-#include <debond/contact/contact_space.h>
+#include <debond/elasticity/contact_space.h>
 #include <debond/optimization/objective.h>
 
 #include <functional>

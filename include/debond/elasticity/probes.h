@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_check_probes_h
-#define debond_check_probes_h
+#ifndef debond_elasticity_probes_h
+#define debond_elasticity_probes_h
 
 #include <debond/base/dof_vector.h>
 #include <debond/elasticity/elastic_problem.h>

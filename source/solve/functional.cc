@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/vector_memory.h>
 
-#include <debond/contact/functional.h>
+#include <debond/solve/functional.h>
 
 namespace Debond
 {

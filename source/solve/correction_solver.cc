@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/tolerances.h>
-#include <debond/elasticity/correction_solver.h>
+#include <debond/solve/correction_solver.h>
 
 #include <algorithm>
 #include <limits>

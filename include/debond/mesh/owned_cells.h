@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_base_owned_cells_h
-#define debond_base_owned_cells_h
+#ifndef debond_mesh_owned_cells_h
+#define debond_mesh_owned_cells_h
 
 #include <deal.II/grid/filtered_iterator.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/elasticity/contact_unknowns.h>
+#include <debond/solve/contact_unknowns.h>
 
 #include <boost/serialization/utility.hpp>
 

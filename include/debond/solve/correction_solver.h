@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_elasticity_correction_solver_h
-#define debond_elasticity_correction_solver_h
+#ifndef debond_solve_correction_solver_h
+#define debond_solve_correction_solver_h
 
 #include <debond/base/dof_vector.h>
-#include <debond/elasticity/contact_unknowns.h>
 #include <debond/linear_algebra/cholesky.h>
 #include <debond/linear_algebra/condensation.h>
 #include <debond/optimization/majorise/bound_qp.h>
+#include <debond/solve/contact_unknowns.h>
 
 #include <Eigen/SparseCore>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/bernstein.h>
-#include <debond/base/owned_cells.h>
-#include <debond/elasticity/extended_operator.h>
+#include <debond/mesh/bernstein.h>
+#include <debond/mesh/owned_cells.h>
+#include <debond/solve/extended_operator.h>
 
 #include <cmath>
 

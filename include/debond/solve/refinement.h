@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef debond_elasticity_refinement_h
-#define debond_elasticity_refinement_h
+#ifndef debond_solve_refinement_h
+#define debond_solve_refinement_h
 
 #include <debond/base/dof_vector.h>
-#include <debond/elasticity/correction_solver.h>
 #include <debond/elasticity/elastic_problem.h>
 #include <debond/optimization/piecewise_quadratic.h>
+#include <debond/solve/correction_solver.h>
 
 #include <functional>
 #include <string>
