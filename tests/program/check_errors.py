@@ -30,7 +30,8 @@ class Case:
         self.lines += ["end"] * len(sections)
 
     def add_message(self, words):
-        line, path = self.place
+        line, path = (None, "") if words.startswith("! ") else self.place
+        words = words.removeprefix("! ")
         if re.match(r"[A-Z][\w ]*/", words):
             path = ""
         self.messages.append((line, path, words))
@@ -44,17 +45,24 @@ class Case:
 
 
 def read_cases(file_name):
+    """Of "each" the entry with a message is added to the others."""
     cases = []
-    for text in open(file_name).read().split("\n"):
-        header = re.fullmatch(r"\[(\w+)\] ?(\d*)", text)
-        if header:
-            cases.append(Case(*header.groups()))
-        elif text and not text.startswith("#"):
-            text, *words = re.split(r"(?:^|  )! ", text, 1)
-            if text:
-                cases[-1].add_line(text)
-            for message in words:
-                cases[-1].add_message(message)
+    for block in re.split(r"^(?=\[)", open(file_name).read(), flags=re.M)[1:]:
+        header, *rows = [row for row in block.split("\n") if row and row[0] != "#"]
+        name, kind = re.fullmatch(r"\[(\w+)\] ?(\w*)", header).groups()
+        scenes, code = [rows], kind
+        if kind == "each":
+            common, code = [row for row in rows if "  !" not in row], None
+            scenes = [[*common, row] for row in rows if "  !" in row]
+        for k, scene in enumerate(scenes):
+            case = Case(name + f"_{k}" * (kind == "each"), code)
+            for row in scene:
+                text, *words = re.split(r"(?:^|  )!(?=!? )", row, 1)
+                if text:
+                    case.add_line(text)
+                for message in words:
+                    case.add_message(message.lstrip(" "))
+            cases.append(case)
     return cases
 
 
