@@ -107,7 +107,7 @@ class Scenes:
             file.read_bytes() for file in output.glob("*.vtu")))
         for name, file in (("path", "load_path"), ("arc", "load_path_arc"),
                            ("profile", "contact_profile"), ("history", "history"),
-                           ("sides", "certified_sides")):
+                           ("sides", "certified_sides"), ("proof_history", "proof")):
             summary[name] = read_table(output / (file + ".csv"))
         shutil.rmtree(output, ignore_errors=True)
         return summary

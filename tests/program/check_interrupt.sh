@@ -123,6 +123,8 @@ for stage in "search for a lower minimum" proof; do
   grep -q "the search or the proof was interrupted" errors ||
     fail "$(cat errors)"
   grep -q '"status": "success"' long/summary.json || fail "no result"
+  [ "$stage" != proof ] || grep -q '"status": "interrupted"' long/summary.json ||
+    fail "no status of the proof"
 done
 
 # Gmsh, which meshes in a process of its own, ends with the program.
