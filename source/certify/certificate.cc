@@ -74,7 +74,7 @@ namespace Debond
       std::vector<PiecewiseEnergy> laws;
       for (const SideOf<dim> &side : sides)
         {
-          if (!bonds.has_field())
+          if (!bonds.points().has_field())
             {
               laws.push_back(law);
               continue;
@@ -85,7 +85,7 @@ namespace Debond
               dealii::Point<dim> position;
               for (unsigned int k = 0; k < dim; ++k)
                 position += barycentric[k] * side.corners[k];
-              scales.push_back(bonds.bonds_at(position, side.id));
+              scales.push_back(bonds.points().bonds_at(position, side.id));
               const auto differ = [](const double a, const double b) {
                 return std::abs(a - b) > Tolerance::linear_data * std::abs(b);
               };

@@ -51,13 +51,13 @@ namespace Debond
     double                  energy = 0.;
     for (const auto &face : boundary.faces)
       {
-        const auto   trace = adhesion.trace_on(face, s);
+        const auto   trace = adhesion.points().trace_on(face, s);
         const double middle =
           boundary.degree == 2 ? trace[2] : 0.5 * (trace[0] + trace[1]);
         const BondScale bonds =
-          adhesion.bonds_at(dealii::Point<2>(
-                              0.5 * (face.vertices[0] + face.vertices[1])),
-                            face.id);
+          adhesion.points().bonds_at(dealii::Point<2>(0.5 * (face.vertices[0] +
+                                                             face.vertices[1])),
+                                     face.id);
         std::vector<double> kinks = law.kinks();
         for (double &kink : kinks)
           kink *= bonds.stretch;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/tolerances.h>
 #include <debond/check/broken_zone.h>
+#include <debond/contact/adhesion_sums.h>
 
 #include <algorithm>
 #include <array>
@@ -96,7 +97,7 @@ namespace Debond
     std::array<double, dim> middle;
     middle.fill(1. / dim);
     for (const auto &face : boundary.faces)
-      if (adhesion.bonds_of(face, middle).energy == 0.)
+      if (adhesion.points().bonds_at(face, middle).energy == 0.)
         sum += face.measure;
     return sum;
   }
@@ -115,32 +116,35 @@ namespace Debond
     if (!law.is_loose(last))
       return 0.;
 
-    if (adhesion.has_broken_points())
-      return adhesion.open_measure(s);
+    // Between points nothing is known of what bonds have been at.
+    if (!adhesion.memory().empty() && !adhesion.points().is_nodal())
+      return open_measure(adhesion, s);
 
     double sum = 0.;
     for (const auto &face : boundary.faces)
       {
         const auto threshold = [&](const std::array<double, dim> &coordinates) {
-          const BondScale bonds = adhesion.bonds_of(face, coordinates);
+          const BondScale bonds = adhesion.points().bonds_at(face, coordinates);
           return bonds.energy == 0. ||
-                     adhesion.least_piece_at(face, coordinates) == last ?
+                     law.branches().index(
+                       adhesion.reached_at(face, coordinates)) == last ?
                    0. :
                    law.bond_threshold() * bonds.stretch;
         };
+        const auto              trace = adhesion.points().trace_on(face, s);
         std::array<double, dim> thresholds, beyond;
         unsigned int            n_without = 0;
         for (unsigned int k = 0; k < dim; ++k)
           {
             const auto inside = just_inside<dim>(k);
-            n_without += adhesion.bonds_of(face, inside).energy == 0.;
+            n_without += adhesion.points().bonds_at(face, inside).energy == 0.;
             thresholds[k] = threshold(inside);
-            beyond[k]     = -adhesion.trace_at(face, k, s) - thresholds[k];
+            beyond[k]     = -trace[k] - thresholds[k];
           }
         const auto [low, high] =
           std::minmax_element(thresholds.begin(), thresholds.end());
         const auto [least, largest] =
-          range_on_simplex<dim>(adhesion.trace_on(face, s), boundary.degree);
+          range_on_simplex<dim>(trace, boundary.degree);
         if (-largest >= *high && -least > 0.)
           sum += face.measure;
         else if (-least > *low)
@@ -150,7 +154,7 @@ namespace Debond
                     positive_part(beyond) :
                     positive_part_on_pieces<dim>(
                       [&](const std::array<double, dim> &coordinates) {
-                        return -adhesion.trace(face, coordinates, s) -
+                        return -adhesion.points().trace(face, coordinates, s) -
                                threshold(coordinates);
                       }));
       }
@@ -174,17 +178,18 @@ namespace Debond
     std::map<double, std::map<double, unsigned int>> grips;
     for (const auto &face : boundary.faces)
       {
+        const auto trace = adhesion.points().trace_on(face, s);
         // How far bonds are from the last kink; below 0 they hold.
         std::array<double, dim>       beyond;
         std::array<unsigned int, dim> grip;
         for (unsigned int k = 0; k < dim; ++k)
           {
             const BondScale bonds =
-              adhesion.bonds_of(face, just_inside<dim>(k));
-            beyond[k] = -adhesion.trace_at(face, k, s) -
-                        law.bond_threshold() * bonds.stretch;
+              adhesion.points().bonds_at(face, just_inside<dim>(k));
+            beyond[k] = -trace[k] - law.bond_threshold() * bonds.stretch;
             grip[k] =
-              bonds.energy == 0. || adhesion.least_piece_at(face, k) == last ?
+              bonds.energy == 0. ||
+                  law.branches().index(adhesion.reached_at(face, k)) == last ?
                 0 :
               beyond[k] < 0. ? 2 :
                                1;

@@ -6,6 +6,7 @@
 #include <debond/base/ranks.h>
 #include <debond/base/tolerances.h>
 #include <debond/check/error_estimate.h>
+#include <debond/contact/adhesion_sums.h>
 #include <debond/mesh/field_value.h>
 #include <debond/mesh/owned_cells.h>
 
@@ -545,9 +546,10 @@ namespace Debond
         // Displacements of iterative methods may be off by so much.
         const double                 measure = side.area.norm();
         const dealii::Tensor<1, dim> normal  = side.area / measure;
-        const double traction  = of.adhesion.traction(face, coordinates, s);
-        const double trace     = of.adhesion.trace(face, coordinates, s);
-        double       r_nu      = r * normal - traction;
+        const double                 traction =
+          ::Debond::traction(of.adhesion, face, coordinates, s);
+        const double trace = of.adhesion.points().trace(face, coordinates, s);
+        double       r_nu  = r * normal - traction;
         bool         is_closed = true;
         for (unsigned int k = 0; k < boundary.n_face_nodes(); ++k)
           is_closed =

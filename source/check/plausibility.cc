@@ -60,7 +60,7 @@ namespace Debond
     std::array<double, dim> middle;
     middle.fill(1. / dim);
     for (const auto &face : adhesion.contact_boundary().faces)
-      if (const BondScale bonds = adhesion.bonds_of(face, middle);
+      if (const BondScale bonds = adhesion.points().bonds_at(face, middle);
           bonds.energy > 0.)
         {
           const double strength =

@@ -2,6 +2,7 @@
 #include <debond/base/tolerances.h>
 #include <debond/check/broken_zone.h>
 #include <debond/check/verification.h>
+#include <debond/contact/adhesion_sums.h>
 
 #include <algorithm>
 #include <cmath>
@@ -131,7 +132,7 @@ namespace Debond
       std::vector<LawScale> scales;
       for (unsigned int i = 0; i < nodes.size(); ++i)
         {
-          const BondScale bonds     = adhesion.bonds_at(i);
+          const BondScale bonds     = adhesion.points().bonds_at(i);
           const double    threshold = first_threshold(law) * bonds.stretch;
           const double    strength  = law.bond_strength() * bonds.energy /
                                   bonds.stretch * boundary.nodes[i].measure;
@@ -164,7 +165,7 @@ namespace Debond
     {
       const AdhesiveLaw     &law         = adhesion.adhesive_law();
       const PiecewiseEnergy &branches    = law.branches();
-      const BondScale        bonds       = adhesion.bonds_at(i);
+      const BondScale        bonds       = adhesion.points().bonds_at(i);
       const unsigned int     least_piece = adhesion.least_piece(i);
       ContactNodeState      &node        = result.nodes[i];
       const auto             state_of    = [&](const unsigned int piece) {
@@ -491,7 +492,7 @@ namespace Debond
         node.u_nu             = s(i) + boundary.nodes[i].gap;
         node.normal_force     = -normal_residual(i);
         node.allowed_force    = unbounded_above_if(s(i) >= 0., forces[i]);
-        const BondScale bonds = adhesion.bonds_at(i);
+        const BondScale bonds = adhesion.points().bonds_at(i);
         node.bond_stiffness   = std::max(0., law.second_derivative(0.)) *
                               bonds.energy / (bonds.stretch * bonds.stretch);
         node.bond_threshold = law.bond_threshold() * bonds.stretch;
@@ -566,7 +567,7 @@ namespace Debond
                           factors,
                           std::max(resolved,
                                    Tolerance::resolved * rounding.l1_norm()),
-                          adhesion.held_forces(s),
+                          held_forces(adhesion, s),
                           result);
 
     result.force_rounding =

@@ -129,9 +129,8 @@ namespace Debond
     exchange(Archive &archive, RunState<dim> &state)
     {
       archive &state.scene &state.mesh &state.meshes.divisions &state
-        .has_last_mesh &state.shortfall &state.path.kinds &state.path.memory
-        .nodes &state.path.memory.held &state.path.memory.points &state.meshes
-        .start                                                   &state.path.u;
+        .has_last_mesh &state.shortfall &state.path.kinds &state.path
+        .memory &state.meshes.start &state.path.u;
       exchange(archive, state.meshes.levels);
       exchange(archive, state.path.steps);
       exchange(archive, state.path.points);

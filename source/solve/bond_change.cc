@@ -43,7 +43,7 @@ namespace Debond
       for (unsigned int i = 0; i < last.s.size(); ++i)
         if (last.s(i) < 0.)
           {
-            const double       stretch = bonds.bonds_at(i).stretch;
+            const double       stretch = bonds.points().bonds_at(i).stretch;
             const unsigned int k       = branches.index(last.s(i) / stretch);
             if (increases ? k + 1 == branches.size() :
                             k <= bonds.least_piece(i))
@@ -161,7 +161,7 @@ namespace Debond
       load_path.displacement_factors.empty() && load_path.dead_loads.empty();
     const bool is_at_rest =
       !has_slope && last.s.isZero(0.) && scene.load(last.factors).isZero(0.);
-    if (!bonds.is_separable())
+    if (!bonds.points().is_nodal())
       {
         // What is prescribed on the contact boundary changes the springs'
         // forces.

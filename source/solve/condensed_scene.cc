@@ -15,7 +15,7 @@ namespace Debond
     const auto                       &nodes = scene.contact_boundary().nodes;
     for (unsigned int i = 0; i < nodes.size(); ++i)
       {
-        const BondScale scale = integral.bonds_at(i);
+        const BondScale scale = integral.points().bonds_at(i);
         bonds_of_nodes.push_back({nodes[i].measure * scale.energy,
                                   scale.stretch,
                                   integral.least_piece(i)});

@@ -64,7 +64,7 @@ namespace Debond
     const Eigen::VectorXd xi = phi.subgradient(s);
 
     State state;
-    state.functional = 0.5 * (internal * u) - f * u + phi.value(s);
+    state.functional = 0.5 * (internal * u) - f * u + phi.change(s);
 
     // The terms of a row of A u are as large as diagonal times displacement,
     // and cancel.

@@ -17,7 +17,7 @@ namespace Debond
       , A_d(memory)
       , s(functional.contact.trace(x))
       , s_d(functional.contact.trace(d))
-      , adhesion_at_x(functional.adhesion.value(s))
+      , adhesion_at_x(functional.adhesion.change(s))
     {
       gradient->reinit(x, true);
       functional.multiply(*gradient, x);
@@ -32,7 +32,7 @@ namespace Debond
     change(const double t) const override
     {
       return t * (slope + 0.5 * t * curvature) +
-             (functional.adhesion.value(trace(t)) - adhesion_at_x);
+             (functional.adhesion.change(trace(t)) - adhesion_at_x);
     }
 
     void
@@ -86,7 +86,7 @@ namespace Debond
   {
     DofVector A_v(v);
     multiply(A_v, v);
-    return 0.5 * (A_v * v) - f * v + adhesion.value(contact.trace(v));
+    return 0.5 * (A_v * v) - f * v + adhesion.change(contact.trace(v));
   }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/text.h>
 #include <debond/check/broken_zone.h>
+#include <debond/contact/adhesion_sums.h>
 #include <debond/mesh/owned_cells.h>
 #include <debond/solve/load_path_state.h>
 
@@ -26,7 +27,7 @@ namespace Debond
       DofVector displacement = unknowns.lifting({0., 1.});
       displacement -= unknowns.lifting({0., 0.});
       double sum = problem.fields().residual(u, factors) * displacement;
-      const std::vector<double> forces = adhesion.held_forces(s);
+      const std::vector<double> forces = held_forces(adhesion, s);
       const auto &held = unknowns.contact().boundary().held_vertices;
       for (unsigned int k = 0; k < held.size(); ++k)
         sum += forces[k] * held[k].normal_displacement;
@@ -133,9 +134,9 @@ namespace Debond
       state.largest_gap = verification.largest_opening;
     else
       for (const auto &face : boundary.faces)
-        state.largest_gap =
-          std::max(state.largest_gap,
-                   -range_on_simplex<dim>(adhesion.trace_on(face, s), 2).first);
+        state.largest_gap = std::max(
+          state.largest_gap,
+          -range_on_simplex<dim>(adhesion.points().trace_on(face, s), 2).first);
     if (measure > 0.)
       {
         for (double *number : {&state.contact_part,
@@ -148,7 +149,7 @@ namespace Debond
       }
 
     state.elastic_energy  = problem.fields().strain_energy(u, factors);
-    state.adhesion_energy = adhesion.energy(s);
+    state.adhesion_energy = adhesion.value(s);
     state.unit_load_work  = problem.fields().load_work(u, factors);
     state.unit_displacement_work =
       work_of_supports(problem, adhesion, factors, u, s);
@@ -163,7 +164,7 @@ namespace Debond
     state.broken_zone          = verification.broken_zone;
     state.fronts = fronts(boundary, adhesion.adhesive_law(), adhesion, s);
     state.cell_size_at_edge = cell_size_at_edge(problem, verification);
-    state.dissipated_energy = adhesion.dissipated_energy();
+    state.dissipated_energy = dissipated_energy(adhesion);
     for (const auto &[name, vector] : verification.reactions)
       state.vectors.emplace_back("reaction_" + as_title(name), vector);
     return state;

@@ -47,7 +47,7 @@ namespace Debond
   {
     const ElasticProblem<dim> &problem = scene.problem();
     return problem.fields().elastic_functional(u) +
-           scene.adhesion().energy(scene.contact_trace(u));
+           scene.adhesion().value(scene.contact_trace(u));
   }
 
 

@@ -2,6 +2,7 @@
 #include <debond/base/memory.h>
 #include <debond/base/run_watch.h>
 #include <debond/base/tolerances.h>
+#include <debond/contact/adhesion_sums.h>
 #include <debond/contact/boundary_coarsening.h>
 #include <debond/contact/boundary_graph.h>
 #include <debond/optimization/global/branch_search.h>
@@ -39,11 +40,11 @@ namespace Debond
       const AdhesionIntegral<dim>                    &adhesion,
       const std::vector<Eigen::SparseMatrix<double>> &prolongations = {})
     {
-      if (!adhesion.has_field())
+      if (!adhesion.points().has_field())
         return {};
       Eigen::VectorXd mean(adhesion.n_nodes());
       for (unsigned int i = 0; i < adhesion.n_nodes(); ++i)
-        mean(i) = adhesion.bonds_at(i).stretch;
+        mean(i) = adhesion.points().bonds_at(i).stretch;
       for (const Eigen::SparseMatrix<double> &P : prolongations)
         mean = (P.transpose() * mean)
                  .cwiseQuotient(P.transpose() * Eigen::VectorXd::Ones(P.rows()))
@@ -90,7 +91,7 @@ namespace Debond
         , method(parameters.majorise_minimise)
         , graph(neighbours(adhesion.contact_boundary()))
         , lumped(lumped_branches(adhesion.adhesive_law().branches(),
-                                 adhesion.lumped_weights(),
+                                 lumped_weights(adhesion),
                                  stretches(adhesion)))
       {
         // What the bonds can change in J: at most the most that they can take
@@ -233,8 +234,8 @@ namespace Debond
       void
       search_all_nodes()
       {
-        const GuidedSearchResult guided =
-          guided_search(problem(), adhesion.is_separable(), proof_limits(), s);
+        const GuidedSearchResult guided = guided_search(
+          problem(), adhesion.points().is_nodal(), proof_limits(), s);
         add_search(guided.search);
         // What a limit of work has cut may not have come to any bound.
         if (guided.proof && std::isfinite(guided.proof->lower))
@@ -271,7 +272,7 @@ namespace Debond
       bool
       is_proved_at_start()
       {
-        if (!adhesion.is_separable() || !lumped.is_piecewise_quadratic())
+        if (!adhesion.points().is_nodal() || !lumped.is_piecewise_quadratic())
           return false;
         BranchAndBoundParameters no_nodes = proof_limits();
         no_nodes.maximum_nodes            = 0;
@@ -292,7 +293,7 @@ namespace Debond
         const auto search = [&](const PiecewiseProblem &coarse,
                                 Eigen::VectorXd        &coarse_s) {
           result.search_nodes     = static_cast<unsigned int>(coarse_s.size());
-          Eigen::VectorXd weights = adhesion.lumped_weights();
+          Eigen::VectorXd weights = lumped_weights(adhesion);
           for (const Eigen::SparseMatrix<double> &P : prolongations)
             weights = (P.transpose() * weights).eval();
           const SeparableBranches coarse_lumped =
@@ -368,7 +369,7 @@ namespace Debond
     if (adhesion.adhesive_law().branches().size() == 1 || s.size() == 0)
       return MinimumKind::global;
     // So close to a drop of the traction bonds may be on either side.
-    if (adhesion.is_at_drop(s, Tolerance::at_kink))
+    if (is_at_drop(adhesion, s, Tolerance::at_kink))
       return MinimumKind::stationary;
     if (!adhesion.softens())
       return MinimumKind::local_minimum;
@@ -384,7 +385,7 @@ namespace Debond
                                         condensed->load().cwiseAbs().maxCoeff())
         free.push_back(i);
     Eigen::MatrixXd A = S;
-    A += adhesion.least_second_derivative(s, Tolerance::at_kink);
+    A += least_second_derivative(adhesion, s, Tolerance::at_kink);
     return is_safely_positive_definite(A(free, free)) ?
              MinimumKind::local_minimum :
              MinimumKind::stationary;

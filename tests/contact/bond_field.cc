@@ -95,14 +95,14 @@ main(int argc, char **)
 
   {
     const AdhesionIntegral<2> phi(boundary, law, nodal, &two);
-    check("nodes have a law each", phi.is_separable());
+    check("nodes have a law each", phi.points().is_nodal());
     traces(0.01);
     check("nodal energy of bonds that hold",
           relative(phi.value(s), by_vertices()),
           1e-14);
     traces(10.);
     check("of broken ones", relative(phi.value(s), by_vertices()), 1e-14);
-    const BondScale bonds = phi.bonds_at(1);
+    const BondScale bonds = phi.points().bonds_at(1);
     const double    a     = (length_1 * a_1 + length_2 * a_2) / 1.5,
                  G = (length_1 * a_1 * M_1 * M_1 + length_2 * a_2 * M_2 * M_2) /
                      3.;
@@ -110,10 +110,9 @@ main(int argc, char **)
           relative(bonds.stretch * M_1, std::sqrt(2. * G / a)),
           1e-14);
     check("which is the faces'",
-          phi.bonds_at(boundary.faces[1], 0).stretch == bonds.stretch &&
-            phi.bonds_at(boundary.faces[0], 1).stretch == bonds.stretch);
+          phi.points().list()[1].bonds.stretch == bonds.stretch);
     check("the second one's alone",
-          relative(phi.bonds_at(2).stretch * M_1, M_2),
+          relative(phi.points().bonds_at(2).stretch * M_1, M_2),
           1e-14);
   }
   {

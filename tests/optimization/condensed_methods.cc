@@ -34,7 +34,7 @@ namespace
     }
 
     double
-    value(const VectorView &s) const override
+    change(const VectorView &s) const override
     {
       double sum = 0.;
       for (unsigned int i = 0; i < s.size(); ++i)
@@ -192,7 +192,7 @@ namespace
         for (const double entry : s)
           feasible = feasible && entry <= 0.;
         below_rest =
-          below_rest && s.dot(0.5 * p.S * s - p.g) + p.bonds.value(s) <= 0.;
+          below_rest && s.dot(0.5 * p.S * s - p.g) + p.bonds.change(s) <= 0.;
         CondensedProblem problem(p.S, p.g, p.bonds, s);
         converged =
           converged && method.minimize(problem).status == SolverStatus::success;

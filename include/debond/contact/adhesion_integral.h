@@ -2,33 +2,23 @@
 #ifndef debond_contact_adhesion_integral_h
 #define debond_contact_adhesion_integral_h
 
-#include <debond/contact/bond_field.h>
-#include <debond/contact/boundary.h>
+#include <debond/contact/contact_points.h>
 #include <debond/contact/law.h>
-#include <debond/contact/quadrature.h>
 #include <debond/optimization/piecewise_quadratic.h>
 
-#include <array>
 #include <vector>
 
 namespace Debond
 {
-  /// The least s that bonds have been at, in terms of the law (of their
-  /// stretch): what is above it does not come back. Empty if bonds return.
-  struct BondMemory
-  {
-    std::vector<double> nodes;
-    std::vector<double> held;   ///< of vertices that are no nodes
-    std::vector<double> points; ///< face by face, unless points are nodes
-  };
+  /// For each of ContactPoints::list() the least stretch that its bonds have
+  /// been at: what is above it does not come back. Empty if bonds return.
+  using BondMemory = std::vector<double>;
 
 
 
   /**
-   * Phi(s) = int_{Gamma_C} j_1(s) dGamma of the trace with coefficients s, the
-   * nodal values of degree 1, by quadrature on the contact boundary. The vector
-   * s is ordered as ContactBoundary::nodes; s of vertices that are none is
-   * prescribed, and grows with the load.
+   * Phi(s) = int_{Gamma_C} j_1(s) dGamma, the energy of the bonds: a sum of the
+   * law over the ContactPoints, whose order s has.
    *
    * Keeps references to its arguments.
    */
@@ -36,19 +26,26 @@ namespace Debond
   class AdhesionIntegral : public PiecewiseQuadratic
   {
   public:
+    using Face        = typename ContactPoints<dim>::Face;
+    using Barycentric = typename ContactPoints<dim>::Barycentric;
+
+    /// See ContactPoints.
     AdhesionIntegral(const ContactBoundary<dim>   &contact_boundary,
                      const AdhesiveLaw            &adhesive_law,
                      const ContactQuadrature<dim> &quadrature_rule,
                      const BondField<dim>         *bond_field = nullptr);
 
-    /// Of which s has a component.
+    /// The number of components of s.
     unsigned int
-    n_nodes() const;
+    n_nodes() const
+    {
+      return static_cast<unsigned int>(contact_boundary().nodes.size());
+    }
 
     const ContactBoundary<dim> &
     contact_boundary() const
     {
-      return boundary;
+      return contact_points.boundary();
     }
 
     const AdhesiveLaw &
@@ -57,14 +54,19 @@ namespace Debond
       return law;
     }
 
+    const ContactPoints<dim> &
+    points() const
+    {
+      return contact_points;
+    }
+
     /// These bonds where the prescribed displacements are @p factor times those
-    /// for the whole load. Throws as BondField does, and so does the
-    /// constructor.
+    /// for the whole load.
     AdhesionIntegral
     at(const double factor) const;
 
     /// From now on bonds do not return to pieces of the law that they have left
-    /// at @p s or before: those of each point of the rule.
+    /// at @p s or before.
     void
     break_for_good(const VectorView &s);
 
@@ -78,49 +80,95 @@ namespace Debond
     void
     set_memory(const BondMemory &memory);
 
-    /// The memory of the bonds of a node, of all points of its faces where
-    /// points are not nodes.
+    /// The memory of the bonds of a node; where points are not nodes the
+    /// largest of the points around it.
     double
     reached(const unsigned int node) const
     {
-      return broken.nodes.empty() ? 0. : broken.nodes[node];
+      return broken.empty() ? 0. : reached_of_nodes[node];
     }
 
-    /// The piece of the law that they have not left for good.
+    /// The same at a vertex of a face, which may be held.
+    double
+    reached_at(const Face &face, const unsigned int vertex) const;
+
+    /// The memory of the point of the rule next to a place on a face.
+    double
+    reached_at(const Face &face, const Barycentric &place) const
+    {
+      return broken.empty() ? 0. : broken[contact_points.nearest(face, place)];
+    }
+
+    /// The piece of the law that the bonds of a node have not left for good.
     unsigned int
     least_piece(const unsigned int node) const
     {
       return law.branches().index(reached(node));
     }
 
-    /// The same of the bonds at a point of one of the boundary's faces: those
-    /// of the point of the rule that is next to it.
-    unsigned int
-    least_piece_at(const typename ContactBoundary<dim>::Face &face,
-                   const std::array<double, dim>             &barycentric) const
+    /// Calls @p visit(point, stretch, reached) for all points: sums over them
+    /// are made of it.
+    template <typename Visit>
+    void
+    for_each_point(const VectorView &s, const Visit &visit) const
     {
-      return law.branches().index(reached_at(face, barycentric));
+      for (unsigned int q = 0; q < contact_points.list().size(); ++q)
+        {
+          const ContactPoint<dim> &point = contact_points.list()[q];
+          visit(point, point.stretch(s), broken.empty() ? 0. : broken[q]);
+        }
     }
 
-    /// Whether points that are not nodes have bonds that have broken for good.
-    bool
-    has_broken_points() const
+    /// The second derivative of Phi at @p s if that of the law is @p of_law
+    /// (stretch, reached): a matrix that couples the nodes of a face, diagonal
+    /// for nodal quadrature.
+    template <typename Curvature>
+    Eigen::SparseMatrix<double>
+    matrix(const VectorView &s, const Curvature &of_law) const
     {
-      return !broken.points.empty();
+      std::vector<Eigen::Triplet<double>> entries;
+      for_each_point(s, [&](const auto &point, double stretch, double reached) {
+        const double curvature =
+          point.force() / point.bonds.stretch * of_law(stretch, reached);
+        if (curvature != 0.)
+          for (unsigned int k = 0; k < point.n_nodes; ++k)
+            for (unsigned int l = 0; l < point.n_nodes; ++l)
+              entries.emplace_back(point.index[k],
+                                   point.index[l],
+                                   curvature * point.shape[k] * point.shape[l]);
+      });
+      Eigen::SparseMatrix<double> result(s.size(), s.size());
+      result.setFromTriplets(entries.begin(), entries.end());
+      return result;
     }
 
-    /// The length (area) of the points of the rule whose bonds are on the last
-    /// piece of the law and have a gap.
+    /// Phi(s), an energy.
     double
-    open_measure(const VectorView &s) const;
+    value(const VectorView &s) const;
 
-    /// How far on the way from s to s + @p limit ds bonds come before some
-    /// leave their piece of the law, as a multiple of ds: @p limit if none do.
-    /// What is prescribed stays as it is.
+    /// Phi(0), which is zero if nothing is prescribed and bonds return.
     double
-    first_change(const VectorView &s,
-                 const VectorView &ds,
-                 const double      limit) const override;
+    value_at_zero() const
+    {
+      return phi_at_zero;
+    }
+
+    double
+    change(const VectorView &s) const override
+    {
+      return value(s) - phi_at_zero;
+    }
+
+    /// One element of the Clarke subdifferential of Phi at s (at a kink the
+    /// derivative of the piece on the side of 0), a force for each node.
+    Eigen::VectorXd
+    subgradient(const VectorView &s) const override;
+
+    Eigen::SparseMatrix<double>
+    curvature(const VectorView &s) const override;
+
+    Eigen::SparseMatrix<double>
+    second_derivative(const VectorView &s) const override;
 
     bool
     softens() const override
@@ -128,89 +176,11 @@ namespace Debond
       return law.softens();
     }
 
-    Eigen::SparseMatrix<double>
-    second_derivative(const VectorView &s) const override;
-
-    /// The same, of each point the least one within @p part of its s: a bound
-    /// where bonds are next to a kink.
-    Eigen::SparseMatrix<double>
-    least_second_derivative(const VectorView &s, const double part) const;
-
-    /// Of each node the factor of the law's second derivative in Phi's, if all
-    /// bonds are lumped at nodes.
-    Eigen::VectorXd
-    lumped_weights() const;
-
-    /// Whether at some point the traction drops within @p part of its s.
-    bool
-    is_at_drop(const VectorView &s, const double part) const;
-
-    /// What bonds that do not return have taken: Phi(0) with nothing
-    /// prescribed.
+    /// What is prescribed stays as it is on the way.
     double
-    dissipated_energy() const;
-
-    /// The coefficients of s on a face, unknown or prescribed.
-    typename ContactQuadrature<dim>::Trace
-    trace_on(const typename ContactBoundary<dim>::Face &face,
-             const VectorView                          &s) const;
-
-    /// s at a vertex of a face, unknown or prescribed, and the bonds there.
-    double
-    trace_at(const typename ContactBoundary<dim>::Face &face,
-             const unsigned int                         vertex,
-             const VectorView                          &s) const
-    {
-      return face.is_held(vertex) ? held_trace(face, vertex) :
-                                    s(face.nodes[vertex]);
-    }
-
-    BondScale
-    bonds_at(const typename ContactBoundary<dim>::Face &face,
-             const unsigned int                         vertex) const;
-
-    unsigned int
-    least_piece_at(const typename ContactBoundary<dim>::Face &face,
-                   const unsigned int                         vertex) const
-    {
-      return law.branches().index(reached_at(face, vertex));
-    }
-
-    /// The memory of the bonds there.
-    double
-    reached_at(const typename ContactBoundary<dim>::Face &face,
-               const unsigned int                         vertex) const;
-
-    double
-    reached_at(const typename ContactBoundary<dim>::Face &face,
-               const std::array<double, dim>             &barycentric) const;
-
-    /// Phi(s), an energy.
-    double
-    energy(const VectorView &s) const;
-
-    /// Phi(s) - Phi(0); Phi(0) = 0 if nothing is prescribed and bonds return.
-    double
-    value(const VectorView &s) const override
-    {
-      return energy(s) - phi_at_zero;
-    }
-
-    double
-    energy_at_zero() const
-    {
-      return phi_at_zero;
-    }
-
-    /// One element of the Clarke subdifferential of Phi at s (at a kink the
-    /// derivative of the branch on the side of 0), a force for each node.
-    Eigen::VectorXd
-    subgradient(const VectorView &s) const override;
-
-    /// The second derivative of the same branches, a matrix that
-    /// couples the nodes of a face (diagonal for nodal quadrature).
-    Eigen::SparseMatrix<double>
-    curvature(const VectorView &s) const override;
+    first_change(const VectorView &s,
+                 const VectorView &ds,
+                 const double      limit) const override;
 
     /// For each node the forces that the law allows: the quadrature of the
     /// Goldstein intervals of j_1 over s +- delta. With delta = 0 this is
@@ -218,8 +188,7 @@ namespace Debond
     std::vector<Interval>
     force_intervals(const VectorView &s, const double delta) const
     {
-      return force_intervals(s,
-                             std::vector<double>(boundary.nodes.size(), delta));
+      return force_intervals(s, std::vector<double>(n_nodes(), delta));
     }
 
     /// The same with a radius of its own for each node, delta[i] for the
@@ -228,120 +197,16 @@ namespace Debond
     force_intervals(const VectorView          &s,
                     const std::vector<double> &delta) const;
 
-    /// Whether each node has a multiple of the law for its own, as with nodal
-    /// quadrature.
-    bool
-    is_separable() const;
-
-    /// The derivatives of Phi by the normal displacements of
-    /// ContactBoundary::held_vertices.
-    std::vector<double>
-    held_forces(const VectorView &s) const;
-
-    /// s at a point of a face.
-    double
-    trace(const typename ContactBoundary<dim>::Face &face,
-          const std::array<double, dim>             &barycentric,
-          const VectorView                          &s) const;
-
-    /// The derivative of j_1 at a point of a face (at a kink: that of the
-    /// branch on the side of 0), minus the traction of the bonds on the body.
-    double
-    traction(const typename ContactBoundary<dim>::Face &face,
-             const std::array<double, dim>             &barycentric,
-             const VectorView                          &s) const;
-
-    /// The bonds at a point of a face, as the scene has them there.
-    BondScale
-    bonds_of(const typename ContactBoundary<dim>::Face &face,
-             const std::array<double, dim>             &barycentric) const;
-
-    /// Whether bonds are not the same everywhere.
-    bool
-    has_field() const
-    {
-      return field != nullptr;
-    }
-
-    /// The bonds at a node. Where boundaries with bonds of their own meet they
-    /// have the mean stiffness and fracture energy.
-    BondScale
-    bonds_at(const dealii::Point<dim>        &position,
-             const dealii::types::boundary_id id) const
-    {
-      return field == nullptr ? BondScale() : field->at(position, id);
-    }
-
-    BondScale
-    bonds_at(const unsigned int node) const
-    {
-      return field == nullptr ? BondScale() : bonds_of_nodes[node];
-    }
-
   private:
-    using Trace = typename ContactQuadrature<dim>::Trace;
-
-    /// A quadrature point on Gamma_C: the trace there is the sum of shape[k]
-    /// s[nodes[k]], k < n_nodes.
-    struct Point
-    {
-      unsigned int                                     n_nodes;
-      std::array<unsigned int, n_coefficients(dim, 2)> nodes;
-      Trace                                            shape;
-      double                                           weight; ///< length, area
-      double    offset; ///< what is prescribed of the trace
-      BondScale bonds;
-      double    reached; ///< the memory
-
-      bool
-      is_on_a_node() const;
-
-      double
-      trace(const VectorView &s) const;
-    };
-
-    /// A prescribed coefficient on a face.
-    double
-    held_trace(const typename ContactBoundary<dim>::Face &face,
-               const unsigned int                         k) const;
-
-    /// The sum of @p of_law at the points, as a second derivative of Phi.
-    template <typename Curvature>
-    Eigen::SparseMatrix<double>
-    matrix(const VectorView &s, const Curvature &of_law) const;
-
-    /// Makes bonds_of_nodes and bonds_of_held.
+    /// Adapts what follows from the points and their memory.
     void
-    collect_bonds();
+    update();
 
-    /// Writes the points of all faces to point_list.
-    void
-    collect_points();
-
-    /// Makes point_list.
-    void
-    update_points();
-
-    /// Replaces the points of point_list that are on a node by one for each
-    /// node.
-    void
-    lump_nodal_points();
-
-    const ContactBoundary<dim>   &boundary;
-    const AdhesiveLaw            &law;
-    const ContactQuadrature<dim> &quadrature;
-    const BondField<dim>         *field;
-
-    /// Empty if bonds are the same everywhere.
-    std::vector<BondScale> bonds_of_nodes;
-    std::vector<BondScale> bonds_of_held;
-
-    double load_factor = 1.;
-    double phi_at_zero = 0.;
-
-    BondMemory broken;
-
-    std::vector<Point> point_list;
+    ContactPoints<dim>  contact_points;
+    const AdhesiveLaw  &law;
+    BondMemory          broken;
+    std::vector<double> reached_of_nodes; ///< empty as broken is
+    double              phi_at_zero = 0.;
   };
 } // namespace Debond
 

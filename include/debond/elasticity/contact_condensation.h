@@ -24,7 +24,7 @@ namespace Debond
                     const AdhesionIntegral<dim> &adhesion,
                     const LoadFactors            factors = 1.)
   {
-    return problem.lifting_energy(factors) + adhesion.energy_at_zero();
+    return problem.lifting_energy(factors) + adhesion.value_at_zero();
   }
 
 

@@ -21,9 +21,9 @@ namespace Debond
   public:
     virtual ~PiecewiseQuadratic() = default;
 
-    /// Phi(s).
+    /// Phi(s) - Phi(0).
     virtual double
-    value(const VectorView &s) const = 0;
+    change(const VectorView &s) const = 0;
 
     /// The gradient at s of the quadratics that touch there, which is an
     /// element of the Clarke subdifferential of Phi.
@@ -92,9 +92,9 @@ namespace Debond
     {}
 
     double
-    value(const VectorView &s) const override
+    change(const VectorView &s) const override
     {
-      return phi.value(P * s);
+      return phi.change(P * s);
     }
 
     Eigen::VectorXd

@@ -17,7 +17,7 @@ namespace Debond
 
 
   double
-  SeparableBranches::value(const VectorView &s) const
+  SeparableBranches::change(const VectorView &s) const
   {
     double sum = 0.;
     for (unsigned int i = 0; i < s.size(); ++i)

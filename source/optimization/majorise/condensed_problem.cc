@@ -92,7 +92,7 @@ namespace Debond
     double       energy = 0., work = 0.;
     double       largest_force = 0., violation = 0.;
     double       largest_terms = 0., energy_terms = 0.;
-    const double adhesion = phi.value(s);
+    const double adhesion = phi.change(s);
 
     // The terms of a row of S s nearly cancel. Summed up column by column, for
     // which processors have instructions that sums row by row must not use.

@@ -27,7 +27,7 @@ namespace Debond
     state(const VectorView &s) const;
 
     double
-    value(const VectorView &s) const override;
+    change(const VectorView &s) const override;
 
     Eigen::VectorXd
     subgradient(const VectorView &s) const override;

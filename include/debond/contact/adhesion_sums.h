@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_contact_adhesion_sums_h
+#define debond_contact_adhesion_sums_h
+
+#include <debond/contact/adhesion_integral.h>
+
+#include <vector>
+
+/// @file
+/// Sums over the points of an AdhesionIntegral that only results, checks and
+/// the search for other minima need.
+
+namespace Debond
+{
+  /// The length (area) of the points whose bonds are on the last piece of the
+  /// law, or that have none, and that have a gap.
+  template <int dim>
+  double
+  open_measure(const AdhesionIntegral<dim> &phi, const VectorView &s);
+
+  /// The energy that bonds that do not return have taken: Phi(0) with nothing
+  /// prescribed.
+  template <int dim>
+  double
+  dissipated_energy(const AdhesionIntegral<dim> &phi);
+
+  /// The derivatives of Phi by the normal displacements of
+  /// ContactBoundary::held_vertices.
+  template <int dim>
+  std::vector<double>
+  held_forces(const AdhesionIntegral<dim> &phi, const VectorView &s);
+
+  /// The derivative of j_1 at a place on a face (at a kink: that of the piece
+  /// on the side of 0), minus the traction of the bonds on the body.
+  template <int dim>
+  double
+  traction(const AdhesionIntegral<dim>                       &phi,
+           const typename AdhesionIntegral<dim>::Face        &face,
+           const typename AdhesionIntegral<dim>::Barycentric &place,
+           const VectorView                                  &s);
+
+  /// Whether at some point the traction drops within @p part of its stretch.
+  template <int dim>
+  bool
+  is_at_drop(const AdhesionIntegral<dim> &phi,
+             const VectorView            &s,
+             const double                 part);
+
+  /// The second derivative of Phi with the least one of each point within
+  /// @p part of its stretch: a bound where bonds are next to a kink.
+  template <int dim>
+  Eigen::SparseMatrix<double>
+  least_second_derivative(const AdhesionIntegral<dim> &phi,
+                          const VectorView            &s,
+                          const double                 part);
+
+  /// For each node the factor of the law's second derivative in that of Phi if
+  /// all bonds are lumped at nodes.
+  template <int dim>
+  Eigen::VectorXd
+  lumped_weights(const AdhesionIntegral<dim> &phi);
+} // namespace Debond
+
+#endif

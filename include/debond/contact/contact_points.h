@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef debond_contact_contact_points_h
+#define debond_contact_contact_points_h
+
+#include <debond/base/views.h>
+#include <debond/contact/bond_field.h>
+#include <debond/contact/boundary.h>
+#include <debond/contact/quadrature.h>
+
+#include <array>
+#include <vector>
+
+namespace Debond
+{
+  /// One of the points that integrals over Gamma_C are sums over. The normal
+  /// displacement there is `offset` and the sum of shape[k] s(index[k]) over
+  /// the first `n_nodes` entries. The entries after them, up to `n_entries`,
+  /// belong to held vertices, whose part is in the offset.
+  template <int dim>
+  struct ContactPoint
+  {
+    unsigned int                                     n_nodes   = 0;
+    unsigned int                                     n_entries = 0;
+    std::array<unsigned int, n_coefficients(dim, 2)> index     = {};
+    typename ContactQuadrature<dim>::Trace           shape     = {};
+
+    double    weight = 0.; ///< a length or area
+    double    offset = 0.; ///< the prescribed part of the displacement
+    BondScale bonds;
+
+    /// The displacement in terms of the law, which is that of bonds of unit
+    /// stretch.
+    double
+    stretch(const VectorView &s) const
+    {
+      double sum = offset;
+      for (unsigned int k = 0; k < n_nodes; ++k)
+        sum += shape[k] * s(index[k]);
+      return sum / bonds.stretch;
+    }
+
+    /// The factor of the law's derivative in forces.
+    double
+    force() const
+    {
+      return weight * bonds.energy / bonds.stretch;
+    }
+  };
+
+
+
+  /**
+   * The quadrature points of the contact boundary with their weights and bonds.
+   * The vector s has the nodal values (of degree 2: the coefficients) in the
+   * order of ContactBoundary::nodes; the displacements of vertices that are no
+   * nodes are prescribed, and grow with the load.
+   *
+   * With nodal quadrature the first points are the nodes in their order, one
+   * for all faces around each; the others follow face by face.
+   *
+   * Keeps references to its arguments.
+   */
+  template <int dim>
+  class ContactPoints
+  {
+  public:
+    using Face        = typename ContactBoundary<dim>::Face;
+    using Trace       = typename ContactQuadrature<dim>::Trace;
+    using Barycentric = std::array<double, dim>;
+
+    /// Bonds are the same everywhere if @p bond_field is null. Throws as
+    /// BondField does.
+    ContactPoints(const ContactBoundary<dim>   &contact_boundary,
+                  const ContactQuadrature<dim> &quadrature_rule,
+                  const BondField<dim>         *bond_field);
+
+    const ContactBoundary<dim> &
+    boundary() const
+    {
+      return contact;
+    }
+
+    const std::vector<ContactPoint<dim>> &
+    list() const
+    {
+      return points;
+    }
+
+    /// Prescribes @p factor times the displacements for the whole load.
+    void
+    set_factor(const double factor);
+
+    /// Whether all points are vertices, so that each node has a law of its own.
+    bool
+    is_nodal() const
+    {
+      return quadrature.is_nodal();
+    }
+
+    /// Whether bonds are not the same everywhere.
+    bool
+    has_field() const
+    {
+      return field != nullptr;
+    }
+
+    /// The number of the point of the rule on a face that is next to a place,
+    /// by the face's barycentric coordinates.
+    unsigned int
+    nearest(const Face &face, const Barycentric &place) const;
+
+    /// The bonds at a position on the boundary @p id, as the scene has them.
+    BondScale
+    bonds_at(const dealii::Point<dim>        &position,
+             const dealii::types::boundary_id id) const
+    {
+      return field == nullptr ? BondScale() : field->at(position, id);
+    }
+
+    BondScale
+    bonds_at(const Face &face, const Barycentric &place) const;
+
+    /// The bonds at a node. Where boundaries with bonds of their own meet they
+    /// have the mean stiffness and fracture energy.
+    BondScale
+    bonds_at(const unsigned int node) const
+    {
+      return field == nullptr ? BondScale() : bonds_of_nodes[node];
+    }
+
+    /// The coefficients of the displacement on a face, see bernstein().
+    Trace
+    trace_on(const Face &face, const VectorView &s) const;
+
+    /// The displacement at a place on a face.
+    double
+    trace(const Face        &face,
+          const Barycentric &place,
+          const VectorView  &s) const;
+
+  private:
+    /// A prescribed coefficient on a face.
+    double
+    held_trace(const Face &face, const unsigned int k) const;
+
+    /// Makes bonds_of_nodes and bonds_of_held.
+    void
+    collect_bonds();
+
+    void
+    collect_points();
+
+    const ContactBoundary<dim>   &contact;
+    const ContactQuadrature<dim> &quadrature;
+    const BondField<dim>         *field;
+
+    /// Empty if bonds are the same everywhere.
+    std::vector<BondScale> bonds_of_nodes, bonds_of_held;
+
+    double load_factor = 1.;
+
+    std::vector<ContactPoint<dim>> points;
+    std::vector<unsigned int>      places; ///< in `points`, face by face
+  };
+} // namespace Debond
+
+#endif

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/contact/adhesion_sums.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Debond
+{
+  template <int dim>
+  double
+  open_measure(const AdhesionIntegral<dim> &phi, const VectorView &s)
+  {
+    const PiecewiseEnergy &pieces = phi.adhesive_law().branches();
+    double                 sum    = 0.;
+    phi.for_each_point(s,
+                       [&](const auto &point, double stretch, double reached) {
+                         if (stretch < 0. &&
+                             (point.bonds.energy == 0. ||
+                              pieces.index(std::min(reached, stretch)) + 1 ==
+                                pieces.size()))
+                           sum += point.weight;
+                       });
+    return sum;
+  }
+
+
+
+  template <int dim>
+  double
+  dissipated_energy(const AdhesionIntegral<dim> &phi)
+  {
+    double sum = 0.;
+    phi.for_each_point(Eigen::VectorXd::Zero(phi.n_nodes()),
+                       [&](const auto &point, double, double reached) {
+                         sum += point.weight * point.bonds.energy *
+                                phi.adhesive_law().value(0., reached);
+                       });
+    return sum;
+  }
+
+
+
+  template <int dim>
+  std::vector<double>
+  held_forces(const AdhesionIntegral<dim> &phi, const VectorView &s)
+  {
+    std::vector<double> forces(phi.contact_boundary().held_vertices.size(), 0.);
+    // Vertices that stay at the foundation have no entry in the list.
+    if (!forces.empty())
+      phi.for_each_point(
+        s, [&](const auto &point, double stretch, double reached) {
+          for (unsigned int k = point.n_nodes; k < point.n_entries; ++k)
+            forces[point.index[k]] +=
+              point.shape[k] * point.force() *
+              phi.adhesive_law().derivative(stretch, reached);
+        });
+    return forces;
+  }
+
+
+
+  template <int dim>
+  double
+  traction(const AdhesionIntegral<dim>                       &phi,
+           const typename AdhesionIntegral<dim>::Face        &face,
+           const typename AdhesionIntegral<dim>::Barycentric &place,
+           const VectorView                                  &s)
+  {
+    const BondScale bonds = phi.points().bonds_at(face, place);
+    return bonds.energy / bonds.stretch *
+           phi.adhesive_law().derivative(phi.points().trace(face, place, s) /
+                                           bonds.stretch,
+                                         phi.reached_at(face, place));
+  }
+
+
+
+  template <int dim>
+  bool
+  is_at_drop(const AdhesionIntegral<dim> &phi,
+             const VectorView            &s,
+             const double                 part)
+  {
+    const PiecewiseEnergy &pieces = phi.adhesive_law().branches();
+    bool                   is_at  = false;
+    phi.for_each_point(s,
+                       [&](const auto &point, double stretch, double reached) {
+                         for (unsigned int k = 0; k + 1 < pieces.size(); ++k)
+                           is_at =
+                             is_at ||
+                             (point.bonds.energy > 0. && pieces.has_drop(k) &&
+                              pieces[k].lower <= reached &&
+                              std::abs(stretch - pieces[k].lower) <=
+                                part * std::abs(stretch));
+                       });
+    return is_at;
+  }
+
+
+
+  template <int dim>
+  Eigen::SparseMatrix<double>
+  least_second_derivative(const AdhesionIntegral<dim> &phi,
+                          const VectorView            &s,
+                          const double                 part)
+  {
+    const AdhesiveLaw &law = phi.adhesive_law();
+    return phi.matrix(s, [&](const double stretch, const double reached) {
+      return std::min(law.second_derivative((1. + part) * stretch, reached),
+                      law.second_derivative((1. - part) * stretch, reached));
+    });
+  }
+
+
+
+  template <int dim>
+  Eigen::VectorXd
+  lumped_weights(const AdhesionIntegral<dim> &phi)
+  {
+    const unsigned int n = phi.n_nodes();
+    return phi.matrix(Eigen::VectorXd::Zero(n), [](const double, const double) {
+      return 1.;
+    }) * Eigen::VectorXd::Ones(n);
+  }
+
+
+
+  template decltype(open_measure<2>)            open_measure<2>;
+  template decltype(open_measure<3>)            open_measure<3>;
+  template decltype(dissipated_energy<2>)       dissipated_energy<2>;
+  template decltype(dissipated_energy<3>)       dissipated_energy<3>;
+  template decltype(held_forces<2>)             held_forces<2>;
+  template decltype(held_forces<3>)             held_forces<3>;
+  template decltype(traction<2>)                traction<2>;
+  template decltype(traction<3>)                traction<3>;
+  template decltype(is_at_drop<2>)              is_at_drop<2>;
+  template decltype(is_at_drop<3>)              is_at_drop<3>;
+  template decltype(least_second_derivative<2>) least_second_derivative<2>;
+  template decltype(least_second_derivative<3>) least_second_derivative<3>;
+  template decltype(lumped_weights<2>)          lumped_weights<2>;
+  template decltype(lumped_weights<3>)          lumped_weights<3>;
+} // namespace Debond

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/contact/contact_points.h>
+
+#include <cmath>
+#include <limits>
+
+namespace Debond
+{
+  template <int dim>
+  ContactPoints<dim>::ContactPoints(
+    const ContactBoundary<dim>   &contact_boundary,
+    const ContactQuadrature<dim> &quadrature_rule,
+    const BondField<dim>         *bond_field)
+    : contact(contact_boundary)
+    , quadrature(quadrature_rule)
+    , field(bond_field)
+  {
+    collect_bonds();
+    collect_points();
+  }
+
+
+
+  template <int dim>
+  void
+  ContactPoints<dim>::set_factor(const double factor)
+  {
+    load_factor = factor;
+    if (!contact.held_vertices.empty())
+      collect_points();
+  }
+
+
+
+  template <int dim>
+  void
+  ContactPoints<dim>::collect_bonds()
+  {
+    if (field == nullptr)
+      return;
+
+    // The bonds of the faces around a vertex, each as often as its measure.
+    struct Sum
+    {
+      BondScale first;
+      bool      is_mixed  = false;
+      double    measure   = 0.;
+      double    stiffness = 0.; ///< times measure, as is the energy
+      double    energy    = 0.;
+
+      void
+      add(const BondScale &bonds, const double more)
+      {
+        if (measure == 0.)
+          first = bonds;
+        is_mixed = is_mixed || bonds.energy != first.energy ||
+                   bonds.stretch != first.stretch;
+        measure += more;
+        stiffness += more * bonds.energy / (bonds.stretch * bonds.stretch);
+        energy += more * bonds.energy;
+      }
+
+      BondScale
+      mean() const
+      {
+        // Equal bonds keep their last digits.
+        if (!is_mixed)
+          return first;
+        if (energy == 0.)
+          return {0., 1.};
+        return {energy / measure, std::sqrt(energy / stiffness)};
+      }
+    };
+    std::vector<Sum> nodes(contact.nodes.size());
+    std::vector<Sum> held(contact.held_vertices.size());
+    for (const Face &face : contact.faces)
+      for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
+        if (!face.is_held(k))
+          nodes[face.node(k)].add(
+            field->at(contact.nodes[face.node(k)].position, face.id),
+            face.measure);
+        else if (!held.empty())
+          held[face.held_at(k)].add(
+            field->at(contact.held_vertices[face.held_at(k)].position, face.id),
+            face.measure);
+        else if (k < dim)
+          // A field has to have a value at all vertices, so that a fault in it
+          // does not depend on the supports.
+          field->at(face.vertices[k], face.id);
+
+    for (const Sum &sum : nodes)
+      bonds_of_nodes.push_back(sum.mean());
+    for (const Sum &sum : held)
+      bonds_of_held.push_back(sum.mean());
+  }
+
+
+
+  template <int dim>
+  void
+  ContactPoints<dim>::collect_points()
+  {
+    places.clear();
+    points.assign(is_nodal() ? contact.nodes.size() : 0, ContactPoint<dim>());
+    for (const Face &face : contact.faces)
+      for (const auto &in_rule : quadrature.points())
+        {
+          const Trace shape = bernstein(in_rule.barycentric, contact.degree);
+          ContactPoint<dim> point;
+          point.weight   = in_rule.weight * face.measure;
+          point.bonds    = bonds_at(face, in_rule.barycentric);
+          const auto add = [&](const unsigned int index, const unsigned int k) {
+            point.index[point.n_entries] = index;
+            point.shape[point.n_entries] = shape[k];
+            ++point.n_entries;
+          };
+          for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
+            if (!face.is_held(k) && shape[k] != 0.)
+              add(face.node(k), k);
+          point.n_nodes = point.n_entries;
+          for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
+            if (face.is_held(k) && shape[k] != 0.)
+              {
+                point.offset += shape[k] * held_trace(face, k);
+                add(face.held_at(k), k);
+              }
+
+          // A point on a vertex has the bonds of all faces around it.
+          if (is_nodal() && point.n_nodes == 1)
+            {
+              ContactPoint<dim> &at_node = points[point.index[0]];
+              point.weight += at_node.weight;
+              point.bonds = bonds_at(point.index[0]);
+              at_node     = point;
+              places.push_back(point.index[0]);
+              continue;
+            }
+          if (is_nodal() && !bonds_of_held.empty())
+            point.bonds = bonds_of_held[point.index[0]];
+          places.push_back(static_cast<unsigned int>(points.size()));
+          points.push_back(point);
+        }
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  ContactPoints<dim>::nearest(const Face &face, const Barycentric &place) const
+  {
+    // The least |r - p|^2 / 2 less |p|^2 / 2, which has no rounding at
+    // vertices.
+    const auto  &rule  = quadrature.points();
+    unsigned int next  = 0;
+    double       least = std::numeric_limits<double>::infinity();
+    for (unsigned int q = 0; q < rule.size(); ++q)
+      {
+        double sum = 0.;
+        for (unsigned int k = 0; k < dim; ++k)
+          sum +=
+            rule[q].barycentric[k] * (0.5 * rule[q].barycentric[k] - place[k]);
+        if (sum < least)
+          {
+            least = sum;
+            next  = q;
+          }
+      }
+    return places[(&face - contact.faces.data()) * rule.size() + next];
+  }
+
+
+
+  template <int dim>
+  BondScale
+  ContactPoints<dim>::bonds_at(const Face &face, const Barycentric &place) const
+  {
+    dealii::Point<dim> position;
+    for (unsigned int k = 0; k < dim; ++k)
+      position += place[k] * face.vertices[k];
+    return bonds_at(position, face.id);
+  }
+
+
+
+  template <int dim>
+  double
+  ContactPoints<dim>::held_trace(const Face &face, const unsigned int k) const
+  {
+    if (contact.held_vertices.empty())
+      return 0.;
+    const auto &held = contact.held_vertices[face.held_at(k)];
+    return load_factor * held.normal_displacement - held.gap;
+  }
+
+
+
+  template <int dim>
+  typename ContactPoints<dim>::Trace
+  ContactPoints<dim>::trace_on(const Face &face, const VectorView &s) const
+  {
+    Trace trace = {};
+    for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
+      trace[k] = face.is_held(k) ? held_trace(face, k) : s(face.node(k));
+    return trace;
+  }
+
+
+
+  template <int dim>
+  double
+  ContactPoints<dim>::trace(const Face        &face,
+                            const Barycentric &place,
+                            const VectorView  &s) const
+  {
+    const Trace coefficients = trace_on(face, s);
+    const Trace shape        = bernstein(place, contact.degree);
+    double      result       = 0.;
+    for (unsigned int k = 0; k < contact.n_face_nodes(); ++k)
+      result += shape[k] * coefficients[k];
+    return result;
+  }
+
+
+
+  template class ContactPoints<2>;
+  template class ContactPoints<3>;
+} // namespace Debond
