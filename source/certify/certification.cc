@@ -161,50 +161,55 @@ namespace Debond
     report_certificate(const Certificate &certificate, Record &record)
     {
       const bool is_global = certificate.minimum == CertifiedMinimum::global;
+      const std::string status = to_string(certificate.proof_status);
       record.heading("Certificate");
-      record.add("/certificate/minimum", is_global ? "global" : "fixed state");
+      record.add("/certificate",
+                 {{"minimum", is_global ? "global" : "fixed state"},
+                  {"loads_are_exact", certificate.loads_are_exact},
+                  {"lower", certificate.lower},
+                  {"upper", certificate.upper},
+                  {"relative_width", certificate.width()}});
       record.line("of",
                   is_global ?
                     "the least J of the continuous problem" :
                     "the least J of the continuous problem with the bonds of "
                     "each side as they are");
-      record.add("/certificate/loads_are_exact", certificate.loads_are_exact);
       if (!certificate.loads_are_exact)
         record.line("loads",
                     "taken as linear on each side and constant in each "
                     "element; the interval is wider by the work of the rest "
                     "at the result");
-      record.add("/certificate/lower", certificate.lower);
-      record.add("/certificate/upper", certificate.upper);
       record.line("interval",
-                  scientific_below(certificate.lower, 10) + " to " +
-                    scientific_above(certificate.upper, 10));
-      record.add("/certificate/relative_width", certificate.width());
+                  scientific_below(certificate.lower, 10),
+                  " to ",
+                  scientific_above(certificate.upper, 10));
       record.line("certified to",
-                  scientific_above(certificate.width(), 1) + " of |J|");
+                  scientific_above(certificate.width(), 1),
+                  " of |J|");
       for (const CertifiedLength &length : certificate.lengths)
         {
           record.add("/certificate/lengths/" + length.state,
                      {{"least", length.least}, {"largest", length.largest}});
           record.line(length.state + " in all minima",
-                      scientific_below(length.least, 3) + " to " +
-                        scientific_above(length.largest, 3));
+                      scientific_below(length.least, 3),
+                      " to ",
+                      scientific_above(length.largest, 3));
         }
-      record.add("/certificate/unknowns", certificate.n_unknowns);
-      record.add("/certificate/contact_sides", certificate.n_sides);
-      record.add("/certificate/proof_nodes", certificate.proof_nodes);
-      record.add("/certificate/proof_status",
-                 to_string(certificate.proof_status));
+      record.add("/certificate",
+                 {{"unknowns", certificate.n_unknowns},
+                  {"contact_sides", certificate.n_sides},
+                  {"proof_nodes", certificate.proof_nodes},
+                  {"proof_status", status}});
       if (record.has_details())
         record.line("equilibrated stresses",
-                    words(certificate.n_unknowns,
-                          " unknowns, ",
-                          certificate.n_sides,
-                          " contact sides, ",
-                          certificate.proof_nodes,
-                          " nodes of branch and bound (",
-                          to_string(certificate.proof_status),
-                          ")"));
+                    certificate.n_unknowns,
+                    " unknowns, ",
+                    certificate.n_sides,
+                    " contact sides, ",
+                    certificate.proof_nodes,
+                    " nodes of branch and bound (",
+                    status,
+                    ")");
     }
   } // namespace
 

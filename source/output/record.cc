@@ -2,23 +2,11 @@
 #include <debond/base/atomic_file.h>
 #include <debond/output/record.h>
 
-#include <iomanip>
-
 namespace Debond
 {
   Record::Record(const bool details)
     : details(details)
   {}
-
-
-
-  void
-  Record::line(const std::string &label, const std::string &text)
-  {
-    constexpr int label_width = 21;
-    log << "  " << std::left << std::setw(label_width) << label << std::right
-        << ' ' << text << '\n';
-  }
 
 
 

@@ -15,9 +15,9 @@ namespace Debond
     void
     report_program(Record &record)
     {
-      record.add("/revision", version.revision);
-      record.add("/deal_ii_version", version.deal_ii);
-      record.add("/build_type", version.build_type);
+      record.add({{"revision", version.revision},
+                  {"deal_ii_version", version.deal_ii},
+                  {"build_type", version.build_type}});
       record.heading("Debond " + version.program +
                      (record.has_details() ?
                         ", revision " + version.revision + ", deal.II " +
@@ -27,7 +27,7 @@ namespace Debond
 
 
 
-    /// As the scene says it.
+    /// Reports material, supports, loads and contact as the scene has them.
     void
     report_data(const ProblemParameters &problem,
                 const unsigned int       n_contact_nodes,
@@ -59,50 +59,50 @@ namespace Debond
                        "" :
                        words(", axis 1 at ", material.axis_angle, " degrees"));
       };
+      const auto line = [&record](const std::string &label,
+                                  const std::string &text) {
+        if (!text.empty())
+          record.line(label, text);
+      };
       const auto lines =
-        [&record](const std::string                        &label,
-                  const std::map<std::string, std::string> &texts) {
+        [&line](const std::string                        &label,
+                const std::map<std::string, std::string> &texts) {
           for (const auto &[side, text] : texts)
-            record.line(label + ' ' + side, text);
+            line(label + ' ' + side, text);
         };
       const Material &material = problem.materials.everywhere;
       record.line("material",
-                  numbers(material) +
-                    (problem.dimension == 3 ? "" :
-                     material.hypothesis == Material::Hypothesis::plane_stress ?
-                                              ", plane stress" :
-                                              ", plane strain"));
+                  numbers(material),
+                  problem.dimension == 3 ? "" :
+                  material.hypothesis == Material::Hypothesis::plane_stress ?
+                                           ", plane stress" :
+                                           ", plane strain");
       for (const auto &[region, own] : problem.materials.of_regions())
         record.line("material " + region, numbers(own));
       record.line("clamped", list(problem.clamped_boundaries));
-      if (!problem.supports.rollers.empty())
-        record.line("roller", list(problem.supports.rollers));
+      line("roller", list(problem.supports.rollers));
       lines("displacement", problem.supports.displacements);
-      if (!problem.supports.gap.empty())
-        record.line("initial gap", problem.supports.gap);
+      line("initial gap", problem.supports.gap);
       lines("initial gap", problem.supports.gaps);
-      if (!problem.loads.body_force.empty())
-        record.line("body force", problem.loads.body_force);
+      line("body force", problem.loads.body_force);
       lines("traction", problem.loads.tractions);
       lines("pressure", problem.loads.pressures);
       lines("force", problem.loads.forces);
-      if (!problem.loads.temperature_change.empty())
-        record.line("temperature change", problem.loads.temperature_change);
-      record.add("/contact_nodes", n_contact_nodes);
+      line("temperature change", problem.loads.temperature_change);
       record.line("contact",
-                  words(list(problem.contact_boundaries),
-                        ", ",
-                        n_contact_nodes,
-                        " nodes"));
+                  list(problem.contact_boundaries),
+                  ", ",
+                  n_contact_nodes,
+                  " nodes");
       record.line("contact law",
-                  problem.law.name +
-                    (problem.law.data.empty() ?
-                       "" :
-                       ", " + problem.law.data + ", " +
-                         problem.quadrature_name + " quadrature"));
+                  problem.law.name,
+                  problem.law.data.empty() ?
+                    "" :
+                    ", " + problem.law.data + ", " + problem.quadrature_name +
+                      " quadrature");
       for (const auto &[side, bonds] : problem.law.boundaries)
-        record.line("bonds " + side,
-                    "a = " + bonds.stiffness + ", M = " + bonds.threshold);
+        record.line(
+          "bonds " + side, "a = ", bonds.stiffness, ", M = ", bonds.threshold);
       lines("tangential", problem.tangential_displacements);
     }
   } // namespace
@@ -119,22 +119,6 @@ namespace Debond
     const ProblemParameters &problem = scene.parameters();
     report_program(record);
     record.heading("Problem");
-    record.add("/scene", problem.scene);
-    if (record.has_details())
-      record.line("scene", problem.scene);
-    record.add("/dimension", dim);
-    record.add("/cells", scene.n_cells());
-    record.add("/degree", problem.degree);
-    const auto lengths = problem.body->extents();
-    record.line("mesh",
-                words(scene.n_cells(),
-                      dim == 2 ? " triangles, " : " tetrahedra, ",
-                      lengths[0],
-                      " x ",
-                      lengths[1],
-                      dim == 2 ? "" : words(" x ", lengths[2]),
-                      problem.degree == 2 ? ", quadratic displacements" : ""));
-
     const unsigned int n_dofs = scene.n_unknowns();
     const unsigned int n_nodes =
       static_cast<unsigned int>(scene.contact_boundary().nodes.size());
@@ -144,32 +128,47 @@ namespace Debond
                           problem.tangential_displacements.empty();
     const unsigned int n_dofs_paper =
       n_dofs + (is_fixed ? (dim - 1) * n_nodes : 0);
-    record.add("/degrees_of_freedom", n_dofs);
-    record.add("/degrees_of_freedom_paper", n_dofs_paper);
+    record.add({{"scene", problem.scene},
+                {"dimension", dim},
+                {"cells", scene.n_cells()},
+                {"degree", problem.degree},
+                {"degrees_of_freedom", n_dofs},
+                {"degrees_of_freedom_paper", n_dofs_paper},
+                {"contact_nodes", n_nodes},
+                {"method", choice.method},
+                {"linear_solver", choice.linear_solver}});
+    if (record.has_details())
+      record.line("scene", problem.scene);
+    const auto lengths = problem.body->extents();
+    record.line("mesh",
+                scene.n_cells(),
+                dim == 2 ? " triangles, " : " tetrahedra, ",
+                lengths[0],
+                " x ",
+                lengths[1],
+                dim == 2 ? "" : words(" x ", lengths[2]),
+                problem.degree == 2 ? ", quadratic displacements" : "");
     record.line("unknowns",
-                words(n_dofs) +
-                  (is_fixed ?
-                     words(", with fixed tangential ones ", n_dofs_paper) :
-                     ""));
+                n_dofs,
+                is_fixed ?
+                  words(", with fixed tangential ones ", n_dofs_paper) :
+                  "");
     report_data(problem, n_nodes, record);
     if (const auto &motions =
           scene.problem().unknowns().held_by_contact().names;
         !motions.empty())
       record.line("held by contact",
-                  join(motions, ", ") + ", by bonds and the foundation alone");
-
-    record.add("/method", choice.method);
-    record.add("/linear_solver", choice.linear_solver);
+                  join(motions, ", "),
+                  ", by bonds and the foundation alone");
     record.line("method",
-                choice.method +
-                  (choice.linear_solver != LinearSolver::none ?
-                     ", " + choice.linear_solver + " linear solver" :
-                     "") +
-                  (choice.method == SolverMethod::euclidean_bundle ?
-                     words(", u_k = ", bundle_weight) :
-                     "") +
-                  (choice.reason.empty() ? "" :
-                                           ", chosen since " + choice.reason));
+                choice.method,
+                choice.linear_solver != LinearSolver::none ?
+                  ", " + choice.linear_solver + " linear solver" :
+                  "",
+                choice.method == SolverMethod::euclidean_bundle ?
+                  words(", u_k = ", bundle_weight) :
+                  "",
+                choice.reason.empty() ? "" : ", chosen since " + choice.reason);
   }
 
 
@@ -191,18 +190,18 @@ namespace Debond
                 {"error_factor", Record::json_of(level.error_factor)},
                 {"gap", level.gap},
                 {"seconds", level.seconds}});
-    record.line(
-      words("mesh ", number),
-      words(level.unknowns,
-            " unknowns, ",
-            level.contact_nodes,
-            " contact nodes, J ",
-            scientific(level.functional, 10),
-            ", error about ",
-            scientific(level.estimated_error(), 1),
-            level.gap > 0. ? ", gap " + scientific_above(level.gap, 1) : "") +
-        (record.has_details() ? ", " + fixed_point(level.seconds, 2) + " s" :
-                                ""));
+    record.line(words("mesh ", number),
+                level.unknowns,
+                " unknowns, ",
+                level.contact_nodes,
+                " contact nodes, J ",
+                scientific(level.functional, 10),
+                ", error about ",
+                scientific(level.estimated_error(), 1),
+                level.gap > 0. ? ", gap " + scientific_above(level.gap, 1) : "",
+                record.has_details() ?
+                  ", " + fixed_point(level.seconds, 2) + " s" :
+                  "");
   }
 
 
@@ -232,15 +231,15 @@ namespace Debond
     record.add("/timings_s/solve_parts",
                solve_parts.empty() ? Record::Json::object() :
                                      Record::Json(solve_parts));
-
-    record.add("/memory_estimate_bytes", choice.memory);
-    record.add("/peak_memory_bytes", peak_memory);
+    record.add({{"memory_estimate_bytes", choice.memory},
+                {"peak_memory_bytes", peak_memory}});
     if (record.has_details())
       {
         record.heading("Memory in MB");
         record.line("peak",
-                    fixed_point(peak_memory / 1e6, 0) + ", estimated " +
-                      fixed_point(choice.memory / 1e6, 0));
+                    fixed_point(peak_memory / 1e6, 0),
+                    ", estimated ",
+                    fixed_point(choice.memory / 1e6, 0));
       }
   }
 

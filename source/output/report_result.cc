@@ -14,6 +14,10 @@ namespace Debond
 {
   namespace
   {
+    using Json = Record::Json;
+
+
+
     /// The next of the bounds 1e-9, 1e-6, ... above a small error: the same on
     /// all machines unless the error is close to one of them.
     std::string
@@ -29,25 +33,59 @@ namespace Debond
 
 
 
+    /// Adds the components of a vector to summary.json at @p pointer and
+    /// returns them as the log has them, each one printed behind the
+    /// manipulators @p format.
+    template <int n, typename... Format>
+    std::string
+    add_vector(const std::string          &pointer,
+               const dealii::Tensor<1, n> &vector,
+               Record                     &record,
+               const Format &...format)
+    {
+      const std::vector<double> numbers(vector.begin_raw(), vector.end_raw());
+      std::vector<std::string>  texts;
+      for (const double number : numbers)
+        texts.push_back(words(format..., number));
+      record.add(pointer, numbers);
+      return "(" + join(texts, ", ") + ")";
+    }
+
+
+
+    /// Reports a resultant or a displacement, in the log if it has a label.
+    template <int dim>
+    void
+    report_vector(const std::string            &pointer,
+                  const std::string            &label,
+                  const dealii::Tensor<1, dim> &vector,
+                  Record                       &record)
+    {
+      const std::string text =
+        add_vector(pointer, vector, record, std::scientific);
+      if (!label.empty())
+        record.line(label, text);
+    }
+
+
+
     template <int dim>
     void
     report_status(const RunResult<dim> &result, Record &record)
     {
+      const SolveResult &solve = result.solve;
       record.heading(result.path.empty() ? "Result" :
                                            "Result at the last load factor");
-      record.add("/status", result.status);
-      record.add("/message", result.message);
-      record.add("/notes", result.notes);
-      record.line("status",
-                  (result.is_answer() ? "" : "NOT CONVERGED: ") +
-                    result.status);
+      record.add({{"status", result.status},
+                  {"message", result.message},
+                  {"notes", result.notes},
+                  {"functional", solve.functional}});
+      record.line(
+        "status", result.is_answer() ? "" : "NOT CONVERGED: ", result.status);
       if (!result.is_success())
         record.line("", result.message);
       for (const std::string &note : result.notes)
         record.line("note", note);
-
-      const SolveResult &solve = result.solve;
-      record.add("/functional", solve.functional);
       if (result.has_displacement())
         record.line("J", scientific(solve.functional, 10));
       if (solve.functional_from_start)
@@ -55,9 +93,9 @@ namespace Debond
       if (solve.is_replaced)
         record.line(
           "J from start",
-          scientific(*solve.functional_from_start, 10) +
-            ", of the state where the method ended; the lower one above was "
-            "found beside it");
+          scientific(*solve.functional_from_start, 10),
+          ", of the state where the method ended; the lower one above was "
+          "found beside it");
     }
 
 
@@ -66,29 +104,31 @@ namespace Debond
     void
     report_coming_off(const ComingOff<dim> &off, Record &record)
     {
-      const RigidMotion<dim> &motion = off.motion;
-      const auto list = [&](const std::string &name, const auto &tensor) {
-        Record::Json             numbers = Record::Json::array();
-        std::vector<std::string> texts;
-        for (unsigned int i = 0; i < tensor.dimension; ++i)
-          {
-            numbers.push_back(tensor[i]);
-            texts.push_back(words(std::setprecision(3), tensor[i]));
-          }
-        record.add("/comes_off/" + name, numbers);
-        return "(" + join(texts, ", ") + ")";
+      const auto add = [&](const std::string &name, const auto &vector) {
+        return add_vector("/comes_off/" + name,
+                          vector,
+                          record,
+                          std::setprecision(3));
       };
-      const std::string centre      = list("centre", motion.centre);
-      const std::string translation = list("translation", motion.translation);
-      const std::string rotation    = list("rotation", motion.rotation);
-      record.add("/comes_off/work", off.work);
-      record.add("/comes_off/towards_foundation", off.towards_foundation);
+      const std::string centre = add("centre", off.motion.centre);
+      const std::string translation =
+        add("translation", off.motion.translation);
+      const std::string rotation = add("rotation", off.motion.rotation);
+      record.add("/comes_off",
+                 {{"work", off.work},
+                  {"towards_foundation", off.towards_foundation}});
       record.line("comes off by",
-                  "translation " + translation + " of " + centre +
-                    " and rotation " + rotation +
-                    " for a largest opening of 1");
+                  "translation ",
+                  translation,
+                  " of ",
+                  centre,
+                  " and rotation ",
+                  rotation,
+                  " for a largest opening of 1");
       record.line("work of the loads",
-                  words(std::setprecision(3), off.work, " for that"));
+                  std::setprecision(3),
+                  off.work,
+                  " for that");
     }
 
 
@@ -96,20 +136,21 @@ namespace Debond
     void
     report_estimate(const ErrorEstimate &estimate, Record &record)
     {
-      record.add("/estimated_error", estimate.relative());
-      record.add("/estimated_error_of",
-                 estimate.is_of_J ? "J" : "stress energy");
-      record.add("/error_factor", Record::json_of(estimate.factor));
+      record.add(
+        {{"estimated_error", estimate.relative()},
+         {"estimated_error_of", estimate.is_of_J ? "J" : "stress energy"},
+         {"error_factor", Record::json_of(estimate.factor)}});
       record.line("error of the mesh",
-                  "about " + scientific(estimate.relative(), 1) +
-                    (estimate.is_of_J ?
-                       " of J" :
-                       " of the energy of the stresses, as J is near zero") +
-                    (estimate.factor ?
-                       " (" + fixed_point(*estimate.factor, 1) +
-                         " times the residual estimate, as J fell from mesh "
-                         "to mesh)" :
-                       ", not checked by a finer mesh"));
+                  "about ",
+                  scientific(estimate.relative(), 1),
+                  estimate.is_of_J ?
+                    " of J" :
+                    " of the energy of the stresses, as J is near zero",
+                  estimate.factor ?
+                    " (" + fixed_point(*estimate.factor, 1) +
+                      " times the residual estimate, as J fell from mesh "
+                      "to mesh)" :
+                    ", not checked by a finer mesh");
     }
 
 
@@ -123,11 +164,12 @@ namespace Debond
     {
       const bool        details = record.has_details();
       const std::string kind    = is_success ? to_string(minimum.kind) : "";
-      record.add("/minimum/state", kind);
-      record.add("/minimum/search_trials", minimum.search_trials);
-      record.add("/minimum/search_improvements", minimum.search_improvements);
-      record.add("/minimum/search_failures", minimum.search_failures);
-      record.add("/minimum/search_nodes", minimum.search_nodes);
+      record.add("/minimum",
+                 {{"state", kind},
+                  {"search_trials", minimum.search_trials},
+                  {"search_improvements", minimum.search_improvements},
+                  {"search_failures", minimum.search_failures},
+                  {"search_nodes", minimum.search_nodes}});
       if (is_success)
         {
           std::string text = kind;
@@ -147,19 +189,20 @@ namespace Debond
       if (!minimum.proof_attempted)
         return;
       const std::string status = to_string(minimum.proof_status);
-      record.add("/proof/status", status);
-      record.add("/proof/nodes", minimum.proof_nodes);
-      record.add("/proof/lower_bound", minimum.lower_bound);
-      record.add("/proof/relative_gap", minimum.relative_gap);
+      record.add("/proof",
+                 {{"status", status},
+                  {"nodes", minimum.proof_nodes},
+                  {"lower_bound", minimum.lower_bound},
+                  {"relative_gap", minimum.relative_gap}});
       record.line("proof",
-                  status + (details ?
-                              words(" after ",
-                                    minimum.proof_nodes,
-                                    " nodes, gap ",
-                                    scientific_above(minimum.relative_gap, 1),
-                                    " of what the bonds can change in J, J >= ",
-                                    scientific_below(minimum.lower_bound, 10)) :
-                              ""));
+                  status,
+                  details ? words(" after ",
+                                  minimum.proof_nodes,
+                                  " nodes, gap ",
+                                  scientific_above(minimum.relative_gap, 1),
+                                  " of what the bonds can change in J, J >= ",
+                                  scientific_below(minimum.lower_bound, 10)) :
+                            "");
     }
 
 
@@ -172,38 +215,39 @@ namespace Debond
       // A load path has many histories, which are added up.
       const bool is_bundle = method != SolverMethod::majorise_minimise &&
                              result.majorise_history.empty();
-      record.add("/iterations/total", result.iterations);
-      record.add("/iterations/long", result.long_steps);
-      record.add("/iterations/short", result.short_steps);
-      record.add("/iterations/null", result.null_steps);
-      record.add("/stop_criterion", result.criterion);
-      record.add("/relative_descent", Record::json_of(result.relative_descent));
-      record.add("/refined", result.is_refined);
-      record.add("/largest_qp_residual", result.largest_qp_residual);
-      record.add("/linear_iterations", result.linear_iterations);
-      record.add("/condition_estimate",
-                 Record::json_of(result.condition_estimate));
+      record.add("/iterations",
+                 {{"total", result.iterations},
+                  {"long", result.long_steps},
+                  {"short", result.short_steps},
+                  {"null", result.null_steps}});
+      record.add(
+        {{"stop_criterion", result.criterion},
+         {"relative_descent", Record::json_of(result.relative_descent)},
+         {"refined", result.is_refined},
+         {"largest_qp_residual", result.largest_qp_residual},
+         {"linear_iterations", result.linear_iterations},
+         {"condition_estimate", Record::json_of(result.condition_estimate)}});
       if (!record.has_details())
         return;
       record.line("iterations",
-                  words(result.iterations) + (is_bundle ?
-                                                words(" (long ",
-                                                      result.long_steps,
-                                                      ", short ",
-                                                      result.short_steps,
-                                                      ", null ",
-                                                      result.null_steps,
-                                                      ")") :
-                                                ""));
+                  result.iterations,
+                  is_bundle ? words(" (long ",
+                                    result.long_steps,
+                                    ", short ",
+                                    result.short_steps,
+                                    ", null ",
+                                    result.null_steps,
+                                    ")") :
+                              "");
       record.line(is_bundle ? "last v_k" : "optimality residual",
-                  scientific(result.criterion, 3) +
-                    (result.relative_descent ?
-                       ", " + scientific(*result.relative_descent, 1) +
-                         " of the strain energy" :
-                       "") +
-                    (result.is_refined ?
-                       ", before the refinement in extended precision" :
-                       ""));
+                  scientific(result.criterion, 3),
+                  result.relative_descent ?
+                    ", " + scientific(*result.relative_descent, 1) +
+                      " of the strain energy" :
+                    "",
+                  result.is_refined ?
+                    ", before the refinement in extended precision" :
+                    "");
     }
 
 
@@ -214,7 +258,7 @@ namespace Debond
                  const LargestValues     &largest,
                  Record                  &record)
     {
-      Record::Json             states = Record::Json::object();
+      Json                     states = Json::object();
       std::vector<std::string> texts;
       for (unsigned int k = 0; k < verification.state_names.size(); ++k)
         {
@@ -225,60 +269,43 @@ namespace Debond
           if (count > 0)
             texts.push_back(words(verification.name(state), " ", count));
         }
-      record.add("/bond_states", states);
+      record.add({{"bond_states", states},
+                  {"largest_opening", verification.largest_opening},
+                  {"broken_zone", verification.broken_zone},
+                  {"without_bonds", verification.without_bonds},
+                  {"largest_displacement", largest.displacement},
+                  {"largest_displacement_gradient", largest.gradient},
+                  {"largest_von_mises", largest.von_mises}});
       record.line("contact nodes",
                   texts.empty() ? "all held" : join(texts, ", "));
-
-      record.add("/largest_opening", verification.largest_opening);
-      record.add("/broken_zone", verification.broken_zone);
-      record.add("/without_bonds", verification.without_bonds);
       record.line("opening",
-                  "largest " + scientific(verification.largest_opening, 3) +
-                    ", broken zone " + scientific(verification.broken_zone, 3));
-
-      record.add("/largest_displacement", largest.displacement);
-      record.add("/largest_displacement_gradient", largest.gradient);
-      record.add("/largest_von_mises", largest.von_mises);
+                  "largest ",
+                  scientific(verification.largest_opening, 3),
+                  ", broken zone ",
+                  scientific(verification.broken_zone, 3));
       record.line("largest",
-                  "displacement " + scientific(largest.displacement, 3) +
-                    ", its gradient " + scientific(largest.gradient, 1) +
-                    ", von Mises stress " + scientific(largest.von_mises, 3));
+                  "displacement ",
+                  scientific(largest.displacement, 3),
+                  ", its gradient ",
+                  scientific(largest.gradient, 1),
+                  ", von Mises stress ",
+                  scientific(largest.von_mises, 3));
     }
 
 
 
-    /// A resultant, Cartesian components.
-    template <int dim>
-    void
-    report_force(const std::string            &name,
-                 const std::string            &label,
-                 const dealii::Tensor<1, dim> &force,
-                 const bool                    is_logged,
-                 Record                       &record)
-    {
-      record.add("/" + name,
-                 std::vector<double>(force.begin_raw(), force.end_raw()));
-      if (!is_logged)
-        return;
-      std::vector<std::string> components;
-      for (unsigned int d = 0; d < dim; ++d)
-        components.push_back(scientific(force[d], 6));
-      record.line(label, "(" + join(components, ", ") + ")");
-    }
-
-
-
-    /// What the scene wants to know, and the means over all named pieces.
+    /// Reports what the scene wants to know, and the means over all named
+    /// pieces.
     template <int dim>
     void
     report_probes(const RunResult<dim> &result, Record &record)
     {
-      record.add("/probes", Record::Json::object());
+      record.add("/probes", Json::object());
       for (const auto &[name, vector] : result.probes)
-        report_force("probes/" + name, "probe " + name, vector, true, record);
-      record.add("/mean_displacements", Record::Json::object());
+        report_vector("/probes/" + name, "probe " + name, vector, record);
+      record.add("/mean_displacements", Json::object());
       for (const auto &[name, vector] : result.means)
-        report_force("mean_displacements/" + name, "", vector, false, record);
+        report_vector("/mean_displacements/" + name, "", vector, record);
       if (!result.path.empty())
         record.add("/dissipated_energy",
                    result.path.back().state.dissipated_energy);
@@ -299,64 +326,65 @@ namespace Debond
         return details ? scientific(value, 2) : bound(value);
       };
       record.heading("Verification, from A u - f");
-      record.add("/law_violation", verification.law_violation);
+      record.add({{"law_violation", verification.law_violation},
+                  {"penetration", verification.penetration},
+                  {"equilibrium_residual", verification.equilibrium_residual},
+                  {"force_imbalance", verification.force_imbalance}});
       record.line("law violation",
-                  error(verification.law_violation) +
-                    (problem.law.name == "none" ?
-                       ", relative to the contact forces" :
-                       ", relative to what bonds bear and to the contact "
-                       "forces"));
-      record.add("/penetration", verification.penetration);
+                  error(verification.law_violation),
+                  problem.law.name == "none" ?
+                    ", relative to the contact forces" :
+                    ", relative to what bonds bear and to the contact forces");
       record.line("penetration", scientific(verification.penetration, 2));
-      record.add("/equilibrium_residual", verification.equilibrium_residual);
       record.line("residual",
-                  error(verification.equilibrium_residual) +
-                    ", relative to the reactions");
-      record.add("/force_imbalance", verification.force_imbalance);
+                  error(verification.equilibrium_residual),
+                  ", relative to the reactions");
       record.line("force imbalance",
-                  error(verification.force_imbalance) +
-                    ", relative to the forces");
+                  error(verification.force_imbalance),
+                  ", relative to the forces");
 
       if (const auto &distance = result.displacement_error; distance)
         {
-          record.add("/displacement_error/l2", distance->l2);
-          record.add("/displacement_error/h1", distance->h1);
-          record.add("/displacement_error/energy_norm", distance->energy_norm);
-          record.add("/displacement_error/exact_energy",
-                     distance->exact_energy);
+          record.add("/displacement_error",
+                     {{"l2", distance->l2},
+                      {"h1", distance->h1},
+                      {"energy_norm", distance->energy_norm},
+                      {"exact_energy", distance->exact_energy}});
           record.line("displacement error",
-                      scientific(distance->l2, 2) + " in L2, " +
-                        scientific(distance->h1, 2) + " in H1, " +
-                        scientific(distance->energy_norm, 2) +
-                        " in the energy norm, relative to the exact one");
+                      scientific(distance->l2, 2),
+                      " in L2, ",
+                      scientific(distance->h1, 2),
+                      " in H1, ",
+                      scientific(distance->energy_norm, 2),
+                      " in the energy norm, relative to the exact one");
         }
 
-      report_force("applied_force",
-                   "applied force",
-                   verification.applied_force,
-                   true,
-                   record);
-      report_force("clamped_reaction",
-                   "force of supports",
-                   verification.clamped_reaction,
-                   details,
-                   record);
-      record.add("/reactions", Record::Json::object());
+      const auto report = [&](const std::string            &name,
+                              const std::string            &label,
+                              const dealii::Tensor<1, dim> &force,
+                              const bool                    is_logged) {
+        report_vector("/" + name, is_logged ? label : "", force, record);
+      };
+      report("applied_force",
+             "applied force",
+             verification.applied_force,
+             true);
+      report("clamped_reaction",
+             "force of supports",
+             verification.clamped_reaction,
+             details);
+      record.add("/reactions", Json::object());
       for (const auto &[name, force] : verification.reactions)
-        report_force(
-          "reactions/" + name, "  of " + name, force, details, record);
-      report_force("contact_reaction",
-                   has_interfaces ? "force between bodies" :
-                                    "force of foundation",
-                   verification.contact_reaction,
-                   details,
-                   record);
-      report_force("tangential_reaction",
-                   "  tangential part",
-                   verification.tangential_reaction,
-                   details && (problem.tangential_displacement_fixed ||
-                               !problem.tangential_displacements.empty()),
-                   record);
+        report("reactions/" + name, "  of " + name, force, details);
+      report("contact_reaction",
+             has_interfaces ? "force between bodies" : "force of foundation",
+             verification.contact_reaction,
+             details);
+      report("tangential_reaction",
+             "  tangential part",
+             verification.tangential_reaction,
+             details && (problem.tangential_displacement_fixed ||
+                         !problem.tangential_displacements.empty()));
     }
 
 
@@ -364,7 +392,7 @@ namespace Debond
     void
     report_change(const std::string               &name,
                   const std::string               &label,
-                  const bool                       has_bonds,
+                  const std::string               &part,
                   const std::optional<BondChange> &change,
                   const LoadPathParameters        &load_path,
                   Record                          &record)
@@ -383,20 +411,19 @@ namespace Debond
                   {"broken_before", change->broken_before},
                   {"broken_after", change->broken_after}});
       record.line(label,
-                  words("at ",
-                        load_path.name(
-                          {change->factor, change->displacement_factor}),
-                        ", step ",
-                        change->step,
-                        has_bonds ? ", broken part " : ", open part ",
-                        change->broken_before,
-                        " to ",
-                        change->broken_after) +
-                    (change->change_factor ? words(", from ",
-                                                   std::setprecision(10),
-                                                   *change->change_factor,
-                                                   " on") :
-                                             ""));
+                  "at ",
+                  load_path.name({change->factor, change->displacement_factor}),
+                  ", step ",
+                  change->step,
+                  part,
+                  change->broken_before,
+                  " to ",
+                  change->broken_after,
+                  change->change_factor ? words(", from ",
+                                                std::setprecision(10),
+                                                *change->change_factor,
+                                                " on") :
+                                          "");
     }
 
 
@@ -431,25 +458,26 @@ namespace Debond
               to   = k;
             }
         }
-      record.add(
-        "/load_path/arc",
-        {{"states", arc.size()},
-         {"unstable", unstable},
-         {"back_from",
-          from == to ? Record::Json(nullptr) : Record::Json(factor(from))},
-         {"back_to",
-          from == to ? Record::Json(nullptr) : Record::Json(factor(to))}});
+      const bool goes_back = from != to;
+      record.add("/load_path/arc",
+                 {{"states", arc.size()},
+                  {"unstable", unstable},
+                  {"back_from", goes_back ? Json(factor(from)) : Json()},
+                  {"back_to", goes_back ? Json(factor(to)) : Json()}});
       record.line("arc",
-                  words(arc.size(), " states, ", unstable, " unstable") +
-                    (from == to ?
-                       "" :
-                       words(", the longest way back from ",
-                             load_path.moves_only() ? "displacement factor " :
-                                                      "factor ",
-                             std::setprecision(10),
-                             factor(from),
-                             " to ",
-                             factor(to))));
+                  arc.size(),
+                  " states, ",
+                  unstable,
+                  " unstable",
+                  goes_back ?
+                    words(", the longest way back from ",
+                          load_path.moves_only() ? "displacement factor " :
+                                                   "factor ",
+                          std::setprecision(10),
+                          factor(from),
+                          " to ",
+                          factor(to)) :
+                    "");
     }
 
 
@@ -464,23 +492,25 @@ namespace Debond
                   Record                           &record)
     {
       record.heading("Load path");
-      record.add("/load_path/factors", path.factors);
-      record.add("/load_path/steps", path.steps);
-      record.add("/load_path/last_factor", load_path.varying(path.last));
+      record.add("/load_path",
+                 {{"factors", path.factors},
+                  {"steps", path.steps},
+                  {"last_factor", load_path.varying(path.last)},
+                  {"comes_off_at",
+                   comes_off_at ? Json(load_path.varying(*comes_off_at)) :
+                                  Json()}});
       record.line("factors",
-                  words(path.steps,
-                        " of ",
-                        path.factors,
-                        ", to ",
-                        load_path.name(path.last)));
-      record.add("/load_path/comes_off_at",
-                 comes_off_at ? Record::Json(load_path.varying(*comes_off_at)) :
-                                Record::Json(nullptr));
+                  path.steps,
+                  " of ",
+                  path.factors,
+                  ", to ",
+                  load_path.name(path.last));
       if (comes_off_at)
-        record.line("comes off", "at " + load_path.name(*comes_off_at));
+        record.line("comes off", "at ", load_path.name(*comes_off_at));
+      const std::string part = has_bonds ? ", broken part " : ", open part ";
       report_change("largest_break",
                     has_bonds ? "most bonds break" : "most nodes open",
-                    has_bonds,
+                    part,
                     path.largest_break,
                     load_path,
                     record);
@@ -488,27 +518,32 @@ namespace Debond
       const bool bonds_close = has_bonds && load_path.bonds_heal;
       report_change("largest_closing",
                     bonds_close ? "most bonds close" : "most nodes close",
-                    bonds_close,
+                    part,
                     path.largest_closing,
                     load_path,
                     record);
 
-      record.add("/load_path/compared_with_global_branch", path.compared);
-      record.add("/load_path/above_global_branch", path.above_global);
-      record.add("/load_path/largest_excess", path.largest_excess);
+      record.add("/load_path",
+                 {{"compared_with_global_branch", path.compared},
+                  {"above_global_branch", path.above_global},
+                  {"largest_excess", path.largest_excess}});
       if (path.compared > 0)
-        record.line(
-          "above global branch",
-          words("at ", path.above_global, " of ", path.compared, " factors") +
-            (path.above_global > 0 ?
-               words(", by ", 100. * path.largest_excess, " % of |J| at most") :
-               ""));
+        record.line("above global branch",
+                    "at ",
+                    path.above_global,
+                    " of ",
+                    path.compared,
+                    " factors",
+                    path.above_global > 0 ? words(", by ",
+                                                  100. * path.largest_excess,
+                                                  " % of |J| at most") :
+                                            "");
     }
 
 
 
-    /// What became of the factors of a load path, and its curve of stationary
-    /// states.
+    /// Reports what became of the factors of a load path, and its curve of
+    /// stationary states.
     template <int dim>
     void
     report_load_path(const LoadPathParameters &load_path,
@@ -534,16 +569,15 @@ namespace Debond
         size = std::max(size, step.state.cell_size_at_edge);
       record.add("/load_path/cell_size_at_edge", size);
       if (size > 0.)
-        record.line(
-          "edge of the bonds",
-          words("E*/a is about ",
-                std::setprecision(3),
-                1. / size,
-                " cells there",
-                size > Tolerance::cell_size_at_edge ?
-                  ": a path breaks late. Take smaller cells there, or "
-                  "let the bonds end with a part of the boundary" :
-                  ""));
+        record.line("edge of the bonds",
+                    "E*/a is about ",
+                    std::setprecision(3),
+                    1. / size,
+                    " cells there",
+                    size > Tolerance::cell_size_at_edge ?
+                      ": a path breaks late. Take smaller cells there, or "
+                      "let the bonds end with a part of the boundary" :
+                      "");
     }
   } // namespace
 
@@ -561,11 +595,10 @@ namespace Debond
     if (!result.levels.empty())
       {
         // Of the first mesh before.
-        record.add("/cells", scene.n_cells());
-        record.add("/degrees_of_freedom",
-                   scene.problem().unknowns().n_free_dofs());
-        record.add("/contact_nodes",
-                   scene.problem().unknowns().contact().size());
+        const ElasticUnknowns<dim> &unknowns = scene.problem().unknowns();
+        record.add({{"cells", scene.n_cells()},
+                    {"degrees_of_freedom", unknowns.n_free_dofs()},
+                    {"contact_nodes", unknowns.contact().size()}});
       }
     report_status(result, record);
     if (result.coming_off)

@@ -2,6 +2,8 @@
 #ifndef debond_output_record_h
 #define debond_output_record_h
 
+#include <debond/base/text.h>
+
 #include <nlohmann/json.hpp>
 
 #include <optional>
@@ -29,12 +31,24 @@ namespace Debond
       return details;
     }
 
-    /// An entry of summary.json by its JSON pointer, such as
-    /// "/iterations/total"; studies find it by the same one.
+    /// Puts a value into summary.json at a JSON pointer such as "/iterations",
+    /// by which studies find it; the entries of an object come behind those
+    /// that are there.
     void
     add(const std::string &pointer, const Json &value)
     {
-      json[Json::json_pointer(pointer)] = value;
+      Json &there = json[Json::json_pointer(pointer)];
+      if (value.is_object())
+        there.update(value);
+      else
+        there = value;
+    }
+
+    /// Puts the @p entries, an object, at the top of summary.json.
+    void
+    add(const Json &entries)
+    {
+      add("", entries);
     }
 
     /// A line of the log that has no label.
@@ -44,8 +58,15 @@ namespace Debond
       log << text << '\n';
     }
 
+    /// A line of the log of a label and words() of all parts.
+    template <typename... Parts>
     void
-    line(const std::string &label, const std::string &text);
+    line(const std::string &label, const Parts &...parts)
+    {
+      constexpr int label_width = 21;
+      log << words("  ", std::left, std::setw(label_width), label, std::right)
+          << ' ' << words(parts...) << '\n';
+    }
 
     /// Prints the lines since the last call.
     void
