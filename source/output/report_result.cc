@@ -392,7 +392,7 @@ namespace Debond
     void
     report_change(const std::string               &name,
                   const std::string               &label,
-                  const std::string               &part,
+                  const bool                       has_bonds,
                   const std::optional<BondChange> &change,
                   const LoadPathParameters        &load_path,
                   Record                          &record)
@@ -415,7 +415,7 @@ namespace Debond
                   load_path.name({change->factor, change->displacement_factor}),
                   ", step ",
                   change->step,
-                  part,
+                  has_bonds ? ", broken part " : ", open part ",
                   change->broken_before,
                   " to ",
                   change->broken_after,
@@ -507,10 +507,9 @@ namespace Debond
                   load_path.name(path.last));
       if (comes_off_at)
         record.line("comes off", "at ", load_path.name(*comes_off_at));
-      const std::string part = has_bonds ? ", broken part " : ", open part ";
       report_change("largest_break",
                     has_bonds ? "most bonds break" : "most nodes open",
-                    part,
+                    has_bonds,
                     path.largest_break,
                     load_path,
                     record);
@@ -518,7 +517,7 @@ namespace Debond
       const bool bonds_close = has_bonds && load_path.bonds_heal;
       report_change("largest_closing",
                     bonds_close ? "most bonds close" : "most nodes close",
-                    part,
+                    bonds_close,
                     path.largest_closing,
                     load_path,
                     record);
