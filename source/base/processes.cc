@@ -59,7 +59,7 @@ namespace Debond
         setenv(name, value, /*overwrite=*/0);
     static int    argc = 0;
     static char **argv = nullptr;
-    // A library that starts with MPI takes it from an InterruptGuard.
+    // A library that starts with MPI takes it from a SignalWatch.
     struct sigaction of_term;
     sigaction(SIGTERM, nullptr, &of_term);
     session =

@@ -461,7 +461,7 @@ namespace Debond
   Certificate
   Certifier<dim>::certify(const DofVector                &u,
                           const BranchAndBoundParameters &proof,
-                          const std::function<bool()>    &may_go_on,
+                          const Interruption             &interruption,
                           const Certificate              *earlier) const
   {
     const ElasticFields<dim> &fields = scene->problem().fields();
@@ -490,7 +490,8 @@ namespace Debond
       }
     if constexpr (dim == 2)
       if (!trace_constants.empty())
-        certify_global(u, displacement, proof, may_go_on, earlier, certificate);
+        certify_global(
+          u, displacement, proof, interruption, earlier, certificate);
     if (!std::isfinite(certificate.lower))
       throw EquilibriumError("no bound was found (" +
                              to_string(certificate.proof_status) + ")");
@@ -516,7 +517,7 @@ namespace Debond
   Certifier<2>::certify_global(const DofVector                &u,
                                const DofVector                &displacement,
                                const BranchAndBoundParameters &proof,
-                               const std::function<bool()>    &may_go_on,
+                               const Interruption             &interruption,
                                const Certificate              *earlier,
                                Certificate &certificate) const
   {
@@ -549,7 +550,7 @@ namespace Debond
                                 laws,
                                 side_energies);
     GlobalBound        bound =
-      bound_global(problems, means, certificate.upper, proof, may_go_on);
+      bound_global(problems, means, certificate.upper, proof, interruption);
     certificate.lower        = bound.lower - own;
     certificate.reserve      = bound.rounding + 2. * own;
     certificate.proof_status = bound.status;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/base/interrupt.h>
+#include <debond/base/interruption.h>
 #include <debond/base/processes.h>
 #include <debond/base/text.h>
 #include <debond/base/tolerances.h>
@@ -52,14 +52,6 @@ namespace Debond
       if (!certificate.loads_are_exact)
         text << " (a vertex where a load jumps or bends makes it narrower)";
       return text.str();
-    }
-
-
-
-    bool
-    may_go_on()
-    {
-      return !InterruptGuard::requested();
     }
 
 
@@ -259,12 +251,11 @@ namespace Debond
                            const SolveResult                       &result,
                            const bool                               is_last)
   {
-    const InterruptGuard guard;
-    const auto           certify = [&](const CertificateKind kind_of_this) {
+    const auto certify = [&](const CertificateKind kind_of_this) {
       certificate = Certifier<dim>(kind_of_this, scene)
                       .certify(result.u,
                                proof,
-                               may_go_on,
+                               Interruption::by_signal(),
                                latest_global ? &*latest_global : nullptr);
       if (certificate->minimum == CertifiedMinimum::global)
         latest_global = certificate;
@@ -326,12 +317,12 @@ namespace Debond
   {
     if (kind != CertificateKind::none && result.is_success() && !certificate)
       {
-        dealii::Timer        timer;
-        const InterruptGuard guard;
-        const auto           certify = [&](const Certifier<dim> &certifier) {
-          certificate = certifier.certify(result.solve.u, proof, may_go_on);
+        dealii::Timer timer;
+        const auto    certify = [&](const Certifier<dim> &certifier) {
+          certificate =
+            certifier.certify(result.solve.u, proof, Interruption::by_signal());
           certificate->include(result.solve.functional);
-          if (!may_go_on())
+          if (Interruption::by_signal().requested())
             result.solve.minimum.interrupted = true;
         };
         const std::string failure = no_certificate([&]() {

@@ -158,12 +158,12 @@ namespace Debond
                    const Eigen::VectorXd          &means,
                    const double                    upper,
                    const BranchAndBoundParameters &proof,
-                   const std::function<bool()>    &may_go_on)
+                   const Interruption             &interruption)
         : problems(problems)
         , given_means(means)
         , upper(upper)
         , proof(proof)
-        , may_go_on(may_go_on)
+        , interruption(interruption)
       {}
 
       unsigned int nodes = 0; ///< of all bounds
@@ -176,7 +176,7 @@ namespace Debond
       const Eigen::VectorXd          &given_means;
       const double                    upper;
       const BranchAndBoundParameters &proof;
-      const std::function<bool()>    &may_go_on;
+      const Interruption             &interruption;
 
       /// Returns the bound.
       double
@@ -216,7 +216,7 @@ namespace Debond
         problems.mean_problem(known.ranges, given_means, D));
       const BranchAndBoundResult bound =
         branch_and_bound(parameters,
-                         {problem->S, problem->g, *problem->phi, may_go_on},
+                         {problem->S, problem->g, *problem->phi, interruption},
                          problem->kept_of(given_means));
       nodes += bound.nodes;
       const double lower =
@@ -251,7 +251,8 @@ namespace Debond
     void
     StagedBounds::look(const bool is_quick, Known &known) const
     {
-      shrink_ranges(*known.problem, upper, is_quick, may_go_on, known.ranges);
+      shrink_ranges(
+        *known.problem, upper, is_quick, interruption, known.ranges);
     }
 
 
@@ -288,7 +289,9 @@ namespace Debond
     {
       begin(known);
       unsigned int n_idle = 0;
-      for (unsigned int stage = 0; stage < n_stages && may_go_on(); ++stage)
+      for (unsigned int stage = 0;
+           stage < n_stages && !interruption.requested();
+           ++stage)
         {
           look(stage == 0, known);
           const double before = upper - known.lower;
@@ -301,7 +304,7 @@ namespace Debond
               (stage > 0 && !losses_matter(known, upper)))
             break;
         }
-      if (may_go_on())
+      if (!interruption.requested())
         look(false, known);
     }
   } // namespace
@@ -353,9 +356,9 @@ namespace Debond
                const Eigen::VectorXd          &means,
                const double                    upper,
                const BranchAndBoundParameters &proof,
-               const std::function<bool()>    &may_go_on)
+               const Interruption             &interruption)
   {
-    StagedBounds bounds(problems, means, upper, proof, may_go_on);
+    StagedBounds bounds(problems, means, upper, proof, interruption);
     Known        last;
     for (const ContactSide &side : problems.contact_sides())
       {

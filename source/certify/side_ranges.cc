@@ -126,11 +126,11 @@ namespace Debond
 
 
   void
-  shrink_ranges(const MeanProblem           &problem,
-                const double                 upper,
-                const bool                   is_quick,
-                const std::function<bool()> &may_go_on,
-                std::vector<CertifiedSide>  &ranges)
+  shrink_ranges(const MeanProblem          &problem,
+                const double                upper,
+                const bool                  is_quick,
+                const Interruption         &interruption,
+                std::vector<CertifiedSide> &ranges)
   {
     const double           best = upper - problem.constant + problem.rounding;
     const NodeBound        bound(problem.S, problem.g, *problem.phi);
@@ -155,7 +155,7 @@ namespace Debond
     std::vector<CertifiedSide> hulls(ranges.size(), no_range);
     for (unsigned int nodes = 0; !open.empty(); ++nodes)
       {
-        if (!may_go_on())
+        if (interruption.requested())
           return;
         ProofNode node = std::move(open.back());
         open.pop_back();

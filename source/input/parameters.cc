@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/interruption.h>
 #include <debond/base/memory.h>
-#include <debond/base/run_watch.h>
 #include <debond/base/text.h>
 #include <debond/input/material_parameters.h>
 #include <debond/input/mesh_parameters.h>
@@ -395,7 +395,6 @@ namespace Debond
   Parameters
   SceneTable::parameters(const std::string &scene)
   {
-    RunWatch::is_quiet = !p.output.machine_details;
     const Stage stage("mesh");
     p.scene = scene;
     complete_loads(p.dimension, p.materials.everywhere, p.loads, *this);

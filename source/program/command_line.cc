@@ -2,10 +2,9 @@
 #include <deal.II/base/multithread_info.h>
 
 #include <debond/base/blas_threads.h>
-#include <debond/base/interrupt.h>
+#include <debond/base/interruption.h>
 #include <debond/base/processes.h>
 #include <debond/base/ranks.h>
-#include <debond/base/run_watch.h>
 #include <debond/base/text.h>
 #include <debond/base/version.h>
 #include <debond/input/parameters.h>
@@ -169,10 +168,12 @@ namespace Debond
     ExitCode
     execute_scene(const std::string  &scene,
                   const SceneOptions &options,
+                  SignalWatch        &watch,
                   Directories        &directories)
     {
       SceneTable table;
       read_table(scene, options.assignments, table);
+      watch.begin_run(!table.has_machine_details());
       const Parameters parameters = table.parameters(scene);
 
       const auto [other, is_new] = directories.emplace(
@@ -232,9 +233,9 @@ namespace Debond
 
     ExitCode
     execute_scenes(const std::vector<std::string> &scenes,
-                   const SceneOptions             &options)
+                   const SceneOptions             &options,
+                   SignalWatch                    &watch)
     {
-      const InterruptGuard  interrupts;
       Directories           directories;
       std::vector<ExitCode> codes;
       for (const std::string &scene : scenes)
@@ -242,11 +243,12 @@ namespace Debond
           if (scenes.size() > 1)
             std::cout << (codes.empty() ? "" : "\n") << "== " << scene
                       << std::endl;
-          RunWatch::has_result = false;
           codes.push_back(
-            InterruptGuard::requested() ? ExitCode::interrupted : guard([&]() {
-              return execute_scene(scene, options, directories);
-            }));
+            Interruption::by_signal().requested() ?
+              ExitCode::interrupted :
+              guard([&]() {
+                return execute_scene(scene, options, watch, directories);
+              }));
         }
 
       ExitCode first_failure = ExitCode::success;
@@ -266,7 +268,7 @@ namespace Debond
 
 
     ExitCode
-    execute(const int argc, const char *const argv[])
+    execute(const int argc, const char *const argv[], SignalWatch &watch)
     {
       const po::options_description visible = visible_options();
       const po::variables_map       values  = parse(argc, argv, visible);
@@ -307,7 +309,7 @@ namespace Debond
         }
       if (scenes.empty())
         throw BadInput({"no scene is given; see debond --help"});
-      return execute_scenes(scenes, options);
+      return execute_scenes(scenes, options, watch);
     }
   } // namespace
 
@@ -320,12 +322,12 @@ namespace Debond
     // operations would only change rounding.
     dealii::MultithreadInfo::set_thread_limit(1);
     use_one_blas_thread_by_default();
-    RunWatch watch(std::cout, static_cast<int>(ExitCode::interrupted));
+    SignalWatch watch(std::cout, static_cast<int>(ExitCode::interrupted));
     if (n_started_ranks() > 1)
       start_mpi();
     if (!is_first_rank())
       std::cout.setstate(std::ios::failbit);
-    const ExitCode code = guard([&]() { return execute(argc, argv); });
+    const ExitCode code = guard([&]() { return execute(argc, argv, watch); });
     end_mpi();
     return code;
   }

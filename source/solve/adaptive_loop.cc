@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/base/interrupt.h>
 #include <debond/base/memory.h>
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/mesh_transfer.h>
@@ -172,7 +171,7 @@ namespace Debond
                 say_what_is_missing(error.what());
                 break;
               }
-            if (guard.requested())
+            if (interruption.requested())
               {
                 interrupt();
                 break;
@@ -356,7 +355,7 @@ namespace Debond
         if (goal == nullptr)
           return growth.meets_target();
         // Its look may have been cut short.
-        if (guard.requested())
+        if (interruption.requested())
           {
             interrupt();
             return true;
@@ -437,7 +436,7 @@ namespace Debond
       const ProblemParameters problem;
       const MPI_Comm          ranks;
       const MethodChoice      wanted; ///< the linear solver may be automatic
-      const InterruptGuard    guard;
+      const Interruption     &interruption = Interruption::by_signal();
 
       AdaptiveResult<dim> result;
       bool                ended = false; ///< by no result, or no estimate

@@ -96,7 +96,7 @@ namespace Debond
                          const AdhesionIntegral<dim> &bonds,
                          const PathPoint             &last,
                          const LoadFactors            next,
-                         const std::function<bool()> &may_go_on)
+                         const Interruption          &interruption)
     {
       StationaryPath::Problem problem =
         scene.between(last.factors, next, 1., bonds);
@@ -116,7 +116,8 @@ namespace Debond
                           0.);
       Event          event = Event::contact;
       for (unsigned int k = 0;
-           event == Event::contact && k < 2 * last.s.size() && may_go_on();
+           event == Event::contact && k < 2 * last.s.size() &&
+           !interruption.requested();
            ++k)
         {
           const Eigen::VectorXd before = path.point();
@@ -143,7 +144,7 @@ namespace Debond
                     const AdhesionIntegral<dim> &bonds,
                     const PathPoint             &last,
                     const LoadFactors            next,
-                    const std::function<bool()> &may_go_on)
+                    const Interruption          &interruption)
   {
     const PiecewiseEnergy &branches = scene.scene.law().branches();
     // Bonds that soften change by and by.
@@ -170,7 +171,7 @@ namespace Debond
         if (is_at_rest)
           return change_from_rest(scene, bonds, last, next);
         if (!is_proportional)
-          return change_between_nodes(scene, bonds, last, next, may_go_on);
+          return change_between_nodes(scene, bonds, last, next, interruption);
         const double          whole = next.loads / last.factors.loads - 1.;
         const Eigen::VectorXd way   = whole * last.s;
         const double          part  = bonds.first_change(last.s, way, 1.);
@@ -188,8 +189,8 @@ namespace Debond
                         0.);
     // Contact that comes and goes. Changes at the end of the step count.
     Event event = Event::contact;
-    for (unsigned int k = 0;
-         event == Event::contact && k < 2 * last.s.size() && may_go_on();
+    for (unsigned int k = 0; event == Event::contact && k < 2 * last.s.size() &&
+                             !interruption.requested();
          ++k)
       event = path.advance(0., 1. + Tolerance::end_of_path);
     if (event != Event::bond)

@@ -32,7 +32,8 @@ namespace Debond
                                            const DofVector           &load,
                                            const PiecewiseQuadratic  &nonsmooth,
                                            TruncatedMultigrid &multigrid_cycle,
-                                           DistributedVector  &start)
+                                           DistributedVector  &start,
+                                           const Interruption &interruption)
     : A(problem.distributed_matrix())
     , f(distribute(load,
                    start.locally_owned_elements(),
@@ -46,6 +47,7 @@ namespace Debond
     , rows_of_contact(A.rows_of(problem.unknowns().contact().normal_dofs()))
     , cycle(multigrid_cycle)
     , u(start)
+    , interruption(interruption)
     , internal(start)
     , active(contact.size())
   {
@@ -158,7 +160,7 @@ namespace Debond
     cg.connect([this, &stagnation](const unsigned int,
                                    const double value,
                                    const auto &) {
-      return may_go_on() && !stagnation.is_reached(value) ?
+      return !interruption.requested() && !stagnation.is_reached(value) ?
                dealii::SolverControl::success :
                dealii::SolverControl::failure;
     });
@@ -199,7 +201,7 @@ namespace Debond
     while (result.active_set_steps < maximum_line_steps &&
            result.linear_iterations < maximum_linear_iterations)
       {
-        if (!may_go_on())
+        if (interruption.requested())
           return interrupted();
         ++result.active_set_steps;
         smooth_contact(force);
@@ -234,7 +236,7 @@ namespace Debond
                          correction,
                          result.linear_iterations);
         // A failure before the first step is not told by an exception.
-        if (!may_go_on())
+        if (interruption.requested())
           return interrupted();
         if (!is_solved)
           return result;
@@ -271,10 +273,12 @@ namespace Debond
                                                     const DofVector &,
                                                     const PiecewiseQuadratic &,
                                                     TruncatedMultigrid &,
-                                                    DistributedVector &);
+                                                    DistributedVector &,
+                                                    const Interruption &);
   template DisplacementProblem::DisplacementProblem(const ElasticProblem<3> &,
                                                     const DofVector &,
                                                     const PiecewiseQuadratic &,
                                                     TruncatedMultigrid &,
-                                                    DistributedVector &);
+                                                    DistributedVector &,
+                                                    const Interruption &);
 } // namespace Debond

@@ -12,12 +12,12 @@ namespace Debond
     class BranchSearch
     {
     public:
-      BranchSearch(const SolverParameters      &solver_parameters,
-                   const CondensedScene<dim>   &scene,
-                   const std::function<bool()> &may_go_on)
+      BranchSearch(const SolverParameters    &solver_parameters,
+                   const CondensedScene<dim> &scene,
+                   const Interruption        &interruption)
         : parameters(solver_parameters)
         , scene(scene)
-        , may_go_on(may_go_on)
+        , interruption(interruption)
       {
         parameters.search = BondSearchChoice::full;
         parameters.prove  = false;
@@ -61,7 +61,9 @@ namespace Debond
                                  s);
         const MajoriseMinimiseResult minimum =
           MajoriseMinimise(parameters.majorise_minimise)
-            .minimize(problem, [this](const auto &) { return may_go_on(); });
+            .minimize(problem, [this](const auto &) {
+              return !interruption.requested();
+            });
         const double rounding = problem.evaluate().functional_rounding;
         if (!can_be_verified(minimum.status) ||
             minimum.functional >= point.functional - rounding)
@@ -80,7 +82,7 @@ namespace Debond
         const AdhesionIntegral<dim> bonds     = scene.bonds(factor);
         const Condensation          condensed = scene.at(factor);
         WhichMinimum                which =
-          find_better_minimum(what, bonds, condensed, may_go_on, point.s);
+          find_better_minimum(what, bonds, condensed, interruption, point.s);
         point.functional = condensed_functional(condensed, bonds, point.s);
         if (which.proof_attempted)
           round_outwards(point.functional + condensed.energy_at_zero(),
@@ -91,9 +93,9 @@ namespace Debond
         return which;
       }
 
-      SolverParameters             parameters;
-      const CondensedScene<dim>   &scene;
-      const std::function<bool()> &may_go_on;
+      SolverParameters           parameters;
+      const CondensedScene<dim> &scene;
+      const Interruption        &interruption;
     };
   } // namespace
 
@@ -117,21 +119,21 @@ namespace Debond
 
   template <int dim>
   Branch
-  global_branch(const GlobalBranch           wanted,
-                const SolverParameters      &parameters,
-                const CondensedScene<dim>   &scene,
-                const Branch                &start,
-                const std::function<bool()> &may_go_on,
-                const BranchMonitor         &monitor)
+  global_branch(const GlobalBranch         wanted,
+                const SolverParameters    &parameters,
+                const CondensedScene<dim> &scene,
+                const Branch              &start,
+                const Interruption        &interruption,
+                const BranchMonitor       &monitor)
   {
-    BranchSearch<dim> search(parameters, scene, may_go_on);
+    BranchSearch<dim> search(parameters, scene, interruption);
     const bool        proves = wanted == GlobalBranch::prove;
 
     Branch             branch;
     const BranchPoint *last = nullptr;
     for (const auto &[factor, given] : start)
       {
-        if (!may_go_on())
+        if (interruption.requested())
           return branch;
         BranchPoint point = given;
         if (last != nullptr)
@@ -145,7 +147,7 @@ namespace Debond
     last = nullptr;
     for (auto entry = branch.rbegin(); entry != branch.rend(); ++entry)
       {
-        if (!may_go_on())
+        if (interruption.requested())
           return branch;
         auto &[factor, point] = *entry;
         if (last != nullptr && search.start_from(*last, factor, point))

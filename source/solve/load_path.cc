@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
-#include <debond/base/interrupt.h>
-#include <debond/base/run_watch.h>
 #include <debond/base/text.h>
 #include <debond/elasticity/contact_condensation.h>
 #include <debond/solve/bond_change.h>
-#include <debond/solve/condensed_methods.h>
+#include <debond/solve/contact_solver.h>
 #include <debond/solve/global_branch.h>
 #include <debond/solve/load_path.h>
 #include <debond/solve/load_path_arc.h>
-#include <debond/solve/multigrid_method.h>
 #include <debond/solve/refinement.h>
 
 #include <algorithm>
@@ -25,18 +22,6 @@ namespace Debond
 {
   namespace
   {
-    template <int dim>
-    std::unique_ptr<ContactSolver<dim>>
-    make_contact_solver(const MethodChoice &choice, const Scene<dim> &scene)
-    {
-      const Stage stage("factorisation");
-      if (choice.is_condensed)
-        return make_condensed_solver(choice, scene);
-      return make_multigrid_solver(scene, choice.has_levels);
-    }
-
-
-
     template <int dim>
     class PathFollower
     {
@@ -78,7 +63,7 @@ namespace Debond
         while (steps.size() < parameters.factors.size() &&
                (steps.empty() || steps.back().message.empty()))
           {
-            if (!steps.empty() && guard.requested())
+            if (!steps.empty() && interruption.requested())
               {
                 interrupt("the path is not complete");
                 break;
@@ -110,7 +95,7 @@ namespace Debond
       void
       find_global_branch()
       {
-        if (guard.requested())
+        if (interruption.requested())
           {
             if (result.status == SolverStatus::success)
               interrupt("there is no global branch");
@@ -143,7 +128,7 @@ namespace Debond
           solver_parameters,
           condensed_scene,
           followed,
-          may_go_on,
+          interruption,
           [&](const double factor, const BranchPoint &point) {
             print(factor,
                   point.functional +
@@ -155,7 +140,7 @@ namespace Debond
           });
         for (const auto &[factor, point] : branch)
           add_global(factor, point);
-        if (guard.requested())
+        if (interruption.requested())
           interrupt("the global branch is not complete");
         result.parts["global branch"] = timer.wall_time();
       }
@@ -165,8 +150,10 @@ namespace Debond
       find_arc()
       {
         timer.restart();
-        const LoadPathArc<dim> arc =
-          follow_arc<dim>({scene, *condensed}, points[0], tolerance, may_go_on);
+        const LoadPathArc<dim> arc = follow_arc<dim>({scene, *condensed},
+                                                     points[0],
+                                                     tolerance,
+                                                     interruption);
         if (arc.interrupted)
           interrupt("the arc is not complete");
         if (!arc.note.empty())
@@ -207,7 +194,6 @@ namespace Debond
         bonds.set_memory(progress.memory);
         if (solver)
           solver->start_from(points.back(), progress.u);
-        RunWatch::has_result = true;
         observer(progress, verify(factors, bonds, progress.u), bonds);
       }
 
@@ -221,12 +207,9 @@ namespace Debond
         AdhesionIntegral<dim> bonds =
           scene.adhesion().at(factors.displacements);
         bonds.set_memory(progress.memory);
-        const MajoriseMinimiseResult minimum = solver->minimise(
-          factors,
-          bonds,
-          solver_parameters,
-          [this](const auto &) { return may_go_on(); },
-          may_go_on);
+        Progress             silent;
+        const ContactMinimum minimum =
+          solver->minimise(factors, bonds, solver_parameters, silent);
         if (const auto direct = factorisation_instead(
               scene, solver_parameters, choice, minimum.status))
           {
@@ -244,7 +227,7 @@ namespace Debond
             interrupt("the path is not complete");
             return false;
           }
-        add_majorise_result(minimum, 0., result);
+        add_majorise_result(minimum, result);
         result.message.clear();
 
         if (minimum.status == SolverStatus::comes_off)
@@ -271,10 +254,9 @@ namespace Debond
                                    bonds,
                                    {steps.back().factors(), points.back()},
                                    factors,
-                                   may_go_on);
-        Refined refined;
-        progress.u = solver->displacement(factors, bonds, may_go_on, refined);
-        note(refined);
+                                   interruption);
+        progress.u = solver->displacement();
+        refine(bonds, factors, *solver->correction(), progress.u);
         const Eigen::VectorXd s = solver->point();
         if (!parameters.bonds_heal)
           bonds.break_for_good(scene.contact_trace(progress.u));
@@ -312,14 +294,18 @@ namespace Debond
           }
         points.push_back(s);
         steps.push_back(step);
-        RunWatch::has_result = true;
         observer(progress, verification, bonds);
         return true;
       }
 
       void
-      note(const Refined &refined)
+      refine(const AdhesionIntegral<dim> &bonds,
+             const LoadFactors            factors,
+             CorrectionSolver            &correction,
+             DofVector                   &u)
       {
+        const Refined refined = refine_where_needed(
+          scene.problem(), bonds, factors, correction, interruption, u);
         result.is_refined = refined.is_refined;
         if (!refined.note.empty() && result.notes.empty())
           result.notes.push_back(refined.note);
@@ -358,10 +344,8 @@ namespace Debond
       {
         const CondensedScene<dim>   condensed_scene = {scene, *condensed};
         const AdhesionIntegral<dim> bonds_there = condensed_scene.bonds(factor);
-        DofVector           u = condensed_scene.at(factor).expand(point.s);
-        CondensedCorrection correction(*condensed);
-        note(refine_where_needed(
-          scene.problem(), bonds_there, factor, correction, may_go_on, u));
+        DofVector u = condensed_scene.at(factor).expand(point.s);
+        refine(bonds_there, factor, *solver->correction(), u);
         const Verification<dim> verification = verify(factor, bonds_there, u);
         LoadPathState<dim>      global =
           state_of(scene, bonds_there, factor, u, verification);
@@ -447,13 +431,10 @@ namespace Debond
       const double              tolerance; ///< of the verification
       const Scene<dim>         &scene;
       std::ostream             *out;
-      const InterruptGuard      guard;
+      const Interruption       &interruption = Interruption::by_signal();
       dealii::Timer             timer;
       SolveResult               result;
 
-      const std::function<bool()> may_go_on = [this]() {
-        return !guard.requested();
-      };
 
       MethodChoice                        choice;
       std::unique_ptr<ContactSolver<dim>> solver; ///< null: not needed

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/run_watch.h>
+#include <debond/base/interruption.h>
 #include <debond/solve/load_path_arc.h>
 
 #include <algorithm>
@@ -83,10 +83,10 @@ namespace Debond
 
   template <int dim>
   LoadPathArc<dim>
-  follow_arc(const CondensedScene<dim>   &scene,
-             const Eigen::VectorXd       &s,
-             const double                 tolerance,
-             const std::function<bool()> &may_go_on)
+  follow_arc(const CondensedScene<dim> &scene,
+             const Eigen::VectorXd     &s,
+             const double               tolerance,
+             const Interruption        &interruption)
   {
     const Stage               stage("arc");
     LoadPathArc<dim>          arc;
@@ -146,7 +146,7 @@ namespace Debond
     bool is_going = add(true);
     for (unsigned int k = 0; is_going && last != Event::end; ++k)
       {
-        if (!may_go_on())
+        if (interruption.requested())
           {
             arc.interrupted = true;
             break;

@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <iomanip>
-#include <limits>
 #include <sstream>
 
 namespace Debond
@@ -12,6 +11,9 @@ namespace Debond
   {
     /// Between two versions of the line on a terminal.
     constexpr double seconds_between_prints = 0.2;
+
+    /// With fewer unknowns nothing takes more than some seconds.
+    constexpr unsigned int fewest_announced = 50000;
 
 
 
@@ -106,8 +108,10 @@ namespace Debond
                        const std::string &header,
                        const std::string &row)
   {
+    if (out == nullptr)
+      return;
     if (!header_printed)
-      out << header << std::endl;
+      *out << header << std::endl;
     header_printed = true;
 
     last_row = row;
@@ -118,15 +122,25 @@ namespace Debond
         if (now - last_print_seconds < seconds_between_prints)
           return;
         last_print_seconds = now;
-        out << '\r' << padded(row) << std::flush;
+        *out << '\r' << padded(row) << std::flush;
       }
     else if (iteration >= next_logged)
       {
         while (next_logged <= iteration)
           next_logged = following(next_logged);
-        out << row << std::endl;
+        *out << row << std::endl;
         pending = false;
       }
+  }
+
+
+
+  void
+  Progress::announce(const std::string &what,
+                     const unsigned int n_unknowns) const
+  {
+    if (out != nullptr && n_unknowns > fewest_announced)
+      *out << "  " << what << ", " << n_unknowns << " unknowns" << std::endl;
   }
 
 
@@ -135,7 +149,7 @@ namespace Debond
   Progress::finish()
   {
     if (pending)
-      out << (terminal ? '\r' + padded(last_row) : last_row) << std::endl;
+      *out << (terminal ? '\r' + padded(last_row) : last_row) << std::endl;
     pending = false;
   }
 } // namespace Debond

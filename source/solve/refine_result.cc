@@ -8,10 +8,10 @@ namespace Debond
 {
   template <int dim>
   bool
-  refine_result(const Scene<dim> &scene,
-                CorrectionSolver &solver,
-                const Watch      &watch,
-                SolveResult      &result)
+  refine_result(const Scene<dim>   &scene,
+                CorrectionSolver   &solver,
+                const Interruption &interruption,
+                SolveResult        &result)
   {
     // What solvers in double precision fail at on very slender bodies.
     const bool has_failed = result.status == SolverStatus::quadratic_program ||
@@ -22,12 +22,7 @@ namespace Debond
     const Eigen::VectorXd before =
       scene.problem().unknowns().contact().trace(result.u);
     const Refined refined = refine_where_needed(
-      scene.problem(),
-      scene.adhesion(),
-      1.,
-      solver,
-      [&watch]() { return watch.may_go_on(); },
-      result.u);
+      scene.problem(), scene.adhesion(), 1., solver, interruption, result.u);
     result.is_refined       = refined.is_refined;
     const std::string &note = refined.note;
     if (!note.empty())

@@ -63,17 +63,17 @@ namespace Debond
     class ExtendedMajorant
     {
     public:
-      ExtendedMajorant(const ElasticProblem<dim>   &elastic_problem,
-                       const PiecewiseQuadratic    &nonsmooth,
-                       const LoadFactors            factors,
-                       CorrectionSolver            &correction_solver,
-                       const std::function<bool()> &go_on,
-                       const DofVector             &start)
+      ExtendedMajorant(const ElasticProblem<dim> &elastic_problem,
+                       const PiecewiseQuadratic  &nonsmooth,
+                       const LoadFactors          factors,
+                       CorrectionSolver          &correction_solver,
+                       const Interruption        &interrupted_by,
+                       const DofVector           &start)
         : A(elastic_problem)
         , problem(elastic_problem)
         , phi(nonsmooth)
         , solver(correction_solver)
-        , may_go_on(go_on)
+        , interruption(interrupted_by)
         , normals(problem.unknowns().contact().normal_dofs())
         , lifting(to_extended(problem.unknowns().lifting(factors)))
         , u(to_extended(start) + lifting)
@@ -287,7 +287,7 @@ namespace Debond
                  rho > 0.1 * target && step < maximum_refinement_iterations;
                  ++step)
               {
-                if (!may_go_on())
+                if (interruption.requested())
                   return false;
                 ++result.linear_iterations;
                 ExtendedVector q = product(p);
@@ -313,7 +313,7 @@ namespace Debond
       const ElasticProblem<dim>                          &problem;
       const PiecewiseQuadratic                           &phi;
       CorrectionSolver                                   &solver;
-      const std::function<bool()>                        &may_go_on;
+      const Interruption                                 &interruption;
       const std::vector<dealii::types::global_dof_index> &normals;
 
       const ExtendedVector lifting;
@@ -332,14 +332,15 @@ namespace Debond
 
   template <int dim>
   RefinementResult
-  refine(const ElasticProblem<dim>   &problem,
-         const PiecewiseQuadratic    &phi,
-         const LoadFactors            factors,
-         CorrectionSolver            &solver,
-         const std::function<bool()> &may_go_on,
-         DofVector                   &u)
+  refine(const ElasticProblem<dim> &problem,
+         const PiecewiseQuadratic  &phi,
+         const LoadFactors          factors,
+         CorrectionSolver          &solver,
+         const Interruption        &interruption,
+         DofVector                 &u)
   {
-    ExtendedMajorant<dim> majorant(problem, phi, factors, solver, may_go_on, u);
+    ExtendedMajorant<dim> majorant(
+      problem, phi, factors, solver, interruption, u);
     while (majorant.majorise())
       if (!majorant.minimise())
         return majorant.result;
@@ -353,12 +354,12 @@ namespace Debond
 
   template <int dim>
   Refined
-  refine_where_needed(const ElasticProblem<dim>   &problem,
-                      const PiecewiseQuadratic    &phi,
-                      const LoadFactors            factors,
-                      CorrectionSolver            &solver,
-                      const std::function<bool()> &may_go_on,
-                      DofVector                   &u)
+  refine_where_needed(const ElasticProblem<dim> &problem,
+                      const PiecewiseQuadratic  &phi,
+                      const LoadFactors          factors,
+                      CorrectionSolver          &solver,
+                      const Interruption        &interruption,
+                      DofVector                 &u)
   {
     if (u.all_zero())
       return {};
@@ -379,7 +380,7 @@ namespace Debond
       return {};
 
     const RefinementResult refined =
-      refine(problem, phi, factors, solver, may_go_on, u);
+      refine(problem, phi, factors, solver, interruption, u);
     std::ostringstream note;
     note.precision(1);
     note << std::scientific;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/timer.h>
 
+#include <debond/base/interruption.h>
 #include <debond/base/ranks.h>
-#include <debond/base/run_watch.h>
 #include <debond/base/text.h>
 #include <debond/check/error_estimate.h>
 #include <debond/elasticity/temperature_load.h>

@@ -24,7 +24,6 @@ namespace Debond
 
   void
   add_majorise_result(const MajoriseMinimiseResult &minimum,
-                      const double                  energy,
                       SolveResult                  &result)
   {
     result.status    = minimum.status;
@@ -33,7 +32,6 @@ namespace Debond
     for (MajoriseMinimiseIteration iteration : minimum.history)
       {
         iteration.iteration = ++result.iterations;
-        iteration.functional += energy;
         result.linear_iterations += iteration.linear_iterations;
         result.majorise_history.push_back(iteration);
       }

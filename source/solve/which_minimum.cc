@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/interruption.h>
 #include <debond/base/memory.h>
-#include <debond/base/run_watch.h>
 #include <debond/base/tolerances.h>
 #include <debond/contact/adhesion_sums.h>
 #include <debond/contact/boundary_coarsening.h>
@@ -79,13 +79,13 @@ namespace Debond
       MinimumSearch(const SolverParameters      &parameters,
                     const AdhesionIntegral<dim> &adhesion,
                     const Condensation          &condensed,
-                    const std::function<bool()> &may_go_on,
+                    const Interruption          &interruption,
                     Eigen::VectorXd             &s,
                     WhichMinimum                &result)
         : parameters(parameters)
         , adhesion(adhesion)
         , condensed(condensed)
-        , may_go_on(may_go_on)
+        , interruption(interruption)
         , s(s)
         , result(result)
         , method(parameters.majorise_minimise)
@@ -93,6 +93,7 @@ namespace Debond
         , lumped(lumped_branches(adhesion.adhesive_law().branches(),
                                  lumped_weights(adhesion),
                                  stretches(adhesion)))
+        , work(parameters.search_operations)
       {
         // What the bonds can change in J: at most the most that they can take
         // up, and no more than the contact nodes gain without foundation and
@@ -115,11 +116,11 @@ namespace Debond
             result.kind != MinimumKind::global)
           search_nodes({});
         const bool is_cut =
-          !has_work_left() && result.kind != MinimumKind::global;
+          work.requested() && result.kind != MinimumKind::global;
         if (is_cut || (result.kind != MinimumKind::best_known &&
                        result.kind != MinimumKind::global))
           result.kind = kind_without_search(adhesion, s, &condensed);
-        if (!is_cut || !may_go_on())
+        if (!is_cut || interruption.requested())
           return;
         if (result.proof_status == ProofStatus::interrupted)
           result.proof_status = ProofStatus::node_limit;
@@ -139,7 +140,7 @@ namespace Debond
         BranchAndBoundParameters limits = proof_limits();
         limits.maximum_bytes            = memory_left(parameters.memory_limit);
         const BranchAndBoundResult proof =
-          branch_and_bound(limits, lumped_problem(may_go_on), s);
+          branch_and_bound(limits, lumped_problem(), s);
         // That of the search stays if there is one.
         if (result.kind != MinimumKind::global ||
             proof.status == ProofStatus::proved)
@@ -159,19 +160,14 @@ namespace Debond
       const SolverParameters      &parameters;
       const AdhesionIntegral<dim> &adhesion;
       const Condensation          &condensed;
-      const std::function<bool()> &may_go_on;
+      const Interruption          &interruption;
       Eigen::VectorXd             &s;
       WhichMinimum                &result;
       const MajoriseMinimise       method;
       const NeighbourGraph         graph;
       const SeparableBranches      lumped;
 
-      /// Work is counted, not timed: the result is the same on a busy machine
-      /// and on each rank.
-      double                      operations    = 0.;
-      const std::function<bool()> has_work_left = [this]() {
-        return may_go_on() && operations < parameters.search_operations;
-      };
+      WorkLimit work;
 
       /// For starts on many nodes, else empty.
       ActiveSetGuess guess;
@@ -179,24 +175,22 @@ namespace Debond
       SearchProblem
       problem()
       {
-        return {{condensed.schur_complement(),
-                 condensed.load(),
-                 adhesion,
-                 has_work_left},
-                lumped,
-                graph,
-                method,
-                &guess,
-                &operations};
+        return {
+          {condensed.schur_complement(), condensed.load(), adhesion, work},
+          lumped,
+          graph,
+          method,
+          &guess,
+          &work};
       }
 
       SeparableProblem
-      lumped_problem(const std::function<bool()> &goes_on) const
+      lumped_problem() const
       {
         return {condensed.schur_complement(),
                 condensed.load(),
                 lumped,
-                goes_on};
+                interruption};
       }
 
       BranchAndBoundParameters
@@ -277,7 +271,7 @@ namespace Debond
         BranchAndBoundParameters no_nodes = proof_limits();
         no_nodes.maximum_nodes            = 0;
         const BranchAndBoundResult proof =
-          branch_and_bound(no_nodes, lumped_problem(may_go_on), s);
+          branch_and_bound(no_nodes, lumped_problem(), s);
         if (proof.status == ProofStatus::proved)
           add_proof(proof);
         return proof.status == ProofStatus::proved;
@@ -302,16 +296,13 @@ namespace Debond
                             stretches(adhesion, prolongations));
           const NeighbourGraph coarse_graph =
             coarse_neighbours(prolongations.back());
-          add_search(guided_search({coarse,
-                                    coarse_lumped,
-                                    coarse_graph,
-                                    method,
-                                    nullptr,
-                                    &operations},
-                                   /*is_separable=*/false,
-                                   proof_limits(),
-                                   coarse_s)
-                       .search);
+          add_search(
+            guided_search(
+              {coarse, coarse_lumped, coarse_graph, method, nullptr, &work},
+              /*is_separable=*/false,
+              proof_limits(),
+              coarse_s)
+              .search);
         };
         std::vector<std::string> failures;
         Eigen::VectorXd          point =
@@ -322,8 +313,8 @@ namespace Debond
         CondensedProblem             finest(S, g, adhesion, point);
         const MajoriseMinimiseResult minimum =
           minimise_trial(method, finest, [&](const auto &iteration) {
-            operations += iteration.operations;
-            return has_work_left();
+            work.add(iteration.operations);
+            return !work.requested();
           });
         const auto given = CondensedProblem(S, g, adhesion, s).evaluate();
         if (minimum.status != SolverStatus::success)
@@ -398,7 +389,7 @@ namespace Debond
   find_better_minimum(const SolverParameters      &parameters,
                       const AdhesionIntegral<dim> &adhesion,
                       const Condensation          &condensed,
-                      const std::function<bool()> &may_go_on,
+                      const Interruption          &interruption,
                       Eigen::VectorXd             &s)
   {
     WhichMinimum result;
@@ -408,7 +399,7 @@ namespace Debond
       return result;
 
     MinimumSearch<dim> search(
-      parameters, adhesion, condensed, may_go_on, s, result);
+      parameters, adhesion, condensed, interruption, s, result);
     if (searches)
       search.search();
     if (parameters.prove)
@@ -416,7 +407,7 @@ namespace Debond
     if (result.proof_attempted)
       result.functional = condensed_functional(condensed, adhesion, s) +
                           condensed.energy_at_zero();
-    result.interrupted = !may_go_on();
+    result.interrupted = interruption.requested();
     return result;
   }
 

@@ -115,6 +115,28 @@ namespace
 
 
   /// From rest, ended in the middle of a linear solve.
+  /// Ends what iterates when it has asked so many times.
+  class Allows : public Interruption
+  {
+  public:
+    explicit Allows(const unsigned int n)
+      : n(n)
+    {}
+
+    bool
+    requested() const override
+    {
+      return ++asked > n;
+    }
+
+    mutable unsigned int asked = 0;
+
+  private:
+    const unsigned int n;
+  };
+
+
+
   template <int dim>
   void
   test_interruption(const unsigned int n, const double rotation)
@@ -141,19 +163,18 @@ namespace
         bool ended = true, kept = true;
         for (const unsigned int allowed : {0, 1, 10, 30})
           {
-            u                         = 0.;
-            unsigned int        asked = 0;
+            u = 0.;
+            const Allows        allows(allowed);
             DofVector           last(u.size());
             DisplacementProblem stopped(
-              *body.problem, body.problem->load(), adhesion, cycle, u);
-            stopped.may_go_on = [&]() { return ++asked <= allowed; };
+              *body.problem, body.problem->load(), adhesion, cycle, u, allows);
             const auto result = MajoriseMinimise({}).minimize(
               stopped, [&](const MajoriseMinimiseIteration &) {
                 last = gather(u);
                 return true;
               });
             ended = ended && result.status == SolverStatus::interrupted &&
-                    asked <= allowed + 2;
+                    allows.asked <= allowed + 2;
             kept = kept && gather(u) == last;
           }
         check("  an interruption ends it within a linear iteration", ended);

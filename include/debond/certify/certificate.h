@@ -121,7 +121,7 @@ namespace Debond
     Certificate
     certify(const DofVector                &u,
             const BranchAndBoundParameters &proof,
-            const std::function<bool()>    &may_go_on,
+            const Interruption             &interruption,
             const Certificate              *earlier = nullptr) const;
 
   private:
@@ -130,7 +130,7 @@ namespace Debond
     certify_global(const DofVector                &u,
                    const DofVector                &displacement,
                    const BranchAndBoundParameters &proof,
-                   const std::function<bool()>    &may_go_on,
+                   const Interruption             &interruption,
                    const Certificate              *earlier,
                    Certificate                    &certificate) const;
 

@@ -52,7 +52,7 @@ namespace Debond
                const Eigen::VectorXd          &means,
                const double                    upper,
                const BranchAndBoundParameters &proof,
-               const std::function<bool()>    &may_go_on);
+               const Interruption             &interruption);
 } // namespace Debond
 
 #endif

@@ -12,14 +12,14 @@ namespace Debond
 {
   /// Shrinks @p ranges of displacements with J at most @p upper, one of each
   /// contact side, to where these are by theorem 2, with at most 32 boxes; if
-  /// @p is_quick with 4 that are bounded less well. If @p may_go_on says no
+  /// @p is_quick with 4 that are bounded less well. If @p interruption says no
   /// they are left as they are by then.
   void
-  shrink_ranges(const MeanProblem           &problem,
-                const double                 upper,
-                const bool                   is_quick,
-                const std::function<bool()> &may_go_on,
-                std::vector<CertifiedSide>  &ranges);
+  shrink_ranges(const MeanProblem          &problem,
+                const double                upper,
+                const bool                  is_quick,
+                const Interruption         &interruption,
+                std::vector<CertifiedSide> &ranges);
 } // namespace Debond
 
 #endif

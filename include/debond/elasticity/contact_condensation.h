@@ -2,7 +2,7 @@
 #ifndef debond_elasticity_contact_condensation_h
 #define debond_elasticity_contact_condensation_h
 
-#include <debond/base/run_watch.h>
+#include <debond/base/interruption.h>
 #include <debond/base/tolerances.h>
 #include <debond/contact/adhesion_integral.h>
 #include <debond/elasticity/elastic_problem.h>

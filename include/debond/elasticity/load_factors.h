@@ -21,6 +21,14 @@ namespace Debond
     double loads;
     double displacements;
   };
+
+
+
+  inline bool
+  operator==(const LoadFactors &a, const LoadFactors &b)
+  {
+    return a.loads == b.loads && a.displacements == b.displacements;
+  }
 } // namespace Debond
 
 #endif

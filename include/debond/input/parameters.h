@@ -49,6 +49,13 @@ namespace Debond
     Parameters
     parameters(const std::string &scene);
 
+    /// Whether the log may say what depends on the machine.
+    bool
+    has_machine_details() const
+    {
+      return p.output.machine_details;
+    }
+
   private:
     Parameters                         p;
     BodyParameters                     body;

@@ -2,11 +2,11 @@
 #ifndef debond_optimization_piecewise_quadratic_h
 #define debond_optimization_piecewise_quadratic_h
 
+#include <debond/base/interruption.h>
 #include <debond/base/views.h>
 
 #include <Eigen/SparseCore>
 
-#include <functional>
 
 namespace Debond
 {
@@ -72,8 +72,8 @@ namespace Debond
     VectorView g;
     const Phi &phi;
 
-    /// Returns false to end what is done with it.
-    std::function<bool()> may_go_on = []() { return true; };
+    /// Ends what is done with it.
+    const Interruption &interruption = Interruption::by_signal();
   };
 
   using PiecewiseProblem = BoundedProblem<PiecewiseQuadratic>;

@@ -4,7 +4,6 @@
 
 #include <debond/solve/condensed_scene.h>
 
-#include <functional>
 #include <optional>
 
 namespace Debond
@@ -20,15 +19,15 @@ namespace Debond
   /// @p last to the factors @p next, if one does: on straight pieces of the way
   /// displacements are linear in the factor. It is that of prescribed
   /// displacements if the loads' factor stays the same. @p bonds are as they
-  /// were at @p last. Nothing if that is not known, or if @p may_go_on returns
-  /// false.
+  /// were at @p last. Nothing if that is not known, or if @p interruption is
+  /// requested.
   template <int dim>
   std::optional<double>
   first_bond_change(const CondensedScene<dim>   &scene,
                     const AdhesionIntegral<dim> &bonds,
                     const PathPoint             &last,
                     const LoadFactors            next,
-                    const std::function<bool()> &may_go_on);
+                    const Interruption          &interruption);
 } // namespace Debond
 
 #endif

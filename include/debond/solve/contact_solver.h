@@ -2,57 +2,70 @@
 #ifndef debond_solve_contact_solver_h
 #define debond_solve_contact_solver_h
 
-#include <debond/base/dof_vector.h>
-#include <debond/contact/adhesion_integral.h>
-#include <debond/elasticity/load_factors.h>
-#include <debond/input/solver_parameters.h>
 #include <debond/linear_algebra/condensation.h>
-#include <debond/optimization/majorise/majorise_minimise.h>
-#include <debond/solve/refinement.h>
+#include <debond/solve/correction_solver.h>
+#include <debond/solve/method_choice.h>
+#include <debond/solve/progress.h>
+#include <debond/solve/solve_result.h>
 
-#include <functional>
+#include <memory>
+#include <optional>
 
 namespace Debond
 {
+  /// The end of a minimisation. A bundle method has an account of its own as
+  /// well, and its v_k stands for the residual.
+  struct ContactMinimum : MajoriseMinimiseResult
+  {
+    std::optional<ProximalBundleResult> bundle;
+  };
+
+
+
   /**
-   * Minimises J on one mesh, by majorise-minimise unless another method was
-   * chosen, under one load after the other, each time from the point before.
-   * What does not depend on loads is made once: a factorisation of A, or a
-   * multigrid cycle. All functions but point() are to be called by all ranks.
+   * Minimises J on one mesh, by majorise-minimise or the energy bundle, under
+   * one load after the other, each time from the point before, and to begin
+   * with from the body at rest. What does not depend on loads is made once: a
+   * factorisation of A, or a multigrid cycle. All functionals are J, with the
+   * energy of what is prescribed. All functions but point() are to be called by
+   * all ranks.
    */
   template <int dim>
   class ContactSolver
   {
   public:
-    using MayGoOn = std::function<bool()>;
-
     virtual ~ContactSolver() = default;
 
-    /// At these @p factors, at which @p bonds are. The functionals of the
-    /// result are J, those that @p monitor gets are less by what is prescribed.
-    virtual MajoriseMinimiseResult
-    minimise(const LoadFactors                factors,
-             const AdhesionIntegral<dim>     &bonds,
-             const SolverParameters          &parameters,
-             const MajoriseMinimise::Monitor &monitor,
-             const MayGoOn                   &may_go_on) = 0;
-
     /// The next minimisation starts from normal displacements @p s of the
-    /// contact nodes, which are those of the displacement @p u.
+    /// contact nodes, those of the displacement @p u where u_nu <= 0.
     virtual void
     start_from(const Eigen::VectorXd &s, const DofVector &u) = 0;
+
+    /// The next minimisation starts from the minimum under the whole load on
+    /// coarser meshes or coarser contact boundaries, if there are any. @p
+    /// result gets the counts of a search there, and notes.
+    virtual void
+    start_from_coarser(const SolverParameters &parameters,
+                       SolveResult            &result) = 0;
+
+    /// Minimises J at these @p factors, at which @p bonds are.
+    virtual ContactMinimum
+    minimise(const LoadFactors            factors,
+             const AdhesionIntegral<dim> &bonds,
+             const SolverParameters      &parameters,
+             Progress                    &progress) = 0;
 
     /// The normal displacements s of the contact nodes.
     virtual Eigen::VectorXd
     point() const = 0;
 
-    /// All displacements at the same factors, refined where rounding has a say
-    /// in them.
+    /// All displacements at the factors of the last minimisation.
     virtual DofVector
-    displacement(const LoadFactors            factors,
-                 const AdhesionIntegral<dim> &bonds,
-                 const MayGoOn               &may_go_on,
-                 Refined                     &refined) = 0;
+    displacement() const = 0;
+
+    /// The linear solver for the refinement of displacement().
+    virtual std::unique_ptr<CorrectionSolver>
+    correction() = 0;
 
     /// The problem on s alone under the whole load; null if there is none.
     virtual const Condensation *
@@ -61,6 +74,13 @@ namespace Debond
       return nullptr;
     }
   };
+
+
+
+  /// The solver of @p choice, which keeps a reference to the scene.
+  template <int dim>
+  std::unique_ptr<ContactSolver<dim>>
+  make_contact_solver(const MethodChoice &choice, const Scene<dim> &scene);
 } // namespace Debond
 
 #endif

@@ -2,11 +2,10 @@
 #ifndef debond_solve_displacement_problem_h
 #define debond_solve_displacement_problem_h
 
+#include <debond/base/interruption.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 #include <debond/optimization/piecewise_quadratic.h>
 #include <debond/solve/contact_unknowns.h>
-
-#include <functional>
 
 namespace Debond
 {
@@ -27,17 +26,16 @@ namespace Debond
   {
   public:
     /// Keeps references but to @p load; @p start is the current point, of which
-    /// the normal displacements have to be <= 0, @p cycle that of A.
+    /// the normal displacements have to be <= 0, @p cycle that of A. Each
+    /// linear iteration asks @p interruption, which ends minimise() and leaves
+    /// u as it was before.
     template <int dim>
     DisplacementProblem(const ElasticProblem<dim> &problem,
                         const DofVector           &load,
                         const PiecewiseQuadratic  &nonsmooth,
                         TruncatedMultigrid        &cycle,
-                        DistributedVector         &start);
-
-    /// Each linear iteration asks it whether it may go on, on all ranks alike.
-    /// If not, minimise() ends and leaves u as it was before.
-    std::function<bool()> may_go_on = []() { return true; };
+                        DistributedVector         &start,
+                        const Interruption        &interruption);
 
     State
     evaluate() override;
@@ -72,6 +70,7 @@ namespace Debond
     const std::vector<unsigned int>   rows_of_contact; ///< that couple to it
     TruncatedMultigrid               &cycle;
     Vector                           &u;
+    const Interruption               &interruption;
 
     /// As of the last evaluate().
     Vector internal;            ///< A u

@@ -33,16 +33,16 @@ namespace Debond
    * minimum for each: the search of the scene, with starts from the neighbours
    * with more and with less load, and the proof if it is @p wanted. No
    * point is above the one in @p start. Factors that were not reached when
-   * @p may_go_on returned false are left out.
+   * @p interruption was requested are left out.
    */
   template <int dim>
   Branch
-  global_branch(const GlobalBranch           wanted,
-                const SolverParameters      &parameters,
-                const CondensedScene<dim>   &scene,
-                const Branch                &start,
-                const std::function<bool()> &may_go_on,
-                const BranchMonitor         &monitor);
+  global_branch(const GlobalBranch         wanted,
+                const SolverParameters    &parameters,
+                const CondensedScene<dim> &scene,
+                const Branch              &start,
+                const Interruption        &interruption,
+                const BranchMonitor       &monitor);
 
   /// 1/2 s'S s - g's + Phi(s).
   double

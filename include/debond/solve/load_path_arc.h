@@ -5,7 +5,6 @@
 #include <debond/solve/condensed_scene.h>
 #include <debond/solve/load_path_steps.h>
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,14 +23,14 @@ namespace Debond
   /// breakpoint (StationaryPath), until the factor leaves the interval of those
   /// of the path. The status is "stable" if the states between the last
   /// breakpoint and this one are minima, else "unstable". It ends at a state
-  /// whose verification is worse than @p tolerance, and when @p may_go_on
-  /// returns false. To be called by all ranks.
+  /// whose verification is worse than @p tolerance, and when @p interruption is
+  /// requested. To be called by all ranks.
   template <int dim>
   LoadPathArc<dim>
-  follow_arc(const CondensedScene<dim>   &scene,
-             const Eigen::VectorXd       &s,
-             const double                 tolerance,
-             const std::function<bool()> &may_go_on);
+  follow_arc(const CondensedScene<dim> &scene,
+             const Eigen::VectorXd     &s,
+             const double               tolerance,
+             const Interruption        &interruption);
 } // namespace Debond
 
 #endif

@@ -2,41 +2,74 @@
 #ifndef debond_solve_progress_h
 #define debond_solve_progress_h
 
+#include <debond/base/interruption.h>
 #include <debond/optimization/bundle/proximal_bundle.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 
+#include <functional>
+#include <limits>
 #include <ostream>
 #include <string>
 
 namespace Debond
 {
   /**
-   * Prints iterations: on a terminal one line that is rewritten a few times a
-   * second, in a log a line at iterations 1, 2, 5, 10, 20, 50, 100, 200, 500,
-   * ... A line with titles comes first.
+   * Prints iterations, and ends the method on an interruption. On a terminal it
+   * is one line that is rewritten a few times a second, in a log a line at
+   * iterations 1, 2, 5, 10, 20, 50, 100, 200, 500, ... A line with titles comes
+   * first.
    */
   class Progress
   {
   public:
-    /// Keeps a reference to the stream.
-    Progress(std::ostream &stream, const bool is_terminal)
-      : out(stream)
+    /// Prints nothing if the stream is null, and keeps it and the interruption.
+    explicit Progress(
+      std::ostream       *stream       = nullptr,
+      const bool          is_terminal  = false,
+      const Interruption &interruption = Interruption::by_signal())
+      : interruption(interruption)
+      , out(stream)
       , terminal(is_terminal)
-      , last_print_seconds(-std::numeric_limits<double>::infinity())
     {}
 
-    /// Iteration, J, v_k, bundle size and step kind.
+    Progress(const Progress &) = delete;
+
+    ~Progress()
+    {
+      finish();
+    }
+
+    /// Prints iteration, J, v_k, bundle size and step kind.
     void
     report(const BundleIteration &iteration);
 
-    /// Iteration, functional, residual, linear systems, their iterations of
+    /// Prints iteration, J, residual, linear systems, their iterations of
     /// conjugate gradients, and nodes in contact.
     void
     report(const MajoriseMinimiseIteration &iteration);
 
+    /// Says what takes long now, if there are many unknowns.
+    void
+    announce(const std::string &what, const unsigned int n_unknowns) const;
+
+    /// The monitor of a method whose functional is J without the @p energy of
+    /// what is prescribed.
+    template <typename Iteration>
+    std::function<bool(const Iteration &)>
+    monitor(const double energy)
+    {
+      return [this, energy](Iteration iteration) {
+        iteration.functional += energy;
+        report(iteration);
+        return !interruption.requested();
+      };
+    }
+
     /// Prints the last iteration, if that was not done yet, and ends the line.
     void
     finish();
+
+    const Interruption &interruption;
 
   private:
     void
@@ -44,13 +77,13 @@ namespace Debond
                const std::string &header,
                const std::string &row);
 
-    std::ostream &out;
-    bool          terminal;
-    bool          header_printed = false;
-    bool          pending        = false; ///< last is not a finished line
-    double        last_print_seconds;
-    unsigned int  next_logged = 1;
-    std::string   last_row;
+    std::ostream *const out;
+    const bool          terminal;
+    bool                header_printed = false;
+    bool                pending        = false; ///< last is not a finished line
+    double       last_print_seconds = -std::numeric_limits<double>::infinity();
+    unsigned int next_logged        = 1;
+    std::string  last_row;
   };
 } // namespace Debond
 

@@ -5,7 +5,6 @@
 #include <debond/solve/refinement.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve_result.h>
-#include <debond/solve/watch.h>
 
 namespace Debond
 {
@@ -14,10 +13,10 @@ namespace Debond
   /// from where that ended, and what it finds is a success, with a note.
   template <int dim>
   bool
-  refine_result(const Scene<dim> &scene,
-                CorrectionSolver &solver,
-                const Watch      &watch,
-                SolveResult      &result);
+  refine_result(const Scene<dim>   &scene,
+                CorrectionSolver   &solver,
+                const Interruption &interruption,
+                SolveResult        &result);
 } // namespace Debond
 
 #endif

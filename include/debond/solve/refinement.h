@@ -7,7 +7,6 @@
 #include <debond/optimization/piecewise_quadratic.h>
 #include <debond/solve/correction_solver.h>
 
-#include <functional>
 #include <string>
 
 namespace Debond
@@ -63,12 +62,12 @@ namespace Debond
    */
   template <int dim>
   RefinementResult
-  refine(const ElasticProblem<dim>   &problem,
-         const PiecewiseQuadratic    &phi,
-         const LoadFactors            factors,
-         CorrectionSolver            &solver,
-         const std::function<bool()> &may_go_on,
-         DofVector                   &u);
+  refine(const ElasticProblem<dim> &problem,
+         const PiecewiseQuadratic  &phi,
+         const LoadFactors          factors,
+         CorrectionSolver          &solver,
+         const Interruption        &interruption,
+         DofVector                 &u);
 
 
 
@@ -87,12 +86,12 @@ namespace Debond
   /// allowed_energy_rounding().
   template <int dim>
   Refined
-  refine_where_needed(const ElasticProblem<dim>   &problem,
-                      const PiecewiseQuadratic    &phi,
-                      const LoadFactors            factors,
-                      CorrectionSolver            &solver,
-                      const std::function<bool()> &may_go_on,
-                      DofVector                   &u);
+  refine_where_needed(const ElasticProblem<dim> &problem,
+                      const PiecewiseQuadratic  &phi,
+                      const LoadFactors          factors,
+                      CorrectionSolver          &solver,
+                      const Interruption        &interruption,
+                      DofVector                 &u);
 } // namespace Debond
 
 #endif

@@ -5,6 +5,7 @@
 #include <debond/base/dof_vector.h>
 #include <debond/input/solver_parameters.h>
 #include <debond/solve/method_choice.h>
+#include <debond/solve/progress.h>
 #include <debond/solve/scene.h>
 #include <debond/solve/solve_result.h>
 
@@ -24,6 +25,16 @@ namespace Debond
         std::ostream           *out      = nullptr,
         const bool              terminal = false,
         const DofVector        *start    = nullptr);
+
+  /// The same by a ContactSolver. What it cannot do ends with a status.
+  template <int dim>
+  void
+  solve_contact(const MethodChoice     &choice,
+                const SolverParameters &parameters,
+                const Scene<dim>       &scene,
+                const DofVector        *start,
+                Progress               &progress,
+                SolveResult            &result);
 
   /// Throws BadInput if the method cannot do with a body that only its bonds
   /// and the foundation hold.

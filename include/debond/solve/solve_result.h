@@ -76,12 +76,21 @@ namespace Debond
   void
   add_bundle_result(const ProximalBundleResult &bundle, SolveResult &result);
 
-  /// @p energy is what J is more than the functional that the method saw. The
-  /// iterations follow those that the result has.
+  /// Adds iterations after those that the result has.
   void
   add_majorise_result(const MajoriseMinimiseResult &minimum,
-                      const double                  energy,
                       SolveResult                  &result);
+
+  /// Makes the functional of a method J, which is more by the energy of what is
+  /// prescribed.
+  template <typename Result>
+  void
+  add_energy(const double energy, Result &result)
+  {
+    result.functional += energy;
+    for (auto &iteration : result.history)
+      iteration.functional += energy;
+  }
 
   /// J(u), from the strains, on the first of several ranks.
   template <int dim>

@@ -8,7 +8,6 @@
 #include <debond/linear_algebra/condensation.h>
 #include <debond/optimization/global/branch_and_bound.h>
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -79,7 +78,7 @@ namespace Debond
   find_better_minimum(const SolverParameters      &parameters,
                       const AdhesionIntegral<dim> &adhesion,
                       const Condensation          &condensed,
-                      const std::function<bool()> &may_go_on,
+                      const Interruption          &interruption,
                       Eigen::VectorXd             &s);
 
   /// Moves the bounds, which are those of the condensed problem in double

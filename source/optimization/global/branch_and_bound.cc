@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/interrupt.h>
+#include <debond/base/interruption.h>
 #include <debond/base/processes.h>
 #include <debond/optimization/global/branch_and_bound.h>
 #include <debond/optimization/global/node_bound.h>
@@ -100,14 +100,13 @@ namespace Debond
               {
                 take_if_better(job);
                 // What a signal has cut short is to be done again.
-                if (InterruptGuard::requested())
+                if (Interruption::by_signal().requested())
                   open.insert(job.node);
                 else
                   branch(job);
               }
             result.nodes += static_cast<unsigned int>(batch.size());
-            if ((InterruptGuard::requested() || !problem.may_go_on()) &&
-                !open.empty())
+            if ((problem.interruption.requested()) && !open.empty())
               result.status = ProofStatus::interrupted;
             if (result.nodes >= next_record)
               {

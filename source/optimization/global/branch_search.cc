@@ -114,7 +114,7 @@ namespace Debond
       may_go_on()
       {
         result.complete = result.complete && result.trials < maximum_trials &&
-                          problem.may_go_on();
+                          !problem.interruption.requested();
         return result.complete;
       }
 
@@ -250,8 +250,8 @@ namespace Debond
         std::size_t              end = ends.size();
         MajoriseMinimiseResult   minimum =
           minimise_trial(problem.method, trial, [&](const auto &iteration) {
-            if (problem.operations != nullptr)
-              *problem.operations += iteration.operations;
+            if (problem.work != nullptr)
+              problem.work->add(iteration.operations);
             if (states_are_majorants)
               {
                 way.push_back(problem.lumped.state(next));
@@ -262,7 +262,7 @@ namespace Debond
                     return false;
                   }
               }
-            return problem.may_go_on();
+            return !problem.interruption.requested();
           });
         if (end < ends.size())
           {
@@ -355,14 +355,17 @@ namespace Debond
         search(quick, s);
         // The first node at the same point is the same.
         const bool is_looked_at = is_separable && is_small && s == given;
-        if (!problem.may_go_on() || (!is_looked_at && is_proved(s, 1)))
+        if (problem.interruption.requested() ||
+            (!is_looked_at && is_proved(s, 1)))
           return result;
         // What the proof finds is where moves have not been tried from.
-        for (unsigned int k = 0; k <= most_proofs && problem.may_go_on(); ++k)
+        for (unsigned int k = 0;
+             k <= most_proofs && !problem.interruption.requested();
+             ++k)
           {
             search({}, s);
             const Eigen::VectorXd searched = s;
-            if (k == most_proofs || !problem.may_go_on() ||
+            if (k == most_proofs || problem.interruption.requested() ||
                 is_proved(s, n_nodes) || s == searched)
               break;
           }
@@ -402,13 +405,13 @@ namespace Debond
         parameters.maximum_nodes         = maximum_nodes;
         const BranchAndBoundResult proof = branch_and_bound(
           parameters,
-          {problem.S, problem.g, problem.lumped, problem.may_go_on},
+          {problem.S, problem.g, problem.lumped, problem.interruption},
           s);
         if (is_separable)
           result.proof = proof;
-        if (problem.operations != nullptr)
-          *problem.operations +=
-            operations_of_node * proof.nodes * std::pow(double(s.size()), 3.);
+        if (problem.work != nullptr)
+          problem.work->add(operations_of_node * proof.nodes *
+                            std::pow(double(s.size()), 3.));
         Eigen::VectorXd  other         = proof.s;
         CondensedProblem other_problem = condensed(problem, other);
         if (!is_separable &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/interrupt.h>
+#include <debond/base/interruption.h>
 #include <debond/base/tolerances.h>
 #include <debond/optimization/global/envelope_relaxation.h>
 
@@ -104,7 +104,7 @@ namespace Debond
           places[i] = place_of_minimum(envelopes[i],
                                        problem.A(i, i),
                                        s(i) - gradient(i) / problem.A(i, i));
-        if (places == old_places || InterruptGuard::noticed())
+        if (places == old_places || Interruption::noticed())
           return;
         solve_for(places, problem, envelopes, s);
       }

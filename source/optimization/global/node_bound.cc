@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/interrupt.h>
+#include <debond/base/interruption.h>
 #include <debond/base/tolerances.h>
 #include <debond/optimization/global/convexity_shift.h>
 #include <debond/optimization/global/node_bound.h>
@@ -78,7 +78,7 @@ namespace Debond
         NodeResult result;
         for (unsigned int round = 0;; ++round)
           {
-            if (InterruptGuard::noticed() || !set_up(round == 0))
+            if (Interruption::noticed() || !set_up(round == 0))
               break;
             const bool all_decided = undecided().empty();
             minimise_relaxation(problem, envelopes, node.x);

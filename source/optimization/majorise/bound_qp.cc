@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/interrupt.h>
+#include <debond/base/interruption.h>
 #include <debond/base/tolerances.h>
 #include <debond/linear_algebra/cholesky.h>
 #include <debond/optimization/majorise/bound_qp.h>
@@ -136,7 +136,7 @@ namespace Debond
           {
             result.status = SolverStatus::quadratic_program;
           }
-        if (!can_be_verified(result.status) && InterruptGuard::noticed())
+        if (!can_be_verified(result.status) && Interruption::noticed())
           result.status = SolverStatus::interrupted;
         result.x = result.x.cwiseMin(b);
         return result;
@@ -160,9 +160,9 @@ namespace Debond
       }
 
       bool
-      may_go_on() const
+      is_within_limits() const
       {
-        return !InterruptGuard::noticed() &&
+        return !Interruption::noticed() &&
                result.steps < std::min(maximum_active_set_steps, 100 + 2 * n);
       }
 
@@ -208,7 +208,7 @@ namespace Debond
       exchange()
       {
         unsigned int fewest = n + 1, idle = 0;
-        while (may_go_on())
+        while (is_within_limits())
           {
             std::vector<unsigned int> free, wrong;
             for (unsigned int i = 0; i < n; ++i)
@@ -249,7 +249,7 @@ namespace Debond
       descend()
       {
         Eigen::VectorXd x = result.x.cwiseMin(b);
-        while (may_go_on())
+        while (is_within_limits())
           {
             const Eigen::VectorXd     force    = residual(M, r, x);
             const double              mu_noise = force_noise(x);

@@ -72,7 +72,7 @@ namespace Debond
     const Eigen::MatrixXd    S       = 0.5 * (product + product.transpose());
     const Eigen::VectorXd    g       = P.transpose() * problem.g;
     const RestrictedFunction phi(problem.phi, P);
-    const PiecewiseProblem   coarse = {S, g, phi, problem.may_go_on};
+    const PiecewiseProblem   coarse = {S, g, phi, problem.interruption};
 
     const std::vector<Eigen::SparseMatrix<double>> coarser(
       prolongations.begin() + 1, prolongations.end());
@@ -80,8 +80,9 @@ namespace Debond
       coarse_start(coarse, coarser, method, failures, on_coarsest);
     CondensedProblem             condensed(S, g, phi, s);
     const MajoriseMinimiseResult result =
-      method.minimize(condensed,
-                      [&](const auto &) { return problem.may_go_on(); });
+      method.minimize(condensed, [&](const auto &) {
+        return !problem.interruption.requested();
+      });
     if (!can_be_verified(result.status))
       failures.push_back("start on " + std::to_string(s.size()) +
                          " of the contact nodes: " + result.message);

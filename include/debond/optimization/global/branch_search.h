@@ -28,7 +28,7 @@ namespace Debond
 
     /// Where search and proof add up what they have done
     /// (BoundQPResult::operations), if it is not null.
-    double *operations = nullptr;
+    WorkLimit *work = nullptr;
   };
 
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <debond/base/run_watch.h>
+#include <debond/base/interruption.h>
+#include <debond/base/processes.h>
 
 #include <cmath>
 #include <condition_variable>
@@ -11,6 +12,19 @@ namespace Debond
 {
   namespace
   {
+    // A process has one handler of signals, and so one state of them.
+    std::atomic<bool> signal_arrived(false);
+    std::atomic<bool> is_known(false); ///< to all ranks
+    std::atomic<bool> is_asked(false); ///< by what iterates
+
+    extern "C" void
+    debond_record_signal(int /*number*/)
+    {
+      signal_arrived = true;
+    }
+
+
+
     /// Of both threads; the mutex guards the rest.
     struct
     {
@@ -21,7 +35,32 @@ namespace Debond
     } watched;
   } // namespace
 
-  std::atomic<bool> RunWatch::is_quiet(false), RunWatch::has_result(false);
+
+
+  bool
+  Interruption::requested() const
+  {
+    is_asked = true;
+    is_known = any_rank(signal_arrived);
+    return is_known;
+  }
+
+
+
+  bool
+  Interruption::noticed()
+  {
+    return n_started_ranks() == 1 ? signal_arrived : is_known;
+  }
+
+
+
+  const Interruption &
+  Interruption::by_signal()
+  {
+    static const Interruption interruption;
+    return interruption;
+  }
 
 
 
@@ -44,10 +83,19 @@ namespace Debond
 
 
 
-  RunWatch::RunWatch(std::ostream &stream, const int code)
+  SignalWatch::SignalWatch(std::ostream &stream, const int code)
     : out(stream)
     , exit_code(code)
   {
+    signal_arrived          = false;
+    is_known                = false;
+    struct sigaction action = {};
+    action.sa_handler       = debond_record_signal;
+    action.sa_flags         = SA_RESETHAND | SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, &previous_int);
+    sigaction(SIGTERM, &action, &previous_term);
+
     watched.has_ended = false;
     thread            = std::thread([this]() {
       constexpr std::chrono::milliseconds between_looks(100);
@@ -61,7 +109,7 @@ namespace Debond
 
 
 
-  RunWatch::~RunWatch()
+  SignalWatch::~SignalWatch()
   {
     {
       const std::lock_guard<std::mutex> lock(watched.mutex);
@@ -69,12 +117,23 @@ namespace Debond
     }
     watched.end.notify_all();
     thread.join();
+    sigaction(SIGINT, &previous_int, nullptr);
+    sigaction(SIGTERM, &previous_term, nullptr);
   }
 
 
 
   void
-  RunWatch::look()
+  SignalWatch::begin_run(const bool quiet)
+  {
+    is_asked = false;
+    is_quiet = quiet;
+  }
+
+
+
+  void
+  SignalWatch::look()
   {
     for (Stage *stage = watched.innermost; stage; stage = stage->outer)
       {
@@ -89,11 +148,11 @@ namespace Debond
         break;
       }
 
-    if (!guard.arrived())
+    if (!signal_arrived)
       return;
     const std::string stage =
       watched.innermost != nullptr ? " (" + watched.innermost->name + ")" : "";
-    if (!has_result)
+    if (!is_asked)
       {
         std::cerr << "debond: interrupted before there was a result" + stage +
                        "\n";

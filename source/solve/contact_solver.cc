@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/base/processes.h>
+#include <debond/contact/boundary_coarsening.h>
+#include <debond/elasticity/contact_condensation.h>
+#include <debond/elasticity/mesh_transfer.h>
+#include <debond/elasticity/prolongations.h>
+#include <debond/linear_algebra/aggregation.h>
+#include <debond/linear_algebra/multigrid_factor.h>
+#include <debond/optimization/bundle/metric_direction.h>
+#include <debond/optimization/majorise/coarse_start.h>
+#include <debond/optimization/majorise/condensed_problem.h>
+#include <debond/solve/contact_solver.h>
+#include <debond/solve/displacement_problem.h>
+#include <debond/solve/solve.h>
+
+namespace Debond
+{
+  namespace
+  {
+    /// Contact boundaries with more nodes take their start from coarser ones.
+    constexpr unsigned int coarsest_contact_nodes = 50;
+
+    /// On coarser meshes, where the time for a factorisation does not count.
+    constexpr double largest_coarse_factorisation = 3e4;
+
+
+
+    /// Levels of the coarser meshes of the body, or of aggregates.
+    template <int dim>
+    std::unique_ptr<TruncatedMultigrid>
+    make_cycle(const Scene<dim> &scene, const bool has_levels)
+    {
+      const Stage stage("multigrid setup");
+      // Trilinos needs MPI even in one process; others need not wait for it.
+      start_mpi();
+      const auto &unknowns = scene.problem().unknowns();
+      const auto &A        = scene.problem().distributed_matrix();
+      if (has_levels)
+        return std::make_unique<TruncatedMultigrid>(
+          A, dim, prolongations(scene.body(), unknowns));
+      std::vector<DistributedVector> modes;
+      for (const DofVector &mode : unknowns.rigid_body_modes())
+        modes.push_back(distribute(mode,
+                                   unknowns.dof_handler().locally_owned_dofs(),
+                                   scene.ranks()));
+      return std::make_unique<TruncatedMultigrid>(
+        A, dim, aggregated_prolongations(A, dim, modes));
+    }
+
+
+
+    /// The scene condensed onto its contact normals, by a factorisation or by a
+    /// multigrid solution for each of them.
+    template <int dim>
+    Condensation
+    condense(const MethodChoice &choice, const Scene<dim> &scene)
+    {
+      const ElasticProblem<dim> &problem = scene.problem();
+      if (choice.linear_solver != LinearSolver::multigrid)
+        return condense_to_contact(problem, scene.adhesion());
+      const Stage                 stage("condensation by multigrid");
+      const ElasticUnknowns<dim> &unknowns = problem.unknowns();
+      const auto                 &normals  = unknowns.contact().normal_dofs();
+      return Condensation(
+        make_multigrid_factor(problem.distributed_matrix(),
+                              eliminate_all_but(
+                                {normals.begin(), normals.end()},
+                                unknowns.n_dofs(),
+                                [&](const unsigned int i) {
+                                  return unknowns.is_constrained(i);
+                                },
+                                !unknowns.held_by_contact().motions.empty()),
+                              make_cycle(scene, choice.has_levels)),
+        problem.load(),
+        prescribed_energy(problem, scene.adhesion()));
+    }
+
+
+
+    /// Minimises the condensed functional, 1/2 s'S s - g's + Phi(s) + c_0.
+    template <int dim>
+    class CondensedSolver : public ContactSolver<dim>
+    {
+    public:
+      CondensedSolver(const MethodChoice &choice, const Scene<dim> &scene)
+        : scene(scene)
+        , problem(scene.problem())
+        , contact(problem.unknowns().contact())
+        , is_by_bundle(choice.method == SolverMethod::energy_bundle)
+        , whole(condense(choice, scene))
+        , free_motions(free_motions_of_contact(problem.unknowns()))
+        , s(contact.at_rest())
+      {}
+
+      void
+      start_from(const Eigen::VectorXd &point, const DofVector &) override
+      {
+        s = point.cwiseMin(0.);
+      }
+
+      void
+      start_from_coarser(const SolverParameters &parameters,
+                         SolveResult            &result) override
+      {
+        // Coarser spaces do not know the gaps of bodies at rest, and what only
+        // bonds hold has to start with all of them.
+        if (is_by_bundle || problem.unknowns().has_gap() ||
+            free_motions.cols() > 0)
+          return;
+        s = coarse_start({whole.schur_complement(),
+                          whole.load(),
+                          scene.adhesion()},
+                         coarsen(contact.boundary(), coarsest_contact_nodes),
+                         MajoriseMinimise(parameters.majorise_minimise),
+                         result.notes);
+      }
+
+      ContactMinimum
+      minimise(const LoadFactors            factors,
+               const AdhesionIntegral<dim> &bonds,
+               const SolverParameters      &parameters,
+               Progress                    &progress) override
+      {
+        here.emplace(factors == LoadFactors(1.) ?
+                       whole :
+                       at_factors(whole, problem, bonds, factors));
+        ContactMinimum result;
+        // Without loads the bundle's tolerance has nothing to be relative to,
+        // and without nodes there is no metric.
+        if (is_by_bundle && s.size() > 0 && here->energy_without_contact() > 0.)
+          return by_bundle(parameters.energy_bundle, bonds, progress);
+        const Eigen::VectorXd g =
+          load_at_contact(problem, *here, factors, free_motions);
+        CondensedProblem condensed(whole.schur_complement(),
+                                   g,
+                                   bonds,
+                                   s,
+                                   free_motions,
+                                   stiffness_at_contact(problem));
+        const double     energy = here->energy_at_zero();
+        static_cast<MajoriseMinimiseResult &>(result) =
+          MajoriseMinimise(parameters.majorise_minimise)
+            .minimize(condensed,
+                      progress.monitor<MajoriseMinimiseIteration>(energy));
+        add_energy(energy, result);
+        return result;
+      }
+
+      Eigen::VectorXd
+      point() const override
+      {
+        return s;
+      }
+
+      DofVector
+      displacement() const override
+      {
+        return here->expand(s);
+      }
+
+      std::unique_ptr<CorrectionSolver>
+      correction() override
+      {
+        return std::make_unique<CondensedCorrection>(whole);
+      }
+
+      const Condensation *
+      condensed() const override
+      {
+        return &whole;
+      }
+
+    private:
+      /// The paper's method in the metric of S: the condensed functional has
+      /// the same form on the normals alone.
+      ContactMinimum
+      by_bundle(ProximalBundleParameters     parameters,
+                const AdhesionIntegral<dim> &bonds,
+                Progress                    &progress)
+      {
+        const ContactSpace<dim>          normals = contact.condensed();
+        const MatrixView                 S       = whole.schur_complement();
+        const dealii::FullMatrix<double> matrix(S.rows(), S.cols(), S.data());
+        const DofVector       load(here->load().begin(), here->load().end());
+        const Functional<dim> functional(
+          [&matrix](DofVector &dst, const DofVector &src) {
+            matrix.vmult(dst, src);
+          },
+          load,
+          normals,
+          bonds);
+        parameters.epsilon_s *= here->energy_without_contact();
+        MetricDirection      direction(S, bonds, parameters.bundle_size);
+        DofVector            x(s.begin(), s.end());
+        const double         energy = here->energy_at_zero();
+        ProximalBundleResult bundle =
+          ProximalBundle(parameters)
+            .minimize(functional,
+                      direction,
+                      x,
+                      progress.monitor<BundleIteration>(energy));
+        add_energy(energy, bundle);
+        s = eigen_view(x);
+
+        ContactMinimum result;
+        result.status     = bundle.status;
+        result.functional = bundle.functional;
+        result.residual   = bundle.v;
+        result.message    = bundle.message;
+        for (const BundleIteration &iteration : bundle.history)
+          result.history.push_back({iteration.iteration,
+                                    iteration.functional,
+                                    iteration.v,
+                                    iteration.qp_steps,
+                                    0,
+                                    0});
+        result.bundle = std::move(bundle);
+        return result;
+      }
+
+      const Scene<dim>          &scene;
+      const ElasticProblem<dim> &problem;
+      const ContactSpace<dim>   &contact;
+      const bool                 is_by_bundle;
+      const Condensation         whole;
+      const Eigen::MatrixXd      free_motions;
+      Eigen::VectorXd            s;
+
+      std::optional<Condensation> here; ///< at the last factors
+    };
+
+
+
+    /// Minimises J on all unknowns by truncated multigrid.
+    template <int dim>
+    class MultigridSolver : public ContactSolver<dim>
+    {
+    public:
+      MultigridSolver(const Scene<dim> &scene, const bool has_levels)
+        : scene(scene)
+        , problem(scene.problem())
+        , cycle(make_cycle(scene, has_levels))
+      {
+        const ElasticUnknowns<dim> &unknowns = problem.unknowns();
+        DofVector                   rest(unknowns.n_dofs());
+        unknowns.contact().add_normal(unknowns.contact().at_rest(), rest);
+        start_from({}, rest);
+      }
+
+      void
+      start_from(const Eigen::VectorXd &, const DofVector &start) override
+      {
+        const auto              &unknowns = problem.unknowns();
+        const ContactSpace<dim> &contact  = unknowns.contact();
+        DofVector                v        = start;
+        contact.add_normal(-contact.trace(v).cwiseMax(0.), v);
+        u = distribute(v,
+                       unknowns.dof_handler().locally_owned_dofs(),
+                       unknowns.communicator());
+      }
+
+      /// The first coarser mesh that is factorised has the search of the scene.
+      /// Each rank does the same.
+      void
+      start_from_coarser(const SolverParameters &parameters,
+                         SolveResult            &result) override
+      {
+        std::shared_ptr<const Body<dim>> body = scene.body().coarser();
+        while (body && dim * body->n_vertices() > largest_coarse_factorisation)
+          body = body->coarser();
+        if (body == nullptr)
+          return;
+        const Scene<dim> coarse_scene(scene.parameters(), body);
+        SolverParameters coarse = parameters;
+        coarse.prove            = false;
+        MethodChoice choice;
+        choice.method        = SolverMethod::majorise_minimise;
+        choice.linear_solver = LinearSolver::direct;
+        choice.is_condensed  = true;
+        Progress    silent;
+        SolveResult start;
+        solve_contact(choice, coarse, coarse_scene, nullptr, silent, start);
+        result.notes                   = start.notes;
+        result.minimum                 = start.minimum;
+        result.minimum.proof_attempted = false;
+        if (!can_be_verified(start.status))
+          result.notes.push_back(
+            "start on the mesh of " + std::to_string(coarse_scene.n_cells()) +
+            (dim == 2 ? " triangles: " : " tetrahedra: ") + start.message);
+        start_from({},
+                   interpolate_displacement(coarse_scene.body(),
+                                            coarse_scene.problem(),
+                                            start.u,
+                                            problem));
+      }
+
+      ContactMinimum
+      minimise(const LoadFactors            factors,
+               const AdhesionIntegral<dim> &bonds,
+               const SolverParameters      &parameters,
+               Progress                    &progress) override
+      {
+        const DofVector load = problem.load(factors);
+        // Then rest is the minimum, and residuals have nothing to be relative
+        // to on the way.
+        if (load.all_zero())
+          u = 0.;
+        DisplacementProblem minimised(
+          problem, load, bonds, *cycle, u, progress.interruption);
+        const double   energy = prescribed_energy(problem, bonds, factors);
+        ContactMinimum result;
+        static_cast<MajoriseMinimiseResult &>(result) =
+          MajoriseMinimise(parameters.majorise_minimise)
+            .minimize(minimised,
+                      progress.monitor<MajoriseMinimiseIteration>(energy));
+        add_energy(energy, result);
+        return result;
+      }
+
+      Eigen::VectorXd
+      point() const override
+      {
+        return ContactUnknowns(problem).trace(u);
+      }
+
+      DofVector
+      displacement() const override
+      {
+        return gather(u);
+      }
+
+      std::unique_ptr<CorrectionSolver>
+      correction() override
+      {
+        return std::make_unique<MultigridCorrection>(problem, *cycle);
+      }
+
+    private:
+      const Scene<dim>                         &scene;
+      const ElasticProblem<dim>                &problem;
+      const std::unique_ptr<TruncatedMultigrid> cycle;
+      DistributedVector                         u;
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  std::unique_ptr<ContactSolver<dim>>
+  make_contact_solver(const MethodChoice &choice, const Scene<dim> &scene)
+  {
+    if (choice.is_condensed)
+      return std::make_unique<CondensedSolver<dim>>(choice, scene);
+    return std::make_unique<MultigridSolver<dim>>(scene, choice.has_levels);
+  }
+
+
+
+  template decltype(make_contact_solver<2>) make_contact_solver<2>;
+  template decltype(make_contact_solver<3>) make_contact_solver<3>;
+} // namespace Debond
