@@ -1,59 +1,25 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The search and the proof with any number of branches, against enumeration of
-// all choices of a branch for each unknown, by a solver of its own in long
-// double: for each choice the minimum of the convex problem is above J's, and
-// one of them is it. Takes the number of problems.
-
-#include <deal.II/lac/full_matrix.h>
+// The search and the proof with any number of branches, against enumeration.
+// Takes the number of problems.
 
 #include <debond/optimization/global/branch_and_bound.h>
-#include <debond/optimization/global/branch_search.h>
 #include <debond/optimization/global/convex_envelope.h>
 #include <debond/optimization/global/node_bound.h>
 #include <debond/optimization/majorise/condensed_problem.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iostream>
 #include <limits>
-#include <random>
 #include <stdexcept>
 
 #include "../check.h"
-#include "enumeration.h"
+#include "random_problems.h"
 
 using namespace Debond;
 
 namespace
 {
-  using Vector = Eigen::VectorXd;
-
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-
-
-
-  class Random
-  {
-  public:
-    double
-    operator()(const double lower, const double upper)
-    {
-      return std::uniform_real_distribution<double>(lower, upper)(engine);
-    }
-
-    unsigned int
-    integer(const unsigned int lower, const unsigned int upper)
-    {
-      return std::uniform_int_distribution<unsigned int>(lower, upper)(engine);
-    }
-
-  private:
-    std::mt19937_64 engine{20261122};
-  };
-
-
-
   PiecewiseEnergy
   stepped(Random &random, const unsigned int n_steps)
   {
@@ -111,8 +77,7 @@ namespace
     unsigned int most_pieces = 0;
     for (unsigned int k = 0; k < 3000; ++k)
       {
-        const PiecewiseEnergy f        = any_branches(random);
-        const BranchList      branches = branches_of(f);
+        const PiecewiseEnergy f = any_branches(random);
         raise(most_pieces, f.size());
         const double          factor = random(0.1, 10.);
         const PiecewiseEnergy more   = f.scaled(factor);
@@ -125,8 +90,7 @@ namespace
         for (unsigned int i = 0; i < 200; ++i)
           {
             const double s = -0.02 * i;
-            raise(worst,
-                  double(std::abs(f.value(s) - least_branch(branches, s))));
+            raise(worst, double(std::abs(f.value(s) - least_branch(f, s))));
             raise(worst_multiple,
                   std::abs(more.value(s) - factor * f.value(s)) / factor);
           }
@@ -150,16 +114,18 @@ namespace
     unsigned int most_parts = 0;
     for (unsigned int k = 0; k < 600; ++k)
       {
-        const BranchList list = branches_of(
-          k % 2 == 0 ? any_branches(random) : stepped(random, 1 + k % 4));
-        const BranchEnergy   f     = {k % 3 == 0 ? 0. : random(0., 1.), list};
+        const PiecewiseEnergy energy =
+          k % 2 == 0 ? any_branches(random) : stepped(random, 1 + k % 4);
+        BranchEnergy f = {k % 3 == 0 ? 0. : random(0., 1.), {}};
+        for (unsigned int p = 0; p < energy.size(); ++p)
+          f.pieces.push_back(energy[p]);
         const double         lower = -random(0., 5.);
         const double         upper = k % 5 == 0 ? 0. : lower * random(0., 1.);
         const ConvexEnvelope envelope(f, lower, upper);
         raise(most_parts, static_cast<unsigned int>(envelope.parts.size()));
 
         const auto value = [&](const double s) {
-          return double(least_branch(list, s)) + 0.5 * f.convexity * s * s;
+          return double(least_branch(energy, s)) + 0.5 * f.convexity * s * s;
         };
         constexpr unsigned int n_points = 50;
         const double           h        = (upper - lower) / n_points;
@@ -167,7 +133,7 @@ namespace
         for (unsigned int i = 0; i <= n_points; ++i)
           values.push_back(value(lower + h * i));
         const double r     = random(-3., 3.);
-        double       least = infinity;
+        double       least = std::numeric_limits<double>::infinity();
         for (unsigned int i = 0; i <= n_points; ++i)
           {
             const double s     = lower + h * i;
@@ -209,82 +175,22 @@ namespace
 
 
 
-  struct Problem
-  {
-    LongMatrix              S_long;
-    Eigen::MatrixXd         S;
-    Vector                  g;
-    std::vector<BranchList> lists;
-    SeparableBranches       phi;
-
-    long double
-    value(const Vector &s) const
-    {
-      long double sum = 0.;
-      for (unsigned int i = 0; i < s.size(); ++i)
-        {
-          long double force = -g(i);
-          for (unsigned int j = 0; j < s.size(); ++j)
-            force += 0.5L * S_long(i, j) * s(j);
-          sum += force * s(i) + least_branch(lists[i], s(i));
-        }
-      return sum;
-    }
-  };
-
-
-
   Problem
   random_problem(Random            &random,
                  const unsigned int n,
                  const bool         is_stepped,
-                 const bool         has_any_coupling)
+                 const bool         any_coupling)
   {
-    LongMatrix S(n, n);
-    for (unsigned int i = 0; i < n; ++i)
-      for (unsigned int j = 0; j <= i; ++j)
-        S(i, j) = S(j, i) = -std::exp(-double(i - j)) * random(0.7, 1.3);
-    for (unsigned int i = 0; i < n; ++i)
-      S(i, i) = 0.05 - (S.row(i).sum() - S(i, i));
-    if (has_any_coupling)
-      {
-        const LongMatrix B =
-          LongMatrix::NullaryExpr(n, n, [&]() { return random(-1., 1.); });
-        S = B * B.transpose() + 0.02L * LongMatrix::Identity(n, n);
-      }
-
-    Problem p = {
-      S, Eigen::MatrixXd(n, n), Vector(n), {}, SeparableBranches({})};
+    Problem               p      = {random_matrix(random, n, any_coupling),
+                                    Vector::NullaryExpr(n, [&]() { return random(-2.2, 0.8); }),
+                                    SeparableBranches({})};
     const PiecewiseEnergy common = stepped(random, random.integer(1, 3));
+    // Of a law, each unknown has a multiple.
     for (unsigned int i = 0; i < n; ++i)
-      {
-        // Of a law, each unknown has a multiple.
-        p.phi.f.push_back(
-          is_stepped ? common.scaled(std::pow(2., random.integer(0, 4)) / 4.) :
-                       any_branches(random));
-        p.lists.push_back(branches_of(p.phi.f.back()));
-        p.g(i) = random(-2.2, 0.8);
-        for (unsigned int j = 0; j < n; ++j)
-          {
-            p.S(i, j)      = double(S(i, j));
-            p.S_long(i, j) = p.S(i, j);
-          }
-      }
+      p.phi.f.push_back(
+        is_stepped ? common.scaled(std::pow(2., random.integer(0, 4)) / 4.) :
+                     any_branches(random));
     return p;
-  }
-
-
-
-  NeighbourGraph
-  chain(const unsigned int n)
-  {
-    NeighbourGraph graph(n);
-    for (unsigned int i = 1; i < n; ++i)
-      {
-        graph[i - 1].insert(i);
-        graph[i].insert(i - 1);
-      }
-    return graph;
   }
 
 
@@ -300,14 +206,10 @@ namespace
       {
         const bool         is_stepped = k % 2 == 0;
         const unsigned int n          = 2 + k % 3;
-        const Problem p = random_problem(random, n, is_stepped, k % 5 == 0);
-        LongVector    s_min;
-        LongVector    g(n);
-        for (unsigned int i = 0; i < n; ++i)
-          g(i) = p.g(i);
-        const long double minimum =
-          enumerated_minimum(p.S_long, g, p.lists, s_min);
-        const double tolerance =
+        const Problem     p = random_problem(random, n, is_stepped, k % 5 == 0);
+        LongVector        s_min;
+        const long double minimum = p.enumerated_minimum(s_min);
+        const double      tolerance =
           1e-10 * std::max(1., std::abs(double(minimum)));
         // Constants are kept such that kinks are doubles.
         const double rounding = 1e-15;

@@ -7,102 +7,17 @@
 #include <debond/optimization/majorise/condensed_problem.h>
 #include <debond/optimization/majorise/majorise_minimise.h>
 
-#include <Eigen/Dense>
-
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <random>
 
 #include "../check.h"
+#include "random_problems.h"
 
 using namespace Debond;
 
 namespace
 {
-  /// sum_i w_i j_1(s_i) with the paper's j_1.
-  class Bonds : public PiecewiseQuadratic
-  {
-  public:
-    Eigen::VectorXd stiffness; // w_i a
-    double          threshold; // M
-
-    bool
-    broken(const double s) const
-    {
-      return s < -threshold;
-    }
-
-    double
-    change(const VectorView &s) const override
-    {
-      double sum = 0.;
-      for (unsigned int i = 0; i < s.size(); ++i)
-        sum +=
-          0.5 * stiffness(i) * std::pow(broken(s(i)) ? threshold : s(i), 2);
-      return sum;
-    }
-
-    Eigen::VectorXd
-    subgradient(const VectorView &s) const override
-    {
-      Eigen::VectorXd xi(s.size());
-      for (unsigned int i = 0; i < s.size(); ++i)
-        xi(i) = broken(s(i)) ? 0. : stiffness(i) * s(i);
-      return xi;
-    }
-
-    Eigen::SparseMatrix<double>
-    curvature(const VectorView &s) const override
-    {
-      Eigen::SparseMatrix<double> matrix(s.size(), s.size());
-      for (unsigned int i = 0; i < s.size(); ++i)
-        if (!broken(s(i)))
-          matrix.insert(i, i) = stiffness(i);
-      return matrix;
-    }
-  };
-
-
-
-  struct Problem
-  {
-    Eigen::MatrixXd S;
-    Eigen::VectorXd g;
-    Bonds           bonds;
-  };
-
-
-
-  Problem
-  random_problem(std::mt19937_64 &engine, const unsigned int n)
-  {
-    std::uniform_real_distribution<double> uniform(-1., 1.);
-
-    // Neighbours are coupled, as on a contact boundary.
-    Problem p;
-    p.S = Eigen::MatrixXd::Zero(n, n);
-    for (unsigned int i = 0; i < n; ++i)
-      for (unsigned int j = 0; j < n; ++j)
-        p.S(i, j) = -std::exp(-std::abs(double(i) - double(j))) *
-                    (1. + 0.3 * uniform(engine));
-    p.S = (0.5 * (p.S + p.S.transpose())).eval();
-    for (unsigned int i = 0; i < n; ++i)
-      p.S(i, i) = 0.2 - (p.S.row(i).sum() - p.S(i, i));
-
-    p.g.resize(n);
-    p.bonds.stiffness.resize(n);
-    p.bonds.threshold = 0.5 + 0.4 * uniform(engine);
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        p.g(i)               = 1.5 * uniform(engine) - 0.5;
-        p.bonds.stiffness(i) = 1. + uniform(engine);
-      }
-    return p;
-  }
-
-
-
   /// A beam of unit length and stiffness on an elastic foundation, clamped at
   /// one end and pulled off at the other: fourth differences, with which
   /// exchanges of all wrong indices need not end. The optimality conditions are
@@ -110,7 +25,6 @@ namespace
   void
   test_beam_qp()
   {
-    using LongVector        = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
     bool         converged  = true;
     double       worst      = 0.;
     unsigned int most_steps = 0;
@@ -159,14 +73,14 @@ namespace
 
   /// Neighbouring pairs of unknowns move together on each coarser level.
   void
-  test_coarse_start(std::mt19937_64 &engine)
+  test_coarse_start(Random &random)
   {
     bool         feasible = true, below_rest = true, converged = true;
     bool         all_named  = true;
     unsigned int n_problems = 50, n_failed = 0;
     for (unsigned int k = 0; k < n_problems; ++k)
       {
-        const Problem                            p = random_problem(engine, 16);
+        const Problem p = random_bonds(random, 16, false);
         std::vector<Eigen::SparseMatrix<double>> prolongations;
         for (unsigned int n = 16; n > 4; n /= 2)
           {
@@ -177,7 +91,7 @@ namespace
           }
         const MajoriseMinimise   method({});
         std::vector<std::string> failures;
-        coarse_start({p.S, p.g, p.bonds},
+        coarse_start({p.S, p.g, p.phi},
                      prolongations,
                      MajoriseMinimise({1e-10, 1}),
                      failures);
@@ -187,13 +101,13 @@ namespace
                       failure.find(" after 1 iterations") != std::string::npos;
         failures.clear();
         Eigen::VectorXd s =
-          coarse_start({p.S, p.g, p.bonds}, prolongations, method, failures);
+          coarse_start({p.S, p.g, p.phi}, prolongations, method, failures);
         converged = converged && failures.empty();
         for (const double entry : s)
           feasible = feasible && entry <= 0.;
         below_rest =
-          below_rest && s.dot(0.5 * p.S * s - p.g) + p.bonds.change(s) <= 0.;
-        CondensedProblem problem(p.S, p.g, p.bonds, s);
+          below_rest && s.dot(0.5 * p.S * s - p.g) + p.phi.change(s) <= 0.;
+        CondensedProblem problem(p.S, p.g, p.phi, s);
         converged =
           converged && method.minimize(problem).status == SolverStatus::success;
       }
@@ -274,8 +188,8 @@ int
 main(int argc, char *[])
 {
   print_figures = argc > 1;
-  std::mt19937_64 engine(20261121);
+  Random random;
   test_beam_qp();
-  test_coarse_start(engine);
+  test_coarse_start(random);
   test_active_set_guess();
 }
