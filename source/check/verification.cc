@@ -505,9 +505,7 @@ namespace Debond
         result.penetration = std::max(result.penetration, s(i));
       }
 
-    DofVector displacement = u;
-    if (problem.unknowns().has_lifting())
-      displacement += problem.unknowns().lifting(factors);
+    DofVector              displacement = problem.unknowns().lifted(u, factors);
     const double           largest_displacement = displacement.linfty_norm();
     const LargestResiduals largest = largest_residuals(problem, residual);
     DofVector    rounding = problem.fields().residual_rounding(u, factors);
@@ -575,8 +573,8 @@ namespace Debond
         std::max(rounding.linfty_norm(), rounding_of_gaps) / largest_force :
         0.;
 
-    displacement = problem.unknowns().cartesian_displacement(u, factors);
-    problem.unknowns().edges().to_coefficients(displacement);
+    displacement =
+      problem.unknowns().basis().to_nodal(displacement, BasisStep::jumps);
     // Of glued nodes that of the body on the high side.
     for (const auto &pair : problem.unknowns().pairs().all())
       if (pair.sign < 0.)

@@ -53,8 +53,6 @@ namespace Debond
                 face.positions[n] =
                   mapping.transform_unit_to_real_cell(cell,
                                                       fe.unit_support_point(i));
-                for (unsigned int d = 0; d < dim; ++d)
-                  face.dofs[n][d] = cell_dofs[i] + d;
               }
             faces.push_back(face);
           }

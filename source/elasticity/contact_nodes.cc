@@ -2,6 +2,7 @@
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/contact_frame.h>
 #include <debond/elasticity/contact_nodes.h>
+#include <debond/elasticity/edge_coefficients.h>
 #include <debond/mesh/field_value.h>
 
 #include <algorithm>
@@ -19,7 +20,6 @@ namespace Debond
     template <int dim>
     struct ContactVertex
     {
-      NodeDofs<dim>      dofs;
       dealii::Point<dim> position;
 
       /// Of its faces.
@@ -72,10 +72,7 @@ namespace Debond
       const auto at = [&](const unsigned int k) {
         return gap_value(supports, face.id, face.positions[k]);
       };
-      if (node < dim)
-        return at(node);
-      const auto &[a, b] = simplex_edges[node - dim];
-      return 2. * at(node) - 0.5 * (at(a) + at(b));
+      return node < dim ? at(node) : edge_coefficient<dim>(node, at);
     }
 
 
@@ -200,7 +197,6 @@ namespace Debond
           for (unsigned int v = 0; v < faces[f].n_nodes; ++v)
             {
               ContactVertex<dim> &vertex = vertices[faces[f].indices[v]];
-              vertex.dofs                = faces[f].dofs[v];
               vertex.position            = faces[f].positions[v];
               places[f][v] = static_cast<unsigned int>(vertex.normals.size());
               vertex.normals.push_back(faces[f].normal);
@@ -246,11 +242,9 @@ namespace Debond
           if (conditions.fixes_tangential(faces[f].id) &&
               !is_moved(faces[f].id) && !is_curved(f))
             for (unsigned int v = 0; v < faces[f].n_nodes; ++v)
-              check_prescribed(
-                node_supports.prescribed_at(faces[f].indices[v],
-                                            faces[f].dofs[v],
-                                            faces[f].positions[v]),
-                faces[f].normal);
+              check_prescribed(node_supports.prescribed_at(
+                                 faces[f].indices[v], faces[f].positions[v]),
+                               faces[f].normal);
       }
 
       /// Throws unless a multiple of @p normal is a displacement that supports
@@ -299,12 +293,12 @@ namespace Debond
         if (is_end)
           std::fill(gaps.begin(), gaps.end(), 0.);
         PrescribedNode<dim> prescribed =
-          node_supports.prescribed_at(index, vertex.dofs, vertex.position);
+          node_supports.prescribed_at(index, vertex.position);
         const auto &rows = prescribed.rows;
         // As far from the foundation as at rest.
         const bool is_clamped =
-          is_end || node_supports.constraints().is_constrained(vertex.dofs[0]);
-        const auto   clamp   = clamps.find(vertex.dofs[0]);
+          is_end || node_supports.constraints().is_constrained(dim * index);
+        const auto   clamp   = clamps.find(dim * index);
         unsigned int support = no_node;
         if (is_clamped && !is_end && clamp != clamps.end())
           support = clamp->second;
@@ -335,7 +329,7 @@ namespace Debond
             // also if supports prescribe one of the normal ones.
             unknown.clear();
             prescribed.fix_rest();
-            node_supports.constrain(index, prescribed);
+            node_supports.constrain(prescribed);
           }
 
         if (unknown.size() > dim)
@@ -361,7 +355,8 @@ namespace Debond
         for (const unsigned int k : unknown)
           {
             vertex.nodes[k] = static_cast<unsigned int>(nodes.size());
-            normal_dofs.push_back(vertex.dofs[directions.size()]);
+            normal_dofs.push_back(dim * index +
+                                  static_cast<unsigned int>(directions.size()));
             const double gap_here = gaps[k];
             if (gap_here != 0.)
               gap(normal_dofs.back()) = gap_here;
@@ -382,8 +377,7 @@ namespace Debond
         if (unknown.empty())
           return;
 
-        node_supports.add_frame(index,
-                                prescribed,
+        node_supports.add_frame(prescribed,
                                 directions,
                                 vertex.is_tangential_fixed);
       }

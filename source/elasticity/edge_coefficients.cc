@@ -1,29 +1,31 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/elasticity/edge_coefficients.h>
 
+#include <set>
+
 namespace Debond
 {
   template <int dim>
-  EdgeCoefficients<dim>::EdgeCoefficients(
-    const unsigned int                    n_nodes,
-    const std::vector<BoundaryFace<dim>> &contact)
+  std::vector<BasisRow<dim>>
+  edge_coefficients(const std::vector<BoundaryFace<dim>> &contact)
   {
+    std::set<unsigned int>     middles;
+    std::vector<BasisRow<dim>> rows;
     for (const BoundaryFace<dim> &face : contact)
-      for (unsigned int k = dim; k < face.n_nodes; ++k)
-        {
-          number_of_node.resize(n_nodes, dealii::numbers::invalid_unsigned_int);
-          if (find(face.indices[k]) != nullptr)
-            continue;
-          const auto &[a, b] = simplex_edges[k - dim];
-          number_of_node[face.indices[k]] =
-            static_cast<unsigned int>(edges.size());
-          edges.push_back(
-            {face.indices[k], {{face.indices[a], face.indices[b]}}});
-        }
+      for (unsigned int n = dim; n < face.n_nodes; ++n)
+        if (middles.insert(face.indices[n]).second)
+          {
+            const auto &[a, b] = simplex_edges[n - dim];
+            rows.push_back(BasisRow<dim>::scaled(face.indices[n],
+                                                 0.5,
+                                                 {{face.indices[a], 0.25},
+                                                  {face.indices[b], 0.25}}));
+          }
+    return rows;
   }
 
 
 
-  template class EdgeCoefficients<2>;
-  template class EdgeCoefficients<3>;
+  template decltype(edge_coefficients<2>) edge_coefficients<2>;
+  template decltype(edge_coefficients<3>) edge_coefficients<3>;
 } // namespace Debond

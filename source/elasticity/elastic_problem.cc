@@ -42,7 +42,7 @@ namespace Debond
           cell_dofs.resize(dofs.get_fe().dofs_per_cell);
           cell->get_dof_indices(cell_dofs);
           const std::size_t n_own = cell_dofs.size();
-          unknowns.pairs().add_seconds(cell_dofs);
+          unknowns.basis().add_others(cell_dofs);
           nodes.clear();
           for (unsigned int i = 0; i < cell_dofs.size(); i += dim)
             nodes.push_back(cell_dofs[i] / dim);
@@ -216,7 +216,7 @@ namespace Debond
     if (elastic_unknowns.has_lifting())
       whole_load = load_with(1.);
     else
-      whole_load = elastic_unknowns.in_frames(applied_forces);
+      whole_load = elastic_unknowns.basis().forces_to_unknowns(applied_forces);
     constraints.set_zero(whole_load);
 
     system_matrix.clear();
@@ -295,8 +295,7 @@ namespace Debond
           set_products(values, stiffness(cell->material_id()), cell_matrix);
         else
           set_products(values, material, cell_matrix);
-        elastic_unknowns.pairs().add_seconds(cell_dofs);
-        elastic_unknowns.to_unknowns(cell_dofs, cell_matrix);
+        elastic_unknowns.basis().to_unknowns(cell_dofs, cell_matrix);
         if (cell_dofs.size() > n && cell->is_locally_owned())
           glued.emplace_back(cell_dofs,
                              std::vector<double>(&cell_matrix(0, 0),

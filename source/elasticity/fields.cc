@@ -86,7 +86,7 @@ namespace Debond
       }
     add_over_ranks(forces, elastic_unknowns.communicator());
     forces -= applied_nodal_forces(factors);
-    return elastic_unknowns.in_frames(forces);
+    return elastic_unknowns.basis().forces_to_unknowns(forces);
   }
 
 
@@ -99,13 +99,10 @@ namespace Debond
     const DofVector displacement =
       elastic_unknowns.cartesian_displacement(u, factors);
 
-    // Of glued nodes it is the sum of a jump and the other displacement.
     DofVector sizes = displacement;
     for (double &size : sizes)
       size = std::abs(size);
-    for (const auto &pair : elastic_unknowns.pairs().all())
-      for (unsigned int d = 0; d < dim; ++d)
-        sizes[dim * pair.first + d] += 2. * sizes[dim * pair.second + d];
+    sizes = elastic_unknowns.basis().sizes_of_terms(sizes);
 
     DofVector         rounding(elastic_unknowns.n_dofs());
     CellStresses<dim> cell_stresses(*this,
@@ -135,11 +132,7 @@ namespace Debond
     for (unsigned int i = 0; i < rounding.size(); ++i)
       rounding[i] = std::numeric_limits<double>::epsilon() *
                     (rounding[i] + std::abs(forces[i]));
-    // The forces on glued nodes are those on both.
-    for (const auto &pair : elastic_unknowns.pairs().all())
-      for (unsigned int d = 0; d < dim; ++d)
-        rounding[dim * pair.second + d] += rounding[dim * pair.first + d];
-    return rounding;
+    return elastic_unknowns.basis().rounding_of_forces(rounding);
   }
 
 
@@ -178,8 +171,10 @@ namespace Debond
   ElasticFields<dim>::elastic_functional(const DofVector  &u,
                                          const LoadFactors factors) const
   {
-    return functional(
-      u, factors, elastic_unknowns.in_frames(applied_nodal_forces(factors)));
+    return functional(u,
+                      factors,
+                      elastic_unknowns.basis().forces_to_unknowns(
+                        applied_nodal_forces(factors)));
   }
 
 
@@ -199,20 +194,8 @@ namespace Debond
   ElasticFields<dim>::load_work(const DofVector  &u,
                                 const LoadFactors factors) const
   {
-    return elastic_unknowns.in_frames(live_forces) * lifted(u, factors);
-  }
-
-
-
-  template <int dim>
-  DofVector
-  ElasticFields<dim>::lifted(const DofVector  &u,
-                             const LoadFactors factors) const
-  {
-    DofVector x = u;
-    if (elastic_unknowns.has_lifting())
-      x += elastic_unknowns.lifting(factors);
-    return x;
+    return elastic_unknowns.basis().forces_to_unknowns(live_forces) *
+           elastic_unknowns.lifted(u, factors);
   }
 
 
@@ -227,9 +210,8 @@ namespace Debond
     accumulators::
       accumulator_set<double, accumulators::stats<accumulators::tag::sum_kahan>>
                     result;
-    const DofVector displacement = lifted(u, factors);
-    const DofVector cartesian =
-      elastic_unknowns.cartesian_displacement(u, factors);
+    const DofVector displacement = elastic_unknowns.lifted(u, factors);
+    const DofVector cartesian = elastic_unknowns.basis().to_nodal(displacement);
     CellStresses<dim> cell_stresses(
       *this, cartesian, factors, strain_rule<dim>(elastic_unknowns.degree()));
     const auto &values = cell_stresses.values();

@@ -57,59 +57,6 @@ namespace Debond
 
 
 
-  template <int dim>
-  void
-  NodePairs<dim>::add_seconds(
-    std::vector<dealii::types::global_dof_index> &dofs) const
-  {
-    if (pairs.empty())
-      return;
-    const std::size_t n = dofs.size();
-    for (std::size_t i = 0; i < n; i += dim)
-      if (const Pair *pair =
-            find_first(static_cast<unsigned int>(dofs[i] / dim)))
-        for (unsigned int d = 0; d < dim; ++d)
-          dofs.push_back(pair->second * dim + d);
-  }
-
-
-
-  template <int dim>
-  void
-  NodePairs<dim>::to_unknowns(
-    const std::vector<dealii::types::global_dof_index> &dofs,
-    dealii::FullMatrix<double>                         &matrix) const
-  {
-    const auto n_own = static_cast<unsigned int>(matrix.m());
-    const auto n     = static_cast<unsigned int>(dofs.size());
-    if (n == n_own)
-      return;
-    dealii::FullMatrix<double> all(n);
-    for (unsigned int i = 0; i < n_own; ++i)
-      for (unsigned int j = 0; j < n_own; ++j)
-        all(i, j) = matrix(i, j);
-    unsigned int next = n_own;
-    for (unsigned int i = 0; i < n_own; i += dim)
-      if (const Pair *pair =
-            find_first(static_cast<unsigned int>(dofs[i] / dim)))
-        for (unsigned int d = i; d < i + dim; ++d, ++next)
-          {
-            for (unsigned int j = 0; j < n; ++j)
-              {
-                all(next, j) = all(d, j);
-                all(d, j) *= pair->sign;
-              }
-            for (unsigned int j = 0; j < n; ++j)
-              {
-                all(j, next) = all(j, d);
-                all(j, d) *= pair->sign;
-              }
-          }
-    matrix = all;
-  }
-
-
-
   template class NodePairs<2>;
   template class NodePairs<3>;
 } // namespace Debond

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <debond/base/tolerances.h>
 #include <debond/elasticity/contact_frame.h>
+#include <debond/elasticity/edge_coefficients.h>
 #include <debond/elasticity/node_supports.h>
 #include <debond/mesh/field_value.h>
 
@@ -35,6 +36,78 @@ namespace Debond
           }
       return name;
     }
+
+
+
+    template <int dim>
+    [[noreturn]] void
+    fail(const PrescribedDisplacement<dim> &condition,
+         const std::string                 &message)
+    {
+      throw SupportError(condition.is_roller ?
+                           SupportError::Subject::roller :
+                           SupportError::Subject::displacement,
+                         condition.name,
+                         message);
+    }
+
+
+
+    /// Throws if something is prescribed that a face cannot have. @p normal: of
+    /// the first face of the piece.
+    template <int dim>
+    void
+    check(const PrescribedDisplacement<dim> &condition,
+          const BoundaryConditions          &conditions,
+          const BoundaryFace<dim>           &face,
+          const dealii::Tensor<1, dim>      &normal)
+    {
+      if (condition.is_roller &&
+          (face.normal - normal).norm() > Tolerance::same_normal)
+        fail(condition,
+             "a roller is flat, but the normals of " + condition.name +
+               " differ: prescribe components by Displacement " +
+               condition.name);
+      // What of the normal is not prescribed.
+      double free_part = 0.;
+      for (unsigned int d = 0; d < dim; ++d)
+        if (!condition.is_roller && !condition.components[d])
+          free_part = std::max(free_part, std::abs(face.normal[d]));
+      if (conditions.contact.count(face.id) > 0 &&
+          free_part <= Tolerance::same_normal)
+        fail(condition,
+             condition.name +
+               " is a contact boundary, whose normal displacement is left to "
+               "the foundation and cannot be prescribed");
+    }
+
+
+
+    /// The prescribed component d of the unknown of a node of a face, a
+    /// coefficient if @p is_coefficient.
+    template <int dim>
+    double
+    prescribed_value(const PrescribedDisplacement<dim> &condition,
+                     const BoundaryFace<dim>           &face,
+                     const unsigned int                 node,
+                     const bool                         is_coefficient,
+                     const unsigned int                 d)
+    {
+      if (condition.values == nullptr)
+        return 0.;
+      const auto value = [&](const unsigned int n) {
+        return field_value(*condition.values, face.positions[n], d);
+      };
+      try
+        {
+          return is_coefficient ? edge_coefficient<dim>(node, value) :
+                                  value(node);
+        }
+      catch (const std::invalid_argument &error)
+        {
+          fail(condition, error.what());
+        }
+    }
   } // namespace
 
 
@@ -47,6 +120,29 @@ namespace Debond
     for (const Row &row : rows)
       displacement += row.value * row.direction;
     return displacement;
+  }
+
+
+
+  template <int dim>
+  bool
+  PrescribedNode<dim>::add(Row row)
+  {
+    double size = std::abs(row.value);
+    for (const Row &other : rows)
+      {
+        const double part = row.direction * other.direction;
+        row.direction -= part * other.direction;
+        row.value -= part * other.value;
+        size = std::max(size, std::abs(other.value));
+      }
+    const double length = row.direction.norm();
+    if (length <= Tolerance::same_normal)
+      return std::abs(row.value) <= Tolerance::same_normal * size;
+    row.direction /= length;
+    row.value /= length;
+    rows.push_back(row);
+    return true;
   }
 
 
@@ -87,10 +183,10 @@ namespace Debond
         if (is_new)
           support_names.push_back(entry->first);
         for (unsigned int n = 0; n < face.n_nodes; ++n)
-          if (!fixed.is_constrained(face.dofs[n][0]))
+          if (!fixed.is_constrained(dim * face.indices[n]))
             for (unsigned int d = 0; d < dim; ++d)
               {
-                constrain(face.dofs[n][d], 0., entry->second);
+                constrain(dim * face.indices[n] + d, 0., entry->second);
                 held.push_back({face.positions[n],
                                 dealii::Point<dim>::unit_vector(d),
                                 face.indices[n]});
@@ -120,65 +216,20 @@ namespace Debond
   NodeSupports<dim>::prescribe(const std::vector<BoundaryFace<dim>> &faces,
                                const PrescribedDisplacement<dim>    &condition,
                                const BoundaryConditions             &conditions,
-                               const EdgeCoefficients<dim>          &edges)
+                               const ChangeOfBasis<dim>             &basis)
   {
-    const auto fail = [&](const std::string &message) {
-      throw SupportError(condition.is_roller ?
-                           SupportError::Subject::roller :
-                           SupportError::Subject::displacement,
-                         condition.name,
-                         message);
-    };
-    // Of the unknown of a face's node.
-    const auto prescribed_value = [&](const BoundaryFace<dim> &face,
-                                      const unsigned int       node,
-                                      const unsigned int       d) {
-      if (condition.values == nullptr)
-        return 0.;
-      const auto value = [&](const unsigned int n) {
-        return field_value(*condition.values, face.positions[n], d);
-      };
-      try
-        {
-          if (edges.find(face.indices[node]) == nullptr)
-            return value(node);
-          const auto &[a, b] = simplex_edges[node - dim];
-          return 2. * value(node) - 0.5 * (value(a) + value(b));
-        }
-      catch (const std::invalid_argument &error)
-        {
-          fail(error.what());
-          return 0.;
-        }
-    };
-    const unsigned int support =
-      static_cast<unsigned int>(support_names.size());
+    const auto support = static_cast<unsigned int>(support_names.size());
     support_names.push_back(condition.name);
 
-    std::vector<bool> is_done(frame_of_node.size(), false);
+    std::set<unsigned int> done;
     for (const BoundaryFace<dim> &face : faces)
       {
-        if (condition.is_roller &&
-            (face.normal - faces[0].normal).norm() > Tolerance::same_normal)
-          fail("a roller is flat, but the normals of " + condition.name +
-               " differ: prescribe components by Displacement " +
-               condition.name);
-        // What of the normal is not prescribed.
-        double free_part = 0.;
-        for (unsigned int d = 0; d < dim; ++d)
-          if (!condition.is_roller && !condition.components[d])
-            free_part = std::max(free_part, std::abs(face.normal[d]));
-        if (conditions.contact.count(face.id) > 0 &&
-            free_part <= Tolerance::same_normal)
-          fail(condition.name +
-               " is a contact boundary, whose normal displacement is left to "
-               "the foundation and cannot be prescribed");
-
-        for (unsigned int v = 0; v < face.n_nodes; ++v)
+        check(condition, conditions, face, faces[0].normal);
+        for (unsigned int n = 0; n < face.n_nodes; ++n)
           {
-            if (is_done[face.indices[v]])
+            const unsigned int index = face.indices[n];
+            if (!done.insert(index).second)
               continue;
-            is_done[face.indices[v]] = true;
             std::vector<Row> rows;
             if (condition.is_roller)
               {
@@ -192,46 +243,36 @@ namespace Debond
             else
               for (unsigned int d = 0; d < dim; ++d)
                 if (condition.components[d])
-                  rows.push_back({dealii::Point<dim>::unit_vector(d),
-                                  prescribed_value(face, v, d),
-                                  support});
-            if (fixed.is_constrained(face.dofs[v][0]))
+                  rows.push_back(
+                    {dealii::Point<dim>::unit_vector(d),
+                     prescribed_value(condition,
+                                      face,
+                                      n,
+                                      basis.find(BasisStep::coefficients,
+                                                 index) != nullptr,
+                                      d),
+                     support});
+            if (fixed.is_constrained(dim * index))
               {
                 for (const Row &row : rows)
                   if (row.value != 0.)
-                    fail("the displacement at " +
-                         point_text(face.positions[v]) +
-                         " is prescribed, but the vertex is clamped: leave its "
-                         "side out of Clamped boundaries");
+                    fail(condition,
+                         "the displacement at " +
+                           point_text(face.positions[n]) +
+                           " is prescribed, but the vertex is clamped: leave "
+                           "its side out of Clamped boundaries");
                 continue;
               }
 
-            PrescribedNode<dim> &vertex = prescribed_nodes[face.indices[v]];
-            vertex.dofs                 = face.dofs[v];
-            vertex.position             = face.positions[v];
-            for (Row row : rows)
-              {
-                const double value = row.value;
-                double       size  = std::abs(value);
-                for (const Row &other : vertex.rows)
-                  {
-                    const double part = row.direction * other.direction;
-                    row.direction -= part * other.direction;
-                    row.value -= part * other.value;
-                    size = std::max(size, std::abs(other.value));
-                  }
-                const double length = row.direction.norm();
-                if (length > Tolerance::same_normal)
-                  {
-                    row.direction /= length;
-                    row.value /= length;
-                    vertex.rows.push_back(row);
-                  }
-                else if (std::abs(row.value) > Tolerance::same_normal * size)
-                  fail("the displacement at " + point_text(vertex.position) +
+            PrescribedNode<dim> &node = prescribed_nodes[index];
+            node.node                 = index;
+            node.position             = face.positions[n];
+            for (const Row &row : rows)
+              if (!node.add(row))
+                fail(condition,
+                     "the displacement at " + point_text(node.position) +
                        " is prescribed otherwise by " +
-                       support_names[vertex.rows[0].support]);
-              }
+                       support_names[node.rows[0].support]);
           }
       }
   }
@@ -319,12 +360,11 @@ namespace Debond
   template <int dim>
   PrescribedNode<dim>
   NodeSupports<dim>::prescribed_at(const unsigned int        index,
-                                   const NodeDofs<dim>      &node_dofs,
                                    const dealii::Point<dim> &position) const
   {
     const auto entry = prescribed_nodes.find(index);
     return entry == prescribed_nodes.end() ?
-             PrescribedNode<dim>{node_dofs, position, {}} :
+             PrescribedNode<dim>{index, position, {}} :
              entry->second;
   }
 
@@ -332,11 +372,11 @@ namespace Debond
 
   template <int dim>
   void
-  NodeSupports<dim>::constrain(const unsigned int         index,
-                               const PrescribedNode<dim> &node)
+  NodeSupports<dim>::constrain(const PrescribedNode<dim> &node)
   {
-    if (node.rows.empty() || fixed.is_constrained(node.dofs[0]) ||
-        frame(index) != nullptr)
+    const unsigned int first = dim * node.node;
+    if (node.rows.empty() || fixed.is_constrained(first) ||
+        nodes_with_frames.count(node.node) > 0)
       return;
 
     // Along the axes the unknowns stay Cartesian, and so they do if nothing is
@@ -353,11 +393,11 @@ namespace Debond
       });
     if (node.rows.size() < dim && !are_axes)
       {
-        add_frame(index, node, {}, false);
+        add_frame(node, {}, false);
         return;
       }
     for (const Row &row : node.rows)
-      held.push_back({node.position, row.direction, index});
+      held.push_back({node.position, row.direction, node.node});
     if (node.rows.size() == dim)
       {
         const dealii::Tensor<1, dim> displacement = node.displacement();
@@ -368,16 +408,14 @@ namespace Debond
               if (std::abs(node.rows[k].direction[d]) >
                   std::abs(node.rows[bearing].direction[d]))
                 bearing = k;
-            constrain(node.dofs[d],
-                      displacement[d],
-                      node.rows[bearing].support);
+            constrain(first + d, displacement[d], node.rows[bearing].support);
           }
       }
     else
       for (const Row &row : node.rows)
         {
           const unsigned int d = axis(row);
-          constrain(node.dofs[d], row.direction[d] * row.value, row.support);
+          constrain(first + d, row.direction[d] * row.value, row.support);
         }
   }
 
@@ -386,7 +424,6 @@ namespace Debond
   template <int dim>
   void
   NodeSupports<dim>::add_frame(
-    const unsigned int                         index,
     const PrescribedNode<dim>                 &node,
     const std::vector<dealii::Tensor<1, dim>> &free_directions,
     const bool                                 fixes_rest)
@@ -394,24 +431,22 @@ namespace Debond
     std::vector<dealii::Tensor<1, dim>> directions = free_directions;
     for (const Row &row : node.rows)
       directions.push_back(row.direction);
-    DisplacementFrame<dim> frame;
-    frame.dofs           = node.dofs;
-    frame.to_frame       = contact_frame(directions);
-    frame.to_cartesian   = dealii::invert(frame.to_frame);
-    frame_of_node[index] = static_cast<unsigned int>(node_frames.size());
-    node_frames.push_back(frame);
+    const dealii::Tensor<2, dim> to_frame = contact_frame(directions);
+    node_frames.push_back({node.node, dealii::invert(to_frame), to_frame});
+    nodes_with_frames.insert(node.node);
 
-    unsigned int k = static_cast<unsigned int>(free_directions.size());
+    const unsigned int first = dim * node.node;
+    unsigned int       k = static_cast<unsigned int>(free_directions.size());
     for (const Row &row : node.rows)
       {
-        constrain(node.dofs[k++], row.value, row.support);
-        held.push_back({node.position, row.direction, index});
+        constrain(first + k++, row.value, row.support);
+        held.push_back({node.position, row.direction, node.node});
       }
     if (fixes_rest)
       for (; k < dim; ++k)
         {
-          constrain(node.dofs[k], 0., dealii::numbers::invalid_unsigned_int);
-          held.push_back({node.position, frame.to_frame[k], index});
+          constrain(first + k, 0., dealii::numbers::invalid_unsigned_int);
+          held.push_back({node.position, to_frame[k], node.node});
         }
   }
 
@@ -421,25 +456,14 @@ namespace Debond
   std::vector<Support<dim>>
   NodeSupports<dim>::finish()
   {
-    for (const auto &[index, node] : prescribed_nodes)
-      constrain(index, node);
+    for (const auto &[unused, node] : prescribed_nodes)
+      constrain(node);
     prescribed_nodes.clear();
+    nodes_with_frames.clear();
     if (prescribed.size() > 0 && prescribed.all_zero())
       prescribed.reinit(0);
     fixed.close();
     return std::move(held);
-  }
-
-
-
-  template <int dim>
-  const DisplacementFrame<dim> *
-  NodeSupports<dim>::frame(const unsigned int index) const
-  {
-    const unsigned int number = frame_of_node[index];
-    return number == dealii::numbers::invalid_unsigned_int ?
-             nullptr :
-             &node_frames[number];
   }
 
 

@@ -36,8 +36,8 @@ namespace Debond
     node_frames(const ElasticUnknowns<dim> &unknowns)
     {
       NodeFrames<dim> frames;
-      for (const auto &frame : unknowns.frames())
-        frames[frame.dofs[0] / dim] = {frame.to_frame, frame.to_cartesian};
+      for (const auto &row : unknowns.basis().rows(BasisStep::frames))
+        frames[row.node] = {row.to_unknowns, row.to_nodal};
       for (const auto &line : unknowns.constraints().get_lines())
         {
           NodeFrame<dim>    &frame = frames[line.index / dim];

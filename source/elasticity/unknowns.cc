@@ -6,6 +6,7 @@
 #include <debond/base/text.h>
 #include <debond/elasticity/boundary_face.h>
 #include <debond/elasticity/contact_nodes.h>
+#include <debond/elasticity/edge_coefficients.h>
 #include <debond/elasticity/rigid_motions.h>
 #include <debond/elasticity/unknowns.h>
 #include <debond/mesh/field_value.h>
@@ -80,31 +81,29 @@ namespace Debond
     const std::vector<BoundaryFace<dim>> low     = faces(conditions.low_sides);
     std::vector<BoundaryFace<dim>>       with_coefficients = contact;
     with_coefficients.insert(with_coefficients.end(), low.begin(), low.end());
-    contact_edges =
-      EdgeCoefficients<dim>(dofs.n_dofs() / dim, with_coefficients);
-    node_pairs =
-      NodePairs<dim>(dofs.n_dofs() / dim, faces(conditions.high_sides), low);
+    const unsigned int n_nodes = dofs.n_dofs() / dim;
+    change_of_basis.set(BasisStep::coefficients,
+                        edge_coefficients(with_coefficients),
+                        n_nodes);
+    node_pairs = NodePairs<dim>(n_nodes, faces(conditions.high_sides), low);
     node_supports =
-      NodeSupports<dim>(dofs.n_dofs() / dim,
-                        supports.displacements.empty() ? 0 : dofs.n_dofs());
+      NodeSupports<dim>(supports.displacements.empty() ? 0 : dofs.n_dofs());
     node_supports.clamp(faces(conditions.clamped), conditions);
     for (const PrescribedDisplacement<dim> &condition : supports.displacements)
       node_supports.prescribe(faces(condition.boundaries),
                               condition,
                               conditions,
-                              contact_edges);
+                              change_of_basis);
     node_supports.glue(node_pairs);
     for (BoundaryFace<dim> &face : contact)
       for (unsigned int n = 0; n < face.n_nodes; ++n)
         if (const auto *pair = node_pairs.find(face.indices[n]))
-          {
-            face.indices[n] = pair->first;
-            for (unsigned int d = 0; d < dim; ++d)
-              face.dofs[n][d] = dim * pair->first + d;
-          }
+          face.indices[n] = pair->first;
     contact_space = make_contact_space(
       contact, degree, conditions, supports, node_supports, gap);
     std::vector<Support<dim>> held = node_supports.finish();
+    change_of_basis.set(BasisStep::jumps, node_pairs.jumps(), n_nodes);
+    change_of_basis.set(BasisStep::frames, node_supports.frames(), n_nodes);
     if (gap.size() > 0 && gap.all_zero())
       gap.reinit(0);
 
@@ -182,56 +181,6 @@ namespace Debond
         places[0].clear();
       }
     return places;
-  }
-
-
-
-  template <int dim>
-  void
-  ElasticUnknowns<dim>::to_unknowns(
-    const std::vector<dealii::types::global_dof_index> &cell_dofs,
-    dealii::FullMatrix<double>                         &cell_matrix) const
-  {
-    const unsigned int n     = static_cast<unsigned int>(cell_dofs.size());
-    const auto         n_own = static_cast<unsigned int>(cell_matrix.m());
-    const auto         node  = [&](const unsigned int i) {
-      return static_cast<unsigned int>(cell_dofs[i] / dim);
-    };
-    // Rows and columns alike.
-    const auto add = [&](const unsigned int to, const unsigned int from) {
-      for (unsigned int j = 0; j < n_own; ++j)
-        cell_matrix(to, j) += 0.25 * cell_matrix(from, j);
-      for (unsigned int j = 0; j < n_own; ++j)
-        cell_matrix(j, to) += 0.25 * cell_matrix(j, from);
-    };
-    for (unsigned int i = 0; i < n_own; ++i)
-      if (const auto *edge = contact_edges.find(node(i)))
-        {
-          for (unsigned int j = i % dim; j < n_own; j += dim)
-            if (node(j) == edge->ends[0] || node(j) == edge->ends[1])
-              add(j, i);
-          for (unsigned int j = 0; j < n_own; ++j)
-            cell_matrix(i, j) *= 0.5;
-          for (unsigned int j = 0; j < n_own; ++j)
-            cell_matrix(j, i) *= 0.5;
-        }
-    node_pairs.to_unknowns(cell_dofs, cell_matrix);
-    for (unsigned int i = 0; i < n; i += dim)
-      if (const DisplacementFrame<dim> *frame = node_supports.frame(node(i)))
-        for (const bool are_rows : {true, false})
-          for (unsigned int j = 0; j < n; ++j)
-            {
-              const auto entry = [&](const unsigned int d) -> double & {
-                return are_rows ? cell_matrix(i + d, j) : cell_matrix(j, i + d);
-              };
-              dealii::Tensor<1, dim> cartesian;
-              for (unsigned int d = 0; d < dim; ++d)
-                cartesian[d] = entry(d);
-              const dealii::Tensor<1, dim> in_frame =
-                cartesian * frame->to_cartesian;
-              for (unsigned int k = 0; k < dim; ++k)
-                entry(k) = in_frame[k];
-            }
   }
 
 
@@ -323,30 +272,11 @@ namespace Debond
 
   template <int dim>
   DofVector
-  ElasticUnknowns<dim>::cartesian_displacement(const DofVector  &w,
-                                               const LoadFactors factors) const
+  ElasticUnknowns<dim>::lifted(DofVector w, const LoadFactors factors) const
   {
-    DofVector result = w;
     if (has_lifting())
-      result += lifting(factors);
-    multiply_in_frames(
-      frames(), [](const auto &frame) { return frame.to_cartesian; }, result);
-    node_pairs.to_values(result);
-    contact_edges.to_values(result);
-    return result;
-  }
-
-
-
-  template <int dim>
-  DofVector
-  ElasticUnknowns<dim>::to_frames(const DofVector &cartesian) const
-  {
-    DofVector result = cartesian;
-    node_pairs.to_jumps(result);
-    multiply_in_frames(
-      frames(), [](const auto &frame) { return frame.to_frame; }, result);
-    return result;
+      w += lifting(factors);
+    return w;
   }
 
 
@@ -356,53 +286,10 @@ namespace Debond
   ElasticUnknowns<dim>::from_cartesian(
     const DofVector &cartesian_displacement) const
   {
-    DofVector result = cartesian_displacement;
-    contact_edges.to_coefficients(result);
-    result = to_frames(result);
+    DofVector result = basis().to_unknowns(cartesian_displacement);
     if (has_lifting())
       result -= lifting();
     constraints().set_zero(result);
-    return result;
-  }
-
-
-
-  template <int dim>
-  DofVector
-  ElasticUnknowns<dim>::in_frames(const DofVector &forces) const
-  {
-    DofVector result = forces;
-    contact_edges.forces_to_conjugates(result);
-    node_pairs.forces_to_conjugates(result);
-    multiply_in_frames(
-      frames(),
-      [](const auto &frame) { return dealii::transpose(frame.to_cartesian); },
-      result);
-    return result;
-  }
-
-
-
-  template <int dim>
-  DofVector
-  ElasticUnknowns<dim>::cartesian_forces(const DofVector &forces) const
-  {
-    DofVector result = contact_forces(forces);
-    node_pairs.forces_from_conjugates(result);
-    return result;
-  }
-
-
-
-  template <int dim>
-  DofVector
-  ElasticUnknowns<dim>::contact_forces(const DofVector &forces) const
-  {
-    DofVector result = forces;
-    multiply_in_frames(
-      frames(),
-      [](const auto &frame) { return dealii::transpose(frame.to_frame); },
-      result);
     return result;
   }
 
@@ -430,7 +317,7 @@ namespace Debond
       }
     for (DofVector &mode : modes)
       {
-        mode = to_frames(mode);
+        mode = basis().to_unknowns(mode);
         constraints().set_zero(mode);
       }
     return modes;

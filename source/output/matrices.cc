@@ -126,15 +126,15 @@ namespace Debond
       const Order       order = unknowns.serial_order();
       std::vector<bool> is_cartesian(unknowns.n_dofs(), true);
       std::vector<std::tuple<std::size_t, std::size_t, double>> entries;
-      for (const auto &frame : unknowns.frames())
+      for (const auto &row : unknowns.basis().rows(BasisStep::frames))
         for (unsigned int i = 0; i < dim; ++i)
           {
-            is_cartesian[frame.dofs[i]] = false;
+            is_cartesian[dim * row.node + i] = false;
             for (unsigned int j = 0; j < dim; ++j)
-              if (frame.to_frame[i][j] != 0.)
-                entries.emplace_back(order[frame.dofs[i]],
-                                     order[frame.dofs[j]],
-                                     frame.to_frame[i][j]);
+              if (row.to_unknowns[i][j] != 0.)
+                entries.emplace_back(order[dim * row.node + i],
+                                     order[dim * row.node + j],
+                                     row.to_unknowns[i][j]);
           }
       for (unsigned int i = 0; i < is_cartesian.size(); ++i)
         if (is_cartesian[i])

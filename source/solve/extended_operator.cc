@@ -82,7 +82,7 @@ namespace Debond
   ExtendedVector
   ExtendedOperator<dim>::operator*(const ExtendedVector &u) const
   {
-    const ExtendedVector displacement = cartesian(u);
+    const ExtendedVector displacement = problem.unknowns().basis().to_nodal(u);
     ExtendedVector       forces       = ExtendedVector::Zero(u.size());
     for (const Cell &cell : cells)
       for (unsigned int q = 0; q < reference_gradients.size(); ++q)
@@ -105,32 +105,11 @@ namespace Debond
       dealii::ArrayView<const long double>(forces.data(), forces.size()),
       problem.unknowns().communicator(),
       dealii::ArrayView<long double>(forces.data(), forces.size()));
-    problem.unknowns().edges().forces_to_conjugates(forces);
-    problem.unknowns().pairs().forces_to_conjugates(forces);
-    multiply_in_frames(
-      problem.unknowns().frames(),
-      [](const auto &frame) { return dealii::transpose(frame.to_cartesian); },
-      forces);
+    forces = problem.unknowns().basis().forces_to_unknowns(forces);
     for (unsigned int i = 0; i < forces.size(); ++i)
       if (problem.unknowns().is_constrained(i))
         forces(i) = 0.;
     return forces;
-  }
-
-
-
-  template <int dim>
-  ExtendedVector
-  ExtendedOperator<dim>::cartesian(const ExtendedVector &u) const
-  {
-    ExtendedVector result = u;
-    multiply_in_frames(
-      problem.unknowns().frames(),
-      [](const auto &frame) { return frame.to_cartesian; },
-      result);
-    problem.unknowns().pairs().to_values(result);
-    problem.unknowns().edges().to_values(result);
-    return result;
   }
 
 

@@ -174,7 +174,7 @@ namespace Debond
       static ExtendedVector
       load_at(const ElasticProblem<dim> &problem, const LoadFactors factors)
       {
-        DofVector load = problem.unknowns().in_frames(
+        DofVector load = problem.unknowns().basis().forces_to_unknowns(
           problem.fields().applied_nodal_forces(factors));
         problem.unknowns().constraints().set_zero(load);
         return to_extended(load);

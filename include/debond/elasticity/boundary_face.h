@@ -26,16 +26,15 @@ namespace Debond
     unsigned int                            n_nodes; ///< vertices come first
     std::array<unsigned int, maximum>       indices; ///< of nodes
     std::array<dealii::Point<dim>, maximum> positions;
-    std::array<std::array<dealii::types::global_dof_index, dim>, maximum> dofs;
-    double                 measure;
-    dealii::Tensor<1, dim> normal; ///< outward unit normal
+    double                                  measure;
+    dealii::Tensor<1, dim>                  normal; ///< outward unit normal
 
-    /// For Boost's serialisation.
+    /// This is for Boost's serialisation.
     template <typename Archive>
     void
     serialize(Archive &archive, const unsigned int)
     {
-      archive &cell &id &n_nodes &indices &positions &dofs &measure &normal;
+      archive &cell &id &n_nodes &indices &positions &measure &normal;
     }
   };
 

@@ -125,10 +125,6 @@ namespace Debond
     load_work(const DofVector &u, const LoadFactors factors = 1.) const;
 
   private:
-    /// u with its lifting, in the unknowns.
-    DofVector
-    lifted(const DofVector &u, const LoadFactors factors) const;
-
     /// With a load given in the unknowns' frames.
     double
     functional(const DofVector  &u,

@@ -3,9 +3,9 @@
 #define debond_elasticity_node_pairs_h
 
 #include <deal.II/base/types.h>
-#include <deal.II/lac/full_matrix.h>
 
 #include <debond/elasticity/boundary_face.h>
+#include <debond/elasticity/change_of_basis.h>
 
 #include <set>
 #include <vector>
@@ -35,11 +35,8 @@ namespace Debond
    *     u_first = sign [u] + u_second,
    *
    * sign being 1 if the first one is on the high side and -1 if it is on the
-   * low one. This is the change of basis and its transpose. So the normal jump
-   * is an unknown of its own, and [u]_nu <= g a simple bound, as on a
-   * foundation.
-   *
-   * Vectors have dim entries for each node, those of node n from dim n on.
+   * low one. So the normal jump is an unknown of its own, and [u]_nu <= g a
+   * simple bound, as on a foundation.
    */
   template <int dim>
   class NodePairs
@@ -51,7 +48,6 @@ namespace Debond
       double       sign;
     };
 
-    /// Of no nodes.
     NodePairs() = default;
 
     /// @p n_nodes: of the mesh. The first nodes are those of @p high. Throws
@@ -83,7 +79,7 @@ namespace Debond
                &pairs[number_of_node[node]];
     }
 
-    /// The same if it is the first one.
+    /// The pair of which the node is the first one, or null.
     const Pair *
     find_first(const unsigned int node) const
     {
@@ -107,68 +103,18 @@ namespace Debond
       own       = {pair.second, pair.first, -pair.sign};
     }
 
-    /// u from jumps.
-    template <typename Vector>
-    void
-    to_values(Vector &u) const
+    /// The step of a ChangeOfBasis from displacements to jumps.
+    std::vector<BasisRow<dim>>
+    jumps() const
     {
-      for_each_component([&u](const auto i, const auto j, const double sign) {
-        u(i) = sign * u(i) + u(j);
-      });
+      std::vector<BasisRow<dim>> rows;
+      for (const Pair &pair : pairs)
+        rows.push_back(
+          BasisRow<dim>::scaled(pair.first, pair.sign, {{pair.second, 1.}}));
+      return rows;
     }
-
-    /// Jumps from u.
-    template <typename Vector>
-    void
-    to_jumps(Vector &u) const
-    {
-      for_each_component([&u](const auto i, const auto j, const double sign) {
-        u(i) = sign * (u(i) - u(j));
-      });
-    }
-
-    /// Forces as the conjugates of the unknowns.
-    template <typename Vector>
-    void
-    forces_to_conjugates(Vector &f) const
-    {
-      for_each_component([&f](const auto i, const auto j, const double sign) {
-        f(j) += f(i);
-        f(i) *= sign;
-      });
-    }
-
-    /// And back.
-    template <typename Vector>
-    void
-    forces_from_conjugates(Vector &f) const
-    {
-      for_each_component([&f](const auto i, const auto j, const double sign) {
-        f(i) *= sign;
-        f(j) -= f(i);
-      });
-    }
-
-    /// Appends the degrees of freedom of the second nodes of all first ones.
-    void
-    add_seconds(std::vector<dealii::types::global_dof_index> &dofs) const;
-
-    /// Takes the matrix of a cell from u to the unknowns, and makes it as large
-    /// as add_seconds() has made its @p dofs.
-    void
-    to_unknowns(const std::vector<dealii::types::global_dof_index> &dofs,
-                dealii::FullMatrix<double> &matrix) const;
 
   private:
-    template <typename Action>
-    void
-    for_each_component(const Action &action) const
-    {
-      for (const Pair &pair : pairs)
-        for (unsigned int d = 0; d < dim; ++d)
-          action(dim * pair.first + d, dim * pair.second + d, pair.sign);
-    }
-
     std::vector<Pair>         pairs;
     std::vector<unsigned int> number_of_node; ///< of its pair; or empty
     std::set<unsigned int>    shared;

@@ -8,12 +8,11 @@
 #include <deal.II/fe/mapping_fe.h>
 #include <deal.II/grid/tria.h>
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/full_matrix.h>
 
 #include <debond/base/dof_vector.h>
 #include <debond/elasticity/boundary_conditions.h>
+#include <debond/elasticity/change_of_basis.h>
 #include <debond/elasticity/contact_space.h>
-#include <debond/elasticity/edge_coefficients.h>
 #include <debond/elasticity/load_factors.h>
 #include <debond/elasticity/node_pairs.h>
 #include <debond/elasticity/node_supports.h>
@@ -32,7 +31,7 @@ namespace Debond
    * components in the node's own frame: first u_nu (one degree of freedom, so
    * that the unilateral constraint is a simple bound), then the tangential
    * ones; at edges of contact faces they are those of a coefficient, see
-   * EdgeCoefficients. The degrees of freedom of node n are dim n, dim n + 1,
+   * edge_coefficients(). The degrees of freedom of node n are dim n, dim n + 1,
    * ... A vertex where contact sides of different normals
    * meet has one u_nu for each of them; if tangential displacements are fixed
    * there, it is clamped. Faces that make one side of a polygon that stands for
@@ -42,7 +41,8 @@ namespace Debond
    * holds at every point.
    *
    * Where two bodies are glued to each other the unknowns of one node of each
-   * pair are those of the jump, in the same way (see NodePairs).
+   * pair are those of the jump, in the same way (see NodePairs). basis() takes
+   * all of them to Cartesian components at nodes, and back.
    *
    * All vectors have n_dofs() entries; the constrained ones are zero. So they
    * are w in u = w + G, where G, the lifting, has the prescribed displacements
@@ -102,19 +102,11 @@ namespace Debond
       return contact_space;
     }
 
-    /// Of all vertices whose unknowns are not Cartesian: those on the contact
-    /// boundary that are not clamped, and those on inclined rollers.
-    const std::vector<DisplacementFrame<dim>> &
-    frames() const
+    /// What the unknowns are of Cartesian components at nodes.
+    const ChangeOfBasis<dim> &
+    basis() const
     {
-      return node_supports.frames();
-    }
-
-    /// The edges whose unknowns are coefficients.
-    const EdgeCoefficients<dim> &
-    edges() const
-    {
-      return contact_edges;
+      return change_of_basis;
     }
 
     /// The nodes of bodies that are glued to each other.
@@ -139,12 +131,6 @@ namespace Debond
     {
       return bodies.empty() ? 0 : bodies[node];
     }
-
-    /// Takes the matrix of a cell, for the Cartesian values at its nodes, to
-    /// the unknowns @p cell_dofs, which have had NodePairs::add_seconds().
-    void
-    to_unknowns(const std::vector<dealii::types::global_dof_index> &cell_dofs,
-                dealii::FullMatrix<double> &cell_matrix) const;
 
     /// Where the nodes are, each of which has dim successive degrees of
     /// freedom. To be called by all ranks.
@@ -228,31 +214,40 @@ namespace Debond
     DofVector
     lifting(const LoadFactors factors = 1.) const;
 
+    /// w + G.
+    DofVector
+    lifted(DofVector w, const LoadFactors factors = 1.) const;
+
     /// The Cartesian components of the displacement u = w + G at every node:
     /// the vector of the finite element field.
     DofVector
     cartesian_displacement(const DofVector  &w,
-                           const LoadFactors factors = 1.) const;
+                           const LoadFactors factors = 1.) const
+    {
+      return basis().to_nodal(lifted(w, factors));
+    }
 
     /// The vector w of a displacement that is given by its Cartesian
     /// components; constrained degrees of freedom are zero.
     DofVector
     from_cartesian(const DofVector &cartesian_displacement) const;
 
-    /// Cartesian nodal forces as forces on the unknowns.
-    DofVector
-    in_frames(const DofVector &forces) const;
-
     /// The forces on the unknowns (such as a residual) as Cartesian components;
     /// at edges of contact faces they remain those on coefficients, of which
     /// sums are the same.
     DofVector
-    cartesian_forces(const DofVector &forces) const;
+    cartesian_forces(const DofVector &forces) const
+    {
+      return basis().forces_to_nodal(forces, BasisStep::jumps);
+    }
 
     /// The same of forces between bodies, that on the high side alone: it is in
     /// the place of the jump.
     DofVector
-    contact_forces(const DofVector &forces) const;
+    contact_forces(const DofVector &forces) const
+    {
+      return basis().forces_to_nodal(forces, BasisStep::frames);
+    }
 
     /// Translations and rotations about the origin in the unknowns, zero where
     /// constrained: the near null space of A.
@@ -260,10 +255,6 @@ namespace Debond
     rigid_body_modes() const;
 
   private:
-    /// The unknowns of Cartesian components.
-    DofVector
-    to_frames(const DofVector &cartesian) const;
-
     const dealii::MappingFE<dim> mapping_p1;
     const dealii::FESystem<dim>  fe;
     dealii::DoFHandler<dim>      dofs;
@@ -273,7 +264,7 @@ namespace Debond
     std::vector<std::string>
     find_bodies();
 
-    EdgeCoefficients<dim>     contact_edges;
+    ChangeOfBasis<dim>        change_of_basis;
     NodePairs<dim>            node_pairs;
     std::vector<unsigned int> bodies; ///< by node, or empty
     NodeSupports<dim>         node_supports;

@@ -55,9 +55,6 @@ namespace Debond
       const dealii::SymmetricTensor<4, dim> *stiffness = nullptr;
     };
 
-    ExtendedVector
-    cartesian(const ExtendedVector &u) const;
-
     void
     make_reference_gradients();
 

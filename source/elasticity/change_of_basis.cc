@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/elasticity/change_of_basis.h>
+
+#include <algorithm>
+
+namespace Debond
+{
+  template <int dim>
+  void
+  ChangeOfBasis<dim>::set(const BasisStep                   step,
+                          const std::vector<BasisRow<dim>> &rows,
+                          const unsigned int                n_nodes)
+  {
+    Step &own = steps[static_cast<unsigned int>(step)];
+    own.rows  = rows;
+    own.row_of_node.assign(rows.empty() ? 0 : n_nodes,
+                           dealii::numbers::invalid_unsigned_int);
+    for (unsigned int k = 0; k < rows.size(); ++k)
+      own.row_of_node[rows[k].node] = k;
+  }
+
+
+
+  template <int dim>
+  void
+  ChangeOfBasis<dim>::Step::add_others(Dofs &cell_dofs) const
+  {
+    if (rows.empty())
+      return;
+    const std::size_t n = cell_dofs.size();
+    for (std::size_t i = 0; i < n; i += dim)
+      if (const auto *row = find(static_cast<unsigned int>(cell_dofs[i] / dim)))
+        for (const auto &[other, unused] : row->others)
+          if (std::find(cell_dofs.begin(), cell_dofs.end(), dim * other) ==
+              cell_dofs.end())
+            for (unsigned int d = 0; d < dim; ++d)
+              cell_dofs.push_back(dim * other + d);
+  }
+
+
+
+  template <int dim>
+  void
+  ChangeOfBasis<dim>::add_others(Dofs &cell_dofs) const
+  {
+    for (const Step &step : steps)
+      step.add_others(cell_dofs);
+  }
+
+
+
+  template <int dim>
+  void
+  ChangeOfBasis<dim>::to_unknowns(Dofs                       &cell_dofs,
+                                  dealii::FullMatrix<double> &matrix) const
+  {
+    for (const Step &step : steps)
+      {
+        step.add_others(cell_dofs);
+        const auto n = static_cast<unsigned int>(cell_dofs.size());
+        if (n > matrix.m())
+          {
+            const dealii::FullMatrix<double> of_cell = matrix;
+            matrix.reinit(n, n);
+            matrix.fill(of_cell);
+          }
+        for (unsigned int i = 0; i < n; i += dim)
+          if (const auto *row =
+                step.find(static_cast<unsigned int>(cell_dofs[i] / dim)))
+            for (const bool are_rows : {true, false})
+              for (unsigned int j = 0; j < n; ++j)
+                {
+                  const auto entry = [&](const std::size_t k) -> double & {
+                    return are_rows ? matrix(k, j) : matrix(j, k);
+                  };
+                  dealii::Tensor<1, dim> nodal;
+                  for (unsigned int d = 0; d < dim; ++d)
+                    nodal[d] = entry(i + d);
+                  for (const auto &[other, weight] : row->others)
+                    {
+                      const auto k = std::find(cell_dofs.begin(),
+                                               cell_dofs.end(),
+                                               dim * other) -
+                                     cell_dofs.begin();
+                      for (unsigned int d = 0; d < dim; ++d)
+                        entry(k + d) += weight * nodal[d];
+                    }
+                  nodal = nodal * row->to_nodal;
+                  for (unsigned int d = 0; d < dim; ++d)
+                    entry(i + d) = nodal[d];
+                }
+      }
+  }
+
+
+
+  template <int dim>
+  DofVector
+  ChangeOfBasis<dim>::sizes_of_terms(DofVector sizes) const
+  {
+    for (const BasisRow<dim> &row : rows(BasisStep::jumps))
+      set_at(sizes, row.node, at(sizes, row.node) + 2. * others(sizes, row));
+    return sizes;
+  }
+
+
+
+  template <int dim>
+  DofVector
+  ChangeOfBasis<dim>::rounding_of_forces(DofVector rounding) const
+  {
+    for (const BasisRow<dim> &row : rows(BasisStep::jumps))
+      for (const auto &[other, weight] : row.others)
+        set_at(rounding,
+               other,
+               at(rounding, other) + weight * at(rounding, row.node));
+    return rounding;
+  }
+
+
+
+  template class ChangeOfBasis<2>;
+  template class ChangeOfBasis<3>;
+} // namespace Debond
