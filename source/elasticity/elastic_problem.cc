@@ -84,16 +84,21 @@ namespace Debond
 
 
 
-    /// The matrix of a cell for the Cartesian values at its nodes.
+    /// The matrix of a cell for the Cartesian values at its nodes. @p
+    /// stiffness: the elasticity tensor of the material.
     template <int dim>
     void
-    set_products(const SimplexValues<dim>   &values,
-                 const Material             &material,
-                 dealii::FullMatrix<double> &cell_matrix)
+    set_products(const SimplexValues<dim>              &values,
+                 const Material                        &material,
+                 const dealii::SymmetricTensor<4, dim> &stiffness,
+                 dealii::FullMatrix<double>            &cell_matrix)
     {
-      const double lambda = material.template lame_lambda<dim>();
-      const double mu     = material.shear_modulus();
-      cell_matrix         = 0.;
+      // An isotropic material needs far fewer products.
+      const bool   is_isotropic = !material.orthotropy;
+      const double lambda =
+        is_isotropic ? material.template lame_lambda<dim>() : 0.;
+      const double mu = material.shear_modulus();
+      cell_matrix     = 0.;
       for (const unsigned int q : values.quadrature_point_indices())
         for (unsigned int k = 0; k < values.n_nodes(); ++k)
           for (unsigned int l = 0; l < values.n_nodes(); ++l)
@@ -104,35 +109,16 @@ namespace Debond
               const double product = mu * (g * h);
               for (unsigned int c = 0; c < dim; ++c)
                 for (unsigned int d = 0; d < dim; ++d)
-                  cell_matrix(dim * k + c, dim * l + d) +=
-                    lambda * g[c] * h[d] + mu * g[d] * h[c] +
-                    (c == d ? product : 0.);
-            }
-    }
-
-
-
-    /// The same with the elasticity tensor of any material.
-    template <int dim>
-    void
-    set_products(const SimplexValues<dim>              &values,
-                 const dealii::SymmetricTensor<4, dim> &stiffness,
-                 dealii::FullMatrix<double>            &cell_matrix)
-    {
-      cell_matrix = 0.;
-      for (const unsigned int q : values.quadrature_point_indices())
-        for (unsigned int k = 0; k < values.n_nodes(); ++k)
-          for (unsigned int l = 0; l < values.n_nodes(); ++l)
-            {
-              const dealii::Tensor<1, dim> &g = values.shape_grad(k, q);
-              const dealii::Tensor<1, dim>  h =
-                values.JxW(q) * values.shape_grad(l, q);
-              for (unsigned int c = 0; c < dim; ++c)
-                for (unsigned int d = 0; d < dim; ++d)
-                  for (unsigned int i = 0; i < dim; ++i)
-                    for (unsigned int j = 0; j < dim; ++j)
-                      cell_matrix(dim * k + c, dim * l + d) +=
-                        g[i] * stiffness[c][i][d][j] * h[j];
+                  {
+                    double &entry = cell_matrix(dim * k + c, dim * l + d);
+                    if (is_isotropic)
+                      entry += lambda * g[c] * h[d] + mu * g[d] * h[c] +
+                               (c == d ? product : 0.);
+                    else
+                      for (unsigned int i = 0; i < dim; ++i)
+                        for (unsigned int j = 0; j < dim; ++j)
+                          entry += g[i] * stiffness[c][i][d][j] * h[j];
+                  }
             }
     }
 
@@ -223,14 +209,14 @@ namespace Debond
     distributed.reset();
     make_pattern(elastic_unknowns, sparsity);
     system_matrix.reinit(sparsity);
-    add_cell_matrices(materials);
+    add_cell_matrices();
   }
 
 
 
   template <int dim>
   void
-  ElasticProblem<dim>::add_cell_matrices(const ByRegion<Material> &materials)
+  ElasticProblem<dim>::add_cell_matrices()
   {
     const auto                &dofs = elastic_unknowns.dof_handler();
     SimplexValues<dim>         values(dofs.get_fe().base_element(0),
@@ -239,9 +225,6 @@ namespace Debond
     dealii::FullMatrix<double> cell_matrix;
     std::vector<dealii::types::global_dof_index> cell_dofs;
     std::vector<char>                            is_free;
-    const auto stiffness = materials.transformed([](const Material &material) {
-      return material.elasticity_tensor<dim>();
-    });
     // The own rows of some of the nodes. Where the columns of a node
     // are in one row of another one they are in all its rows, but for the
     // diagonal entry, which is the first and in constrained rows the only one.
@@ -290,11 +273,10 @@ namespace Debond
         cell_dofs.resize(n);
         cell->get_dof_indices(cell_dofs);
         cell_matrix.reinit(n, n);
-        if (const Material &material = materials(cell->material_id());
-            material.orthotropy)
-          set_products(values, stiffness(cell->material_id()), cell_matrix);
-        else
-          set_products(values, material, cell_matrix);
+        set_products(values,
+                     elastic_fields->material(cell),
+                     elastic_fields->elasticity_tensor(cell),
+                     cell_matrix);
         elastic_unknowns.basis().to_unknowns(cell_dofs, cell_matrix);
         if (cell_dofs.size() > n && cell->is_locally_owned())
           glued.emplace_back(cell_dofs,

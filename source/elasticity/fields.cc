@@ -13,6 +13,33 @@
 
 namespace Debond
 {
+  namespace
+  {
+    /// Calls @p action with the stresses of each own cell and each point of
+    /// strain_rule() there, for a displacement in Cartesian components.
+    template <int dim, typename Action>
+    void
+    for_each_point(const ElasticFields<dim> &fields,
+                   const DofVector          &cartesian_displacement,
+                   const Action             &action)
+    {
+      const ElasticUnknowns<dim> &unknowns = fields.unknowns();
+      CellStresses<dim>           of_cell(fields,
+                                cartesian_displacement,
+                                1.,
+                                strain_rule<dim>(unknowns.degree()));
+      for (const auto &cell : owned_cells(unknowns.dof_handler()))
+        {
+          of_cell.reinit(cell);
+          for (const unsigned int q :
+               of_cell.values().quadrature_point_indices())
+            action(of_cell, q);
+        }
+    }
+  } // namespace
+
+
+
   template <int dim>
   ElasticFields<dim>::ElasticFields(const ElasticUnknowns<dim> &unknowns,
                                     const ByRegion<Material>   &materials,
@@ -57,33 +84,21 @@ namespace Debond
   ElasticFields<dim>::residual(const DofVector  &u,
                                const LoadFactors factors) const
   {
-    const DofVector displacement =
-      elastic_unknowns.cartesian_displacement(u, factors);
-
-    DofVector         forces(elastic_unknowns.n_dofs());
-    CellStresses<dim> cell_stresses(*this,
-                                    displacement,
-                                    factors,
-                                    strain_rule<dim>(
-                                      elastic_unknowns.degree()));
-    const auto       &values = cell_stresses.values();
-    for (const auto &cell : owned_cells(elastic_unknowns.dof_handler()))
-      {
-        cell_stresses.reinit(cell);
-        const auto &dofs = cell_stresses.dofs();
-        for (const unsigned int q : values.quadrature_point_indices())
-          {
-            const dealii::SymmetricTensor<2, dim> sigma =
-              values.JxW(q) * cell_stresses.elastic_stress(q);
-            for (unsigned int k = 0; k < values.n_nodes(); ++k)
-              {
-                const dealii::Tensor<1, dim> force =
-                  sigma * values.shape_grad(k, q);
-                for (unsigned int d = 0; d < dim; ++d)
-                  forces(dofs[dim * k + d]) += force[d];
-              }
-          }
-      }
+    DofVector forces(elastic_unknowns.n_dofs());
+    for_each_point(*this,
+                   elastic_unknowns.cartesian_displacement(u, factors),
+                   [&forces](const CellStresses<dim> &cell,
+                             const unsigned int       q) {
+                     const dealii::SymmetricTensor<2, dim> sigma =
+                       cell.values().JxW(q) * cell.elastic_stress(q);
+                     for (unsigned int i = 0; i < cell.dofs().size(); i += dim)
+                       {
+                         const dealii::Tensor<1, dim> force =
+                           sigma * cell.values().shape_grad(i / dim, q);
+                         for (unsigned int d = 0; d < dim; ++d)
+                           forces(cell.dofs()[i + d]) += force[d];
+                       }
+                   });
     add_over_ranks(forces, elastic_unknowns.communicator());
     forces -= applied_nodal_forces(factors);
     return elastic_unknowns.basis().forces_to_unknowns(forces);
@@ -98,35 +113,29 @@ namespace Debond
   {
     const DofVector displacement =
       elastic_unknowns.cartesian_displacement(u, factors);
-
     DofVector sizes = displacement;
     for (double &size : sizes)
       size = std::abs(size);
     sizes = elastic_unknowns.basis().sizes_of_terms(sizes);
 
-    DofVector         rounding(elastic_unknowns.n_dofs());
-    CellStresses<dim> cell_stresses(*this,
-                                    displacement,
-                                    factors,
-                                    strain_rule<dim>(
-                                      elastic_unknowns.degree()));
-    const auto       &values = cell_stresses.values();
-    for (const auto &cell : owned_cells(elastic_unknowns.dof_handler()))
-      {
-        cell_stresses.reinit(cell);
-        const auto  &dofs    = cell_stresses.dofs();
-        const double modulus = stiffness(cell->material_id()).norm();
-        for (const unsigned int q : values.quadrature_point_indices())
-          {
-            double size_gradient = 0.;
-            for (unsigned int i = 0; i < dofs.size(); ++i)
-              size_gradient +=
-                sizes(dofs[i]) * values.shape_grad(i / dim, q).norm();
-            for (unsigned int i = 0; i < dofs.size(); ++i)
-              rounding(dofs[i]) += values.JxW(q) * modulus * size_gradient *
-                                   values.shape_grad(i / dim, q).norm();
-          }
-      }
+    DofVector rounding(elastic_unknowns.n_dofs());
+    for_each_point(*this,
+                   displacement,
+                   [&](const CellStresses<dim> &cell, const unsigned int q) {
+                     const auto &dofs          = cell.dofs();
+                     double      size_gradient = 0.;
+                     for (unsigned int i = 0; i < dofs.size(); ++i)
+                       size_gradient +=
+                         sizes(dofs[i]) *
+                         cell.values().shape_grad(i / dim, q).norm();
+                     const double size_stress =
+                       cell.values().JxW(q) * cell.elasticity_tensor().norm() *
+                       size_gradient;
+                     for (unsigned int i = 0; i < dofs.size(); ++i)
+                       rounding(dofs[i]) +=
+                         size_stress *
+                         cell.values().shape_grad(i / dim, q).norm();
+                   });
     add_over_ranks(rounding, elastic_unknowns.communicator());
     const DofVector forces = applied_nodal_forces(factors);
     for (unsigned int i = 0; i < rounding.size(); ++i)
@@ -211,18 +220,13 @@ namespace Debond
       accumulator_set<double, accumulators::stats<accumulators::tag::sum_kahan>>
                     result;
     const DofVector displacement = elastic_unknowns.lifted(u, factors);
-    const DofVector cartesian = elastic_unknowns.basis().to_nodal(displacement);
-    CellStresses<dim> cell_stresses(
-      *this, cartesian, factors, strain_rule<dim>(elastic_unknowns.degree()));
-    const auto &values = cell_stresses.values();
-    for (const auto &cell : owned_cells(elastic_unknowns.dof_handler()))
-      {
-        cell_stresses.reinit(cell);
-        for (const unsigned int q : values.quadrature_point_indices())
-          result(0.5 * values.JxW(q) *
-                 (dealii::symmetrize(cell_stresses.gradient(q)) *
-                  cell_stresses.elastic_stress(q)));
-      }
+    for_each_point(
+      *this,
+      elastic_unknowns.basis().to_nodal(displacement),
+      [&result](const CellStresses<dim> &cell, const unsigned int q) {
+        result(0.5 * cell.values().JxW(q) *
+               (dealii::symmetrize(cell.gradient(q)) * cell.elastic_stress(q)));
+      });
     for (const auto i : elastic_unknowns.dof_handler().locally_owned_dofs())
       result(-load(i) * displacement(i));
     return dealii::Utilities::MPI::sum(accumulators::sum_kahan(result),
@@ -290,7 +294,7 @@ namespace Debond
   dealii::SymmetricTensor<2, dim>
   CellStresses<dim>::elastic_stress(const unsigned int q) const
   {
-    return fields.elasticity_tensor(cell) * dealii::symmetrize(gradient(q));
+    return elasticity_tensor() * dealii::symmetrize(gradient(q));
   }
 
 

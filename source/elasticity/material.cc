@@ -59,14 +59,16 @@ namespace Debond
 
 
 
-    template <int dim>
-    dealii::SymmetricTensor<2, dim>
-    part_of(const Solid<2> &solid)
+    /// The components that both dimensions have; the others are zero.
+    template <int to, int from>
+    dealii::SymmetricTensor<2, to>
+    resized(const dealii::SymmetricTensor<2, from> &tensor)
     {
-      dealii::SymmetricTensor<2, dim> result;
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = i; j < dim; ++j)
-          result[i][j] = solid[i][j];
+      constexpr unsigned int         n = to < from ? to : from;
+      dealii::SymmetricTensor<2, to> result;
+      for (unsigned int i = 0; i < n; ++i)
+        for (unsigned int j = i; j < n; ++j)
+          result[i][j] = tensor[i][j];
       return result;
     }
 
@@ -212,8 +214,8 @@ namespace Debond
       dim == 2 && hypothesis == Hypothesis::plane_stress;
     const Solid<2> strain = thermal_strain();
     if (is_plane_stress)
-      return elasticity_tensor<dim>() * part_of<dim>(strain);
-    return part_of<dim>(elasticity_tensor<3>() * strain);
+      return elasticity_tensor<dim>() * resized<dim>(strain);
+    return resized<dim>(elasticity_tensor<3>() * strain);
   }
 
 
@@ -262,10 +264,7 @@ namespace Debond
   Material::solid_stress(const dealii::SymmetricTensor<2, dim> &stress,
                          const double temperature_change) const
   {
-    Solid<2> s;
-    for (unsigned int i = 0; i < dim; ++i)
-      for (unsigned int j = i; j < dim; ++j)
-        s[i][j] = stress[i][j];
+    Solid<2> s = resized<3>(stress);
     if (dim == 2 && hypothesis == Hypothesis::plane_strain)
       {
         // No strain along z.

@@ -89,55 +89,34 @@ namespace Debond
 
 
 
-  Eigen::VectorXd
+  ReducedLoad
   BlockFactor::reduce(const DofVector &f) const
   {
-    Eigen::VectorXd result(2 * n_eliminated + n_kept);
+    Eigen::VectorXd f_i(n_eliminated);
     for (unsigned int i = 0; i < n_eliminated; ++i)
-      result(i) = f(elimination.unknowns[i]);
-    const Eigen::VectorXd x = solve(result.head(n_eliminated));
+      f_i(i) = f(elimination.unknowns[i]);
+    const Eigen::VectorXd x = solve(f_i);
     Eigen::VectorXd       g = -(A_is.transpose() * x);
     sum(g);
     for (unsigned int k = 0; k < n_kept; ++k)
       g(k) += f(elimination.unknowns[n_eliminated + k]);
-    result.tail(n_eliminated + n_kept) << x, g;
-    return result;
-  }
-
-
-
-  double
-  BlockFactor::energy_at_zero(const Eigen::VectorXd &reduced,
-                              const double           other) const
-  {
-    return other - 0.5 * reduced.head(n_eliminated)
-                           .dot(reduced.segment(n_eliminated, n_eliminated));
-  }
-
-
-
-  double
-  BlockFactor::energy_of_kept(const Eigen::VectorXd &reduced) const
-  {
-    if (n_kept == 0)
-      return 0.;
-    using ByRows =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    const Eigen::Map<const ByRows> L(&L_ss(0, 0), n_kept, n_kept);
-    return 0.5 * L.triangularView<Eigen::Lower>()
-                   .solve(condensed_load(reduced))
-                   .squaredNorm();
+    return {
+      f_i,
+      g,
+      -0.5 * f_i.dot(x),
+      0.5 *
+        factor_of_kept().triangularView<Eigen::Lower>().solve(g).squaredNorm()};
   }
 
 
 
   DofVector
-  BlockFactor::expand(const Eigen::VectorXd &reduced, const VectorView &s) const
+  BlockFactor::expand(const ReducedLoad &load, const VectorView &s) const
   {
     Eigen::VectorXd force = A_is * s;
     sum(force);
     Eigen::VectorXd x(n_eliminated + n_kept);
-    x << solve(reduced.head(n_eliminated) - force), s;
+    x << solve(load.own - force), s;
 
     DofVector u(n_rows);
     for (unsigned int i = 0; i < x.size(); ++i)

@@ -120,61 +120,28 @@ namespace Debond
             S(i, i) -= A.diag_element(elimination.unknowns[n - n_kept + i]);
       }
 
-      /// L^{-1} P f.
-      Eigen::VectorXd
+      /// Keeps y = L^{-1} P f.
+      ReducedLoad
       reduce(const DofVector &f) const override
       {
         Eigen::VectorXd right_side(n);
         for (int i = 0; i < n; ++i)
           right_side(i) = f(elimination.unknowns[i]);
-        return solve(CHOLMOD_L, solve(CHOLMOD_P, right_side));
-      }
-
-      /// L_ss y_s.
-      Eigen::VectorXd
-      condensed_load(const Eigen::VectorXd &y) const override
-      {
-        Eigen::VectorXd result = Eigen::VectorXd::Zero(n_kept);
-        for (unsigned int i = 0; i < n_kept; ++i)
-          for (unsigned int j = 0; j <= i; ++j)
-            result(i) += L_ss(i, j) * y(n - n_kept + j);
-        return result;
-      }
-
-      double
-      energy_at_zero(const Eigen::VectorXd &y,
-                     const double           other) const override
-      {
-        double result = other;
-        for (int i = 0; i < static_cast<int>(n - n_kept); ++i)
-          result -= 0.5 * y(i) * y(i);
-        return result;
-      }
-
-      double
-      energy_of_kept(const Eigen::VectorXd &y) const override
-      {
-        return sum(y, n - n_kept);
-      }
-
-      double
-      energy_without_contact(const Eigen::VectorXd &y) const override
-      {
-        return sum(y, 0);
+        const Eigen::VectorXd y =
+          solve(CHOLMOD_L, solve(CHOLMOD_P, right_side));
+        return {y,
+                factor_of_kept().triangularView<Eigen::Lower>() *
+                  y.tail(n_kept),
+                -0.5 * y.head(n - n_kept).squaredNorm(),
+                0.5 * y.tail(n_kept).squaredNorm()};
       }
 
       DofVector
-      expand(const Eigen::VectorXd &y, const VectorView &s) const override
+      expand(const ReducedLoad &load, const VectorView &s) const override
       {
-        const unsigned int n_eliminated = elimination.n_eliminated();
-        Eigen::VectorXd    x            = y;
-        for (unsigned int j = 0; j < n_kept; ++j)
-          {
-            double sum = 0.;
-            for (unsigned int i = j; i < n_kept; ++i)
-              sum += L_ss(i, j) * s(i);
-            x(n_eliminated + j) = sum;
-          }
+        Eigen::VectorXd x = load.own;
+        x.tail(n_kept) =
+          factor_of_kept().transpose().triangularView<Eigen::Upper>() * s;
         x              = solve(CHOLMOD_Pt, solve(CHOLMOD_Lt, x));
         x.tail(n_kept) = s;
 
@@ -185,16 +152,6 @@ namespace Debond
       }
 
     private:
-      /// 1/2 |y|^2 of the entries from @p first on.
-      static double
-      sum(const Eigen::VectorXd &y, const Eigen::Index first)
-      {
-        double result = 0.;
-        for (Eigen::Index i = first; i < y.size(); ++i)
-          result += 0.5 * y(i) * y(i);
-        return result;
-      }
-
       /// Solves with one part of the factorisation, CHOLMOD_P, CHOLMOD_L, ...
       Eigen::VectorXd
       solve(const int system, const Eigen::VectorXd &right_side) const

@@ -48,14 +48,14 @@ namespace Debond
   DofVector
   CondensedCorrection::solve(const DofVector &r) const
   {
-    return condensed.solve(r, [this](const Eigen::VectorXd &g) {
-      Eigen::VectorXd s = Eigen::VectorXd::Zero(g.size());
-      if (free.empty())
-        return s;
-      Eigen::VectorXd s_free = g(free);
-      factor->solve_in_place(s_free);
-      s(free) = s_free;
-      return s;
-    });
+    const Condensation under_r = condensed.with_load(r);
+    Eigen::VectorXd    s       = Eigen::VectorXd::Zero(under_r.load().size());
+    if (!free.empty())
+      {
+        Eigen::VectorXd s_free = under_r.load()(free);
+        factor->solve_in_place(s_free);
+        s(free) = s_free;
+      }
+    return under_r.expand(s);
   }
 } // namespace Debond

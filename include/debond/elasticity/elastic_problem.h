@@ -103,7 +103,7 @@ namespace Debond
 
   private:
     void
-    add_cell_matrices(const ByRegion<Material> &materials);
+    add_cell_matrices();
 
     const ElasticUnknowns<dim>                elastic_unknowns;
     std::unique_ptr<const ElasticFields<dim>> elastic_fields;

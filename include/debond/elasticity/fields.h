@@ -193,6 +193,12 @@ namespace Debond
     void
     reinit(const Cell &cell);
 
+    const dealii::SymmetricTensor<4, dim> &
+    elasticity_tensor() const
+    {
+      return fields.elasticity_tensor(cell);
+    }
+
     /// In the cell, of each component.
     const SimplexValues<dim> &
     values() const

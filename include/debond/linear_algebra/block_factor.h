@@ -14,31 +14,11 @@ namespace Debond
   class BlockFactor : public EliminationFactor
   {
   public:
-    /// (f_i, x_i, g).
-    Eigen::VectorXd
+    ReducedLoad
     reduce(const DofVector &f) const override;
 
-    Eigen::VectorXd
-    condensed_load(const Eigen::VectorXd &reduced) const override
-    {
-      return reduced.tail(n_kept);
-    }
-
-    double
-    energy_at_zero(const Eigen::VectorXd &reduced,
-                   const double           other) const override;
-
-    double
-    energy_of_kept(const Eigen::VectorXd &reduced) const override;
-
-    double
-    energy_without_contact(const Eigen::VectorXd &reduced) const override
-    {
-      return energy_of_kept(reduced) - energy_at_zero(reduced, 0.);
-    }
-
     DofVector
-    expand(const Eigen::VectorXd &reduced, const VectorView &s) const override;
+    expand(const ReducedLoad &load, const VectorView &s) const override;
 
   protected:
     /// S is to be set, and finish() to be called.

@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace Debond
@@ -49,45 +50,67 @@ namespace Debond
                  const double                             other_energy = 0.,
                  const bool is_semidefinite                            = false);
 
-    /// With what eliminates the unknowns.
-    Condensation(std::shared_ptr<const EliminationFactor> factor,
+    /// Takes what eliminates the unknowns.
+    Condensation(std::shared_ptr<const EliminationFactor> given_factor,
                  const DofVector                         &f,
-                 const double                             other_energy);
+                 const double                             other_energy)
+      : factor(std::move(given_factor))
+      , reduced(factor->reduce(f))
+      , other_energy(other_energy)
+    {}
 
     /// The same with another load and energy. Both share the factorisation.
     Condensation
-    with_load(const DofVector &f, const double other_energy = 0.) const;
+    with_load(const DofVector &f, const double energy = 0.) const
+    {
+      return {factor, f, energy};
+    }
 
     /// S, symmetric, a row for each kept unknown. Valid as long as this object.
     MatrixView
-    schur_complement() const;
+    schur_complement() const
+    {
+      return factor->schur_complement();
+    }
 
     /// g.
     const Eigen::VectorXd &
     load() const
     {
-      return g;
+      return reduced.g;
     }
 
     /// c_0 with the other part, the energy of s = 0.
     double
-    energy_at_zero() const;
+    energy_at_zero() const
+    {
+      return other_energy + reduced.energy_at_zero;
+    }
 
     /// 1/2 <A u, u> >= 0 of the solution of A u = f, without any contact: a
     /// scale for energies. The functional's minimum over all s is minus this,
     /// but for the other part of the energy. With S_+ if A is semidefinite.
     double
-    energy_without_contact() const;
+    energy_without_contact() const
+    {
+      return reduced.energy_of_kept - reduced.energy_at_zero;
+    }
 
     /// 1/2 g'S^{-1} g, what the kept unknowns gain without any contact. With
     /// S_+ if A is semidefinite.
     double
-    energy_of_kept() const;
+    energy_of_kept() const
+    {
+      return reduced.energy_of_kept;
+    }
 
-    /// An estimate of |S| |S^{-1}| in the 1-norm, by LAPACK from the factor; 1
-    /// if no unknown is kept. Of S_+ if A is semidefinite.
+    /// An estimate of the condition of S in the 1-norm, of S_+ if A is
+    /// semidefinite; 1 if no unknown is kept.
     double
-    condition_estimate() const;
+    condition_estimate() const
+    {
+      return factor->condition_estimate();
+    }
 
     /// u at equilibrium for given s, with the size of f.
     DofVector
@@ -96,18 +119,10 @@ namespace Debond
       return factor->expand(reduced, s);
     }
 
-    /// u at equilibrium under another load, for the s that @p kept_unknowns
-    /// returns for the g of this load.
-    DofVector
-    solve(const DofVector &other_f,
-          const std::function<Eigen::VectorXd(const Eigen::VectorXd &)>
-            &kept_unknowns) const;
-
   private:
     std::shared_ptr<const EliminationFactor> factor;
-    Eigen::VectorXd                          reduced; ///< f
+    ReducedLoad                              reduced; ///< f
     double                                   other_energy;
-    Eigen::VectorXd                          g;
   };
 } // namespace Debond
 

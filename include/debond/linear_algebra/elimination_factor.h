@@ -39,7 +39,8 @@ namespace Debond
 
 
 
-  /// Of a matrix with @p n rows, without those that @p is_excluded says.
+  /// The elimination for a matrix with @p n rows, without those that @p
+  /// is_excluded says.
   Elimination
   eliminate_all_but(const std::vector<unsigned int>         &kept,
                     const unsigned int                       n,
@@ -48,15 +49,24 @@ namespace Debond
 
 
 
+  /// A load f on the rows of A once all but the kept unknowns are eliminated.
+  struct ReducedLoad
+  {
+    Eigen::VectorXd own;            ///< what the factor needs of it to expand()
+    Eigen::VectorXd g;              ///< an entry for each kept unknown
+    double          energy_at_zero; ///< c_0
+    double          energy_of_kept; ///< 1/2 g'S_+^{-1} g
+  };
+
+
+
   /**
    * A factorisation of A that eliminates all but the kept unknowns, for
-   * Condensation, which says what its quantities are. Loads are reduced once;
-   * what else depends on a load comes from its reduced form, which is linear in
-   * the load.
+   * Condensation, which says what its quantities are. S_+ is S unless A is
+   * semidefinite.
    *
-   * On several ranks all functions but schur_complement() and
-   * condition_estimate(), and the destructor too, are to be called by all of
-   * them, and all get the same.
+   * On several ranks reduce(), expand() and the destructor are to be called by
+   * all of them, and all get the same.
    */
   class EliminationFactor
   {
@@ -67,47 +77,43 @@ namespace Debond
 
     virtual ~EliminationFactor() = default;
 
-    /// Of @p f with an entry for each row of A. Its entries are the factor's
-    /// own affair.
-    virtual Eigen::VectorXd
+    virtual ReducedLoad
     reduce(const DofVector &f) const = 0;
-
-    /// g, an entry for each kept unknown.
-    virtual Eigen::VectorXd
-    condensed_load(const Eigen::VectorXd &reduced) const = 0;
-
-    /// @p other plus c_0.
-    virtual double
-    energy_at_zero(const Eigen::VectorXd &reduced,
-                   const double           other) const = 0;
-
-    /// 1/2 g'S^{-1} g, with S_+ if A is semidefinite.
-    virtual double
-    energy_of_kept(const Eigen::VectorXd &reduced) const = 0;
-
-    /// That and -c_0.
-    virtual double
-    energy_without_contact(const Eigen::VectorXd &reduced) const = 0;
 
     /// u at equilibrium for the kept unknowns @p s, with an entry for each row
     /// of A, zero in those left out.
     virtual DofVector
-    expand(const Eigen::VectorXd &reduced, const VectorView &s) const = 0;
+    expand(const ReducedLoad &load, const VectorView &s) const = 0;
 
-    /// S, both triangles.
-    const dealii::FullMatrix<double> &
+    MatrixView
     schur_complement() const
     {
-      return S;
+      // deal.II's matrices have contiguous rows, Eigen's contiguous columns,
+      // which for a symmetric one is the same.
+      return Eigen::Map<const Eigen::MatrixXd>(S.empty() ? nullptr : &S(0, 0),
+                                               S.m(),
+                                               S.n());
     }
 
-    /// See Condensation::condition_estimate().
+    /// An estimate of |S_+| |S_+^{-1}| in the 1-norm, by LAPACK; 1 if no
+    /// unknown is kept.
     double
     condition_estimate() const;
 
   protected:
-    dealii::FullMatrix<double> S;
-    dealii::FullMatrix<double> L_ss; ///< S or S_+ = L_ss L_ss', lower triangle
+    using ByRows =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+    Eigen::Map<const ByRows>
+    factor_of_kept() const
+    {
+      return {L_ss.empty() ? nullptr : &L_ss(0, 0),
+              static_cast<Eigen::Index>(L_ss.m()),
+              static_cast<Eigen::Index>(L_ss.n())};
+    }
+
+    dealii::FullMatrix<double> S;    ///< both triangles
+    dealii::FullMatrix<double> L_ss; ///< S_+ = L_ss L_ss', lower triangle
   };
 
 
