@@ -290,34 +290,83 @@ namespace Debond
 
 
 
-    /// Largest |A u - f| where the body is free and where it is supported or
-    /// touches the foundation.
-    struct LargestResiduals
+    /// What forces are compared with.
+    struct ForceScales
     {
-      double free      = 0.;
-      double supported = 0.;
+      /// The largest |A u - f| where nothing but equilibrium is asked for, and
+      /// where supports or the foundation exert it.
+      double free = 0., supported = 0.;
+
+      /// The largest nodal force that is applied.
+      double load = 0.;
+
+      /// What rounding of u can make of A u - f, at each degree of freedom.
+      DofVector rounding;
+
+      /// The largest that rounding of w = u - gap makes of it: where the body
+      /// stays far from the foundation, w is larger than u.
+      double rounding_of_gaps = 0.;
+
+      /// The least force that is resolved beside these loads, whatever rounding
+      /// is where it acts. A body that no force presses has only rounding of
+      /// gaps. Thermal loads balance each other: where heat has loosened a
+      /// press fit, nothing but rounding is left of the forces, and the
+      /// condensation leaves up to 20 times what residual_rounding() counts.
+      double resolved_beside_loads = 0.;
+
+      double
+      largest() const
+      {
+        return std::max(load, supported);
+      }
+
+      /// The least force that is resolved wherever it acts.
+      double
+      resolved() const
+      {
+        return std::max(Tolerance::resolved * rounding.linfty_norm(),
+                        resolved_beside_loads);
+      }
     };
 
 
 
+    /// @p residual: A u - f.
     template <int dim>
-    LargestResiduals
-    largest_residuals(const ElasticProblem<dim> &problem,
-                      const DofVector           &residual)
+    ForceScales
+    force_scales(const ElasticProblem<dim> &problem,
+                 const DofVector           &u,
+                 const DofVector           &residual,
+                 const LoadFactors          factors)
     {
-      std::vector<bool> supported(problem.unknowns().n_dofs(), false);
-      for (const auto normal : problem.unknowns().contact().normal_dofs())
-        supported[normal] = true;
-
-      LargestResiduals result;
-      for (unsigned int i = 0; i < problem.unknowns().n_dofs(); ++i)
+      const ElasticUnknowns<dim> &unknowns = problem.unknowns();
+      const ElasticFields<dim>   &fields   = problem.fields();
+      ForceScales                 result;
+      std::vector<bool>           is_normal(unknowns.n_dofs(), false);
+      for (const auto normal : unknowns.contact().normal_dofs())
+        is_normal[normal] = true;
+      for (unsigned int i = 0; i < unknowns.n_dofs(); ++i)
         {
-          double &largest =
-            supported[i] || problem.unknowns().is_constrained(i) ?
-              result.supported :
-              result.free;
-          largest = std::max(largest, std::abs(residual(i)));
+          double &largest = is_normal[i] || unknowns.is_constrained(i) ?
+                              result.supported :
+                              result.free;
+          largest         = std::max(largest, std::abs(residual(i)));
         }
+      result.load     = fields.applied_nodal_forces(factors).linfty_norm();
+      result.rounding = fields.residual_rounding(u, factors);
+      if (unknowns.has_gap())
+        result.rounding_of_gaps =
+          fields.residual_rounding(DofVector(u.size()), factors).linfty_norm();
+      // A body at rest, or off, has no other forces.
+      if (Tolerance::force_rounding * result.largest() <
+          result.rounding_of_gaps)
+        result.rounding.add(result.rounding_of_gaps);
+      result.resolved_beside_loads =
+        std::max(Tolerance::negligible_force *
+                   (fields.is_heated() ? result.load : 0.),
+                 Tolerance::resolved *
+                   std::min(result.rounding_of_gaps,
+                            Tolerance::negligible_force * result.largest()));
       return result;
     }
 
@@ -343,50 +392,26 @@ namespace Debond
 
 
 
-    /// @p residual: A u - f; @p resolved: the least sum of forces' sizes that
-    /// rounding leaves; @p held_forces: of the bonds at vertices that are held.
+    template <int dim>
+    dealii::Tensor<1, dim>
+    resultant(const DofVector &forces)
+    {
+      dealii::Tensor<1, dim> sum;
+      for (unsigned int i = 0; i < forces.size(); ++i)
+        sum[i % dim] += forces(i);
+      return sum;
+    }
+
+
+
+    /// Sets the reaction of each support by its name. @p clamped: A u - f where
+    /// supports exert it.
     template <int dim>
     void
-    compute_force_balance(const ElasticProblem<dim> &problem,
-                          const DofVector           &residual,
-                          const LoadFactors          factors,
-                          const double               resolved,
-                          const std::vector<double> &held_forces,
-                          Verification<dim>         &result)
+    set_reactions(const ElasticUnknowns<dim> &unknowns,
+                  const DofVector            &clamped,
+                  Verification<dim>          &result)
     {
-      const auto       &normals = problem.unknowns().contact().normal_dofs();
-      std::vector<bool> is_normal(problem.unknowns().n_dofs(), false);
-      for (const auto normal : normals)
-        is_normal[normal] = true;
-
-      // What the supports and the foundation exert is the residual at their
-      // degrees of freedom; what is held there and by no support is held by the
-      // foundation.
-      const ElasticUnknowns<dim> &unknowns = problem.unknowns();
-      std::vector<bool>           is_supported(unknowns.n_dofs(), false);
-      for (const auto &[dof, unused] : unknowns.supported())
-        is_supported[dof] = true;
-      DofVector clamped(unknowns.n_dofs());
-      DofVector contact(unknowns.n_dofs());
-      for (unsigned int dof = 0; dof < unknowns.n_dofs(); ++dof)
-        if (is_supported[dof])
-          clamped(dof) = residual(dof);
-        else if (is_normal[dof] || unknowns.is_constrained(dof))
-          contact(dof) = residual(dof);
-
-      const auto resultant = [&](const DofVector &forces) {
-        dealii::Tensor<1, dim> sum;
-        for (unsigned int i = 0; i < forces.size(); ++i)
-          sum[i % dim] += forces(i);
-        return sum;
-      };
-
-      const DofVector applied = problem.fields().applied_nodal_forces(factors);
-      for (unsigned int i = 0; i < applied.size(); ++i)
-        result.applied_force[i % dim] += applied(i);
-      result.clamped_reaction = resultant(unknowns.cartesian_forces(clamped));
-      result.contact_reaction = resultant(unknowns.contact_forces(contact));
-
       const std::vector<std::string> &names = unknowns.support_names();
       for (const std::string &name :
            std::set<std::string>(names.begin(), names.end()))
@@ -394,16 +419,18 @@ namespace Debond
           DofVector of_support(unknowns.n_dofs());
           for (const auto &[dof, support] : unknowns.supported())
             if (names[support] == name)
-              of_support(dof) = residual(dof);
+              of_support(dof) = clamped(dof);
           result.reactions[name] =
-            resultant(unknowns.cartesian_forces(of_support));
+            resultant<dim>(unknowns.cartesian_forces(of_support));
         }
-      // Of glued nodes that two supports hold.
+      if (unknowns.pairs().empty())
+        return;
+      // Where two supports hold glued nodes the force of the first one is in
+      // the resultant of neither: it acts on both nodes.
       const DofVector on_high = unknowns.contact_forces(clamped);
       std::map<unsigned int, std::string> support_of;
-      if (!unknowns.pairs().empty())
-        for (const auto &[dof, support] : unknowns.supported())
-          support_of[static_cast<unsigned int>(dof / dim)] = names[support];
+      for (const auto &[dof, support] : unknowns.supported())
+        support_of[static_cast<unsigned int>(dof / dim)] = names[support];
       for (const auto &pair : unknowns.pairs().all())
         if (support_of.count(pair.first) > 0)
           for (unsigned int d = 0; d < dim; ++d)
@@ -412,7 +439,18 @@ namespace Debond
               result.reactions[support_of[pair.first]][d] += force;
               result.reactions[support_of[pair.second]][d] -= force;
             }
-      // Bonds of vertices that a support moves pull at it.
+    }
+
+
+
+    /// Bonds of vertices that a support moves pull at it with @p held_forces.
+    template <int dim>
+    void
+    add_held_forces(const ElasticUnknowns<dim> &unknowns,
+                    const std::vector<double>  &held_forces,
+                    Verification<dim>          &result)
+    {
+      const std::vector<std::string> &names = unknowns.support_names();
       const auto &held = unknowns.contact().boundary().held_vertices;
       for (unsigned int k = 0; k < held.size(); ++k)
         {
@@ -425,30 +463,113 @@ namespace Debond
           if (held[k].support < names.size())
             result.reactions[names[held[k].support]] += force;
         }
+    }
 
-      DofVector tangential = contact;
+
+
+    /// @p residual: A u - f; @p resolved: the least sum of forces' sizes that
+    /// rounding leaves; @p held_forces: of the bonds at vertices that are held.
+    template <int dim>
+    void
+    compute_force_balance(const ElasticProblem<dim> &problem,
+                          const DofVector           &residual,
+                          const LoadFactors          factors,
+                          const double               resolved,
+                          const std::vector<double> &held_forces,
+                          Verification<dim>         &result)
+    {
+      // What the supports and the foundation exert is the residual at their
+      // degrees of freedom; what is held there and by no support is held by the
+      // foundation.
+      const ElasticUnknowns<dim> &unknowns = problem.unknowns();
+      const auto                 &normals  = unknowns.contact().normal_dofs();
+      DofVector                   clamped(unknowns.n_dofs());
+      DofVector                   tangential(unknowns.n_dofs());
+      for (const auto &line : unknowns.constraints().get_lines())
+        tangential(line.index) = residual(line.index);
+      for (const auto &[dof, unused] : unknowns.supported())
+        {
+          clamped(dof)    = residual(dof);
+          tangential(dof) = 0.;
+        }
+      DofVector contact = tangential;
       for (const auto normal : normals)
-        tangential(normal) = 0.;
-      result.tangential_reaction =
-        resultant(unknowns.contact_forces(tangential));
-      result.tangential_forces =
-        at_contact_nodes<dim>(unknowns.contact_forces(tangential), normals);
+        contact(normal) = residual(normal);
+
+      const DofVector applied = problem.fields().applied_nodal_forces(factors);
+      result.applied_force    = resultant<dim>(applied);
+      result.clamped_reaction =
+        resultant<dim>(unknowns.cartesian_forces(clamped));
+      result.contact_reaction =
+        resultant<dim>(unknowns.contact_forces(contact));
+      set_reactions(unknowns, clamped, result);
+      add_held_forces(unknowns, held_forces, result);
+      tangential                 = unknowns.contact_forces(tangential);
+      result.tangential_reaction = resultant<dim>(tangential);
+      result.tangential_forces   = at_contact_nodes<dim>(tangential, normals);
 
       // Resultants can vanish where forces do not.
-      DofVector supports = clamped;
-      supports += contact;
-      const double scale = supports.l1_norm() + applied.l1_norm();
-      // Of each body.
-      supports = unknowns.cartesian_forces(supports);
-      supports += applied;
+      DofVector all = clamped;
+      all += contact;
+      const double scale = all.l1_norm() + applied.l1_norm();
+      // Each body is in balance by itself.
+      all = unknowns.cartesian_forces(all);
+      all += applied;
       std::vector<dealii::Tensor<1, dim>> sums(unknowns.n_bodies());
-      for (unsigned int i = 0; i < supports.size(); ++i)
-        sums[unknowns.body_of(i / dim)][i % dim] += supports(i);
+      for (unsigned int i = 0; i < all.size(); ++i)
+        sums[unknowns.body_of(i / dim)][i % dim] += all(i);
       double imbalance = 0.;
       for (const dealii::Tensor<1, dim> &sum : sums)
         imbalance = std::max(imbalance, sum.norm());
       result.force_imbalance =
         imbalance > 0. ? imbalance / std::max(scale, resolved) : 0.;
+    }
+
+
+
+    /// What there is at contact node @p i before its law is checked.
+    template <int dim>
+    ContactNodeState
+    node_state(const unsigned int           i,
+               const AdhesionIntegral<dim> &adhesion,
+               const double                 s,
+               const double                 gap,
+               const double                 normal_force,
+               const Interval              &bond_forces)
+    {
+      const AdhesiveLaw &law   = adhesion.adhesive_law();
+      const BondScale    bonds = adhesion.points().bonds_at(i);
+      ContactNodeState   node;
+      node.s              = s;
+      node.u_nu           = s + gap;
+      node.normal_force   = normal_force;
+      node.allowed_force  = unbounded_above_if(s >= 0., bond_forces);
+      node.bond_stiffness = std::max(0., law.second_derivative(0.)) *
+                            bonds.energy / (bonds.stretch * bonds.stretch);
+      node.bond_threshold = law.bond_threshold() * bonds.stretch;
+      node.damage =
+        bonds.energy == 0. ?
+          0. :
+          law.damage(std::min(adhesion.reached(i), s / bonds.stretch));
+      return node;
+    }
+
+
+
+    /// The Cartesian displacements of contact nodes, of an edge its
+    /// coefficient; of glued nodes that of the body on the high side. @p
+    /// displacement: w + G.
+    template <int dim>
+    std::vector<dealii::Tensor<1, dim>>
+    contact_displacements(const ElasticUnknowns<dim> &unknowns,
+                          const DofVector            &displacement)
+    {
+      DofVector u = unknowns.basis().to_nodal(displacement, BasisStep::jumps);
+      for (const auto &pair : unknowns.pairs().all())
+        if (pair.sign < 0.)
+          for (unsigned int d = 0; d < dim; ++d)
+            u(dim * pair.first + d) = u(dim * pair.second + d);
+      return at_contact_nodes<dim>(u, unknowns.contact().normal_dofs());
     }
   } // namespace
 
@@ -487,60 +608,25 @@ namespace Debond
     result.without_bonds   = zone_without_bonds(boundary, adhesion);
     for (unsigned int i = 0; i < s.size(); ++i)
       {
-        ContactNodeState node;
-        node.s                = s(i);
-        node.u_nu             = s(i) + boundary.nodes[i].gap;
-        node.normal_force     = -normal_residual(i);
-        node.allowed_force    = unbounded_above_if(s(i) >= 0., forces[i]);
-        const BondScale bonds = adhesion.points().bonds_at(i);
-        node.bond_stiffness   = std::max(0., law.second_derivative(0.)) *
-                              bonds.energy / (bonds.stretch * bonds.stretch);
-        node.bond_threshold = law.bond_threshold() * bonds.stretch;
-        node.damage =
-          bonds.energy == 0. ?
-            0. :
-            law.damage(std::min(adhesion.reached(i), s(i) / bonds.stretch));
         result.largest_opening = std::max(result.largest_opening, -s(i));
-        result.nodes.push_back(node);
-        result.penetration = std::max(result.penetration, s(i));
+        result.penetration     = std::max(result.penetration, s(i));
+        result.nodes.push_back(node_state(i,
+                                          adhesion,
+                                          s(i),
+                                          boundary.nodes[i].gap,
+                                          -normal_residual(i),
+                                          forces[i]));
       }
 
-    DofVector              displacement = problem.unknowns().lifted(u, factors);
-    const double           largest_displacement = displacement.linfty_norm();
-    const LargestResiduals largest = largest_residuals(problem, residual);
-    DofVector    rounding = problem.fields().residual_rounding(u, factors);
-    const double largest_load =
-      problem.fields().applied_nodal_forces(factors).linfty_norm();
-    const double largest_force = std::max(largest_load, largest.supported);
-    // Of w, where the body stays far from the foundation.
-    const double rounding_of_gaps =
-      problem.unknowns().has_gap() ?
-        problem.fields()
-          .residual_rounding(DofVector(u.size()), factors)
-          .linfty_norm() :
-        0.;
-    // A body at rest, or off, has no other forces.
-    if (Tolerance::force_rounding * largest_force < rounding_of_gaps)
-      rounding.add(rounding_of_gaps);
-    // Thermal loads balance each other. Where heat has loosened a press fit,
-    // nothing but rounding is left of the forces, and the condensation leaves
-    // up to 20 times what residual_rounding() counts.
-    const double thermal_load =
-      problem.fields().is_heated() ? largest_load : 0.;
-    const double resolved_beside_loads =
-      std::max(Tolerance::negligible_force * thermal_load,
-               Tolerance::resolved *
-                 std::min(rounding_of_gaps,
-                          Tolerance::negligible_force * largest_force));
-    const Eigen::VectorXd resolved_at_nodes =
-      (Tolerance::resolved * contact.trace(rounding))
-        .cwiseMax(resolved_beside_loads);
+    const DofVector   displacement = problem.unknowns().lifted(u, factors);
+    const ForceScales found = force_scales(problem, u, residual, factors);
     const std::vector<LawScale> scales =
-      law_scales(adhesion,
-                 boundary,
-                 result.nodes,
-                 resolved_at_nodes,
-                 {largest_displacement, largest.supported});
+      law_scales<dim>(adhesion,
+                      boundary,
+                      result.nodes,
+                      (Tolerance::resolved * contact.trace(found.rounding))
+                        .cwiseMax(found.resolved_beside_loads),
+                      {displacement.linfty_norm(), found.supported});
     compute_violations(adhesion, s, scales, result.nodes);
 
     const double largest_s = s.lpNorm<Eigen::Infinity>();
@@ -552,37 +638,27 @@ namespace Debond
           std::max(result.law_violation, result.nodes[i].violation);
       }
 
-    const double resolved =
-      std::max(Tolerance::resolved * rounding.linfty_norm(),
-               resolved_beside_loads);
     result.equilibrium_residual =
-      largest.free > 0. ?
-        largest.free / std::max({largest.free, largest.supported, resolved}) :
+      found.free > 0. ?
+        found.free / std::max({found.free, found.supported, found.resolved()}) :
         0.;
     // The rounding of a sum is that of all its terms.
     compute_force_balance(problem,
                           residual,
                           factors,
-                          std::max(resolved,
-                                   Tolerance::resolved * rounding.l1_norm()),
+                          std::max(found.resolved(),
+                                   Tolerance::resolved *
+                                     found.rounding.l1_norm()),
                           held_forces(adhesion, s),
                           result);
 
     result.force_rounding =
-      largest_load > 0. ?
-        std::max(rounding.linfty_norm(), rounding_of_gaps) / largest_force :
+      found.load > 0. ?
+        std::max(found.rounding.linfty_norm(), found.rounding_of_gaps) /
+          found.largest() :
         0.;
-
-    displacement =
-      problem.unknowns().basis().to_nodal(displacement, BasisStep::jumps);
-    // Of glued nodes that of the body on the high side.
-    for (const auto &pair : problem.unknowns().pairs().all())
-      if (pair.sign < 0.)
-        for (unsigned int d = 0; d < dim; ++d)
-          displacement(dim * pair.first + d) =
-            displacement(dim * pair.second + d);
     result.displacements =
-      at_contact_nodes<dim>(displacement, contact.normal_dofs());
+      contact_displacements(problem.unknowns(), displacement);
     return result;
   }
 
