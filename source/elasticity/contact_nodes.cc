@@ -149,19 +149,16 @@ namespace Debond
                         const unsigned int                    degree,
                         const BoundaryConditions             &conditions,
                         const Supports<dim>                  &supports,
-                        NodeSupports<dim>                    &node_supports,
-                        DofVector                            &gap)
+                        const NodeSupports<dim>              &node_supports,
+                        ConstrainedDofs<dim>                 &constrained)
         : faces(faces)
         , supports(supports)
         , node_supports(node_supports)
-        , gap(gap)
+        , constrained(constrained)
         , places(faces.size())
       {
         boundary.degree = degree;
         find_vertices(conditions);
-        if (!supports.gaps.empty())
-          for (const SupportedDof &supported : node_supports.supported())
-            clamps.emplace(supported.dof, supported.support);
         for (auto &[index, vertex] : vertices)
           make_nodes(index, vertex);
         check_slip(conditions);
@@ -242,8 +239,8 @@ namespace Debond
           if (conditions.fixes_tangential(faces[f].id) &&
               !is_moved(faces[f].id) && !is_curved(f))
             for (unsigned int v = 0; v < faces[f].n_nodes; ++v)
-              check_prescribed(node_supports.prescribed_at(
-                                 faces[f].indices[v], faces[f].positions[v]),
+              check_prescribed(node_supports.at(faces[f].indices[v],
+                                                faces[f].positions[v]),
                                faces[f].normal);
       }
 
@@ -275,63 +272,51 @@ namespace Debond
                                  "displacement = fixed");
       }
 
-      /// A node for each group of normals along which the displacement is
-      /// unknown.
-      void
-      make_nodes(const unsigned int index, ContactVertex<dim> &vertex)
+      /// The least gap of the faces of each group of a vertex.
+      std::vector<double>
+      gaps_of(const unsigned int        index,
+              const ContactVertex<dim> &vertex,
+              const std::size_t         n_groups) const
       {
-        const VertexNormals<dim> groups(vertex.normals, vertex.measures);
-        const std::vector<dealii::Tensor<1, dim>> &normals = groups.normals;
-        vertex.groups                                      = groups.groups;
-        std::vector<double> gaps(normals.size(),
+        std::vector<double> gaps(n_groups,
                                  std::numeric_limits<double>::infinity());
         for (unsigned int k = 0; k < vertex.gaps.size(); ++k)
           gaps[vertex.groups[k]] =
             std::min(gaps[vertex.groups[k]], vertex.gaps[k]);
         // Where an interface ends there is neither jump nor bond.
-        const bool is_end = node_supports.is_end_of_interface(index);
-        if (is_end)
+        if (node_supports.is_end_of_interface(index))
           std::fill(gaps.begin(), gaps.end(), 0.);
-        PrescribedNode<dim> prescribed =
-          node_supports.prescribed_at(index, vertex.position);
-        const auto &rows = prescribed.rows;
-        // As far from the foundation as at rest.
-        const bool is_clamped =
-          is_end || node_supports.constraints().is_constrained(dim * index);
-        const auto   clamp   = clamps.find(dim * index);
-        unsigned int support = no_node;
-        if (is_clamped && !is_end && clamp != clamps.end())
-          support = clamp->second;
-        else if (!rows.empty())
-          support = rows[0].support;
+        return gaps;
+      }
 
-        unsigned int low_support = no_node;
-        if (const auto *glued = node_supports.supports_of_pair(index))
-          {
-            support     = (*glued)[0];
-            low_support = (*glued)[1];
-          }
-
-        // A normal displacement is unknown unless supports prescribe it.
+      /// Which normal displacements are unknown at a vertex: those that
+      /// supports do not prescribe. Constrains what u_tau = 0 prescribes beside
+      /// them.
+      std::vector<unsigned int>
+      unknown_normals(const ContactVertex<dim>                  &vertex,
+                      const std::vector<dealii::Tensor<1, dim>> &normals,
+                      PrescribedNode<dim>                       &prescribed)
+      {
         std::vector<unsigned int> unknown;
+        if (node_supports.is_end_of_interface(prescribed.node))
+          return unknown;
         for (unsigned int k = 0; k < normals.size(); ++k)
           {
             dealii::Tensor<1, dim> rest = normals[k];
-            for (const auto &row : rows)
+            for (const auto &row : prescribed.rows)
               rest -= (normals[k] * row.direction) * row.direction;
-            if (rest.norm() > Tolerance::free_normal && !is_clamped)
+            if (rest.norm() > Tolerance::free_normal)
               unknown.push_back(k);
           }
-        if (!is_clamped && vertex.is_tangential_fixed &&
+        if (vertex.is_tangential_fixed &&
             (normals.size() > 1 || unknown.empty()))
           {
             // Where normals differ, all displacements are tangential to one,
             // also if supports prescribe one of the normal ones.
             unknown.clear();
             prescribed.fix_rest();
-            node_supports.constrain(prescribed);
+            constrained.constrain(prescribed);
           }
-
         if (unknown.size() > dim)
           throw std::invalid_argument(
             "Contact sides of " + std::to_string(unknown.size()) +
@@ -339,12 +324,28 @@ namespace Debond
             ", where the body has " + std::to_string(dim) +
             " displacements: Tangential displacement = fixed holds such "
             "vertices.");
-        if (unknown.size() + rows.size() > dim)
+        if (unknown.size() + prescribed.rows.size() > dim)
           throw SupportError(SupportError::Subject::displacement,
-                             node_supports.names()[rows[0].support],
+                             node_supports.names()[prescribed.rows[0].support],
                              "too much is prescribed at " +
                                point_text(vertex.position) +
                                ", where contact sides meet");
+        return unknown;
+      }
+
+      /// Makes a node for each group of normals along which the displacement is
+      /// unknown, and holds the vertex along the others.
+      void
+      make_nodes(const unsigned int index, ContactVertex<dim> &vertex)
+      {
+        const VertexNormals<dim> groups(vertex.normals, vertex.measures);
+        const std::vector<dealii::Tensor<1, dim>> &normals = groups.normals;
+        vertex.groups                                      = groups.groups;
+        const std::vector<double> gaps = gaps_of(index, vertex, normals.size());
+        PrescribedNode<dim>       prescribed =
+          node_supports.at(index, vertex.position);
+        const std::vector<unsigned int> unknown =
+          unknown_normals(vertex, normals, prescribed);
 
         vertex.nodes.assign(normals.size(), no_node);
         vertex.held.assign(normals.size(), 0);
@@ -357,37 +358,36 @@ namespace Debond
             vertex.nodes[k] = static_cast<unsigned int>(nodes.size());
             normal_dofs.push_back(dim * index +
                                   static_cast<unsigned int>(directions.size()));
-            const double gap_here = gaps[k];
-            if (gap_here != 0.)
-              gap(normal_dofs.back()) = gap_here;
+            constrained.set_gap(normal_dofs.back(), gaps[k]);
             directions.push_back(normals[k]);
             nodes.push_back({vertex.position,
                              normals[k],
                              part_of_face * groups.measures[k],
-                             gap_here});
+                             gaps[k]});
           }
+
+        std::array<unsigned int, 2> supports{
+          {prescribed.rows.empty() ? no_node : prescribed.rows[0].support,
+           no_node}};
+        if (const auto *of_pair = node_supports.supports_of_pair(index))
+          supports = *of_pair;
         for (unsigned int k = 0; k < normals.size(); ++k)
           if (vertex.nodes[k] == no_node)
-            vertex.held[k] = hold({prescribed.displacement() * normals[k],
-                                   gaps[k],
-                                   support,
-                                   normals[k],
-                                   vertex.position,
-                                   low_support});
-        if (unknown.empty())
-          return;
-
-        node_supports.add_frame(prescribed,
+            {
+              vertex.held[k] =
+                static_cast<unsigned int>(boundary.held_vertices.size());
+              boundary.held_vertices.push_back(
+                {prescribed.displacement() * normals[k],
+                 gaps[k],
+                 supports[0],
+                 normals[k],
+                 vertex.position,
+                 supports[1]});
+            }
+        if (!unknown.empty())
+          constrained.add_frame(prescribed,
                                 directions,
                                 vertex.is_tangential_fixed);
-      }
-
-      /// Returns the number of the vertex among those that are held.
-      unsigned int
-      hold(const typename ContactBoundary<dim>::HeldVertex &vertex)
-      {
-        boundary.held_vertices.push_back(vertex);
-        return static_cast<unsigned int>(boundary.held_vertices.size() - 1);
       }
 
       /// @p place: of each node in the order of the boundary's.
@@ -421,14 +421,11 @@ namespace Debond
 
       const std::vector<BoundaryFace<dim>> &faces;
       const Supports<dim>                  &supports;
-      NodeSupports<dim>                    &node_supports;
-      DofVector                            &gap;
+      const NodeSupports<dim>              &node_supports;
+      ConstrainedDofs<dim>                 &constrained;
 
       /// By node index.
       std::map<unsigned int, ContactVertex<dim>> vertices;
-
-      /// Of clamped unknowns, if there are gaps.
-      std::map<dealii::types::global_dof_index, unsigned int> clamps;
 
       /// Of each face among those of each of its vertices.
       std::vector<std::array<unsigned int, BoundaryFace<dim>::maximum>> places;
@@ -447,11 +444,11 @@ namespace Debond
                      const unsigned int                    degree,
                      const BoundaryConditions             &conditions,
                      const Supports<dim>                  &supports,
-                     NodeSupports<dim>                    &node_supports,
-                     DofVector                            &gap)
+                     const NodeSupports<dim>              &node_supports,
+                     ConstrainedDofs<dim>                 &constrained)
   {
     return ContactSpaceMaker<dim>(
-             faces, degree, conditions, supports, node_supports, gap)
+             faces, degree, conditions, supports, node_supports, constrained)
       .space();
   }
 

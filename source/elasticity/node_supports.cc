@@ -183,30 +183,16 @@ namespace Debond
         if (is_new)
           support_names.push_back(entry->first);
         for (unsigned int n = 0; n < face.n_nodes; ++n)
-          if (!fixed.is_constrained(dim * face.indices[n]))
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                constrain(dim * face.indices[n] + d, 0., entry->second);
-                held.push_back({face.positions[n],
-                                dealii::Point<dim>::unit_vector(d),
-                                face.indices[n]});
-              }
+          {
+            const unsigned int   index = face.indices[n];
+            PrescribedNode<dim> &node =
+              nodes.emplace(index, at(index, face.positions[n])).first->second;
+            for (unsigned int d = 0; d < dim && !node.is_clamped; ++d)
+              node.rows.push_back(
+                {dealii::Point<dim>::unit_vector(d), 0., entry->second});
+            node.is_clamped = true;
+          }
       }
-  }
-
-
-
-  template <int dim>
-  void
-  NodeSupports<dim>::constrain(const dealii::types::global_dof_index dof,
-                               const double                          value,
-                               const unsigned int                    support)
-  {
-    fixed.add_line(dof);
-    if (value != 0.)
-      prescribed(dof) = value;
-    if (support != dealii::numbers::invalid_unsigned_int)
-      supported_dofs.push_back({dof, support});
   }
 
 
@@ -252,27 +238,17 @@ namespace Debond
                                                  index) != nullptr,
                                       d),
                      support});
-            if (fixed.is_constrained(dim * index))
-              {
-                for (const Row &row : rows)
-                  if (row.value != 0.)
-                    fail(condition,
-                         "the displacement at " +
-                           point_text(face.positions[n]) +
-                           " is prescribed, but the vertex is clamped: leave "
-                           "its side out of Clamped boundaries");
-                continue;
-              }
-
-            PrescribedNode<dim> &node = prescribed_nodes[index];
-            node.node                 = index;
-            node.position             = face.positions[n];
+            PrescribedNode<dim> &node =
+              nodes.emplace(index, at(index, face.positions[n])).first->second;
             for (const Row &row : rows)
               if (!node.add(row))
                 fail(condition,
                      "the displacement at " + point_text(node.position) +
-                       " is prescribed otherwise by " +
-                       support_names[node.rows[0].support]);
+                       (node.is_clamped ?
+                          " is prescribed, but the vertex is clamped: leave "
+                          "its side out of Clamped boundaries" :
+                          " is prescribed otherwise by " +
+                            support_names[node.rows[0].support]));
           }
       }
   }
@@ -283,187 +259,45 @@ namespace Debond
   void
   NodeSupports<dim>::glue(NodePairs<dim> &pairs)
   {
-    const auto directions = [this](const unsigned int node) {
-      std::vector<dealii::Tensor<1, dim>> result;
-      if (fixed.is_constrained(dim * node))
-        for (unsigned int d = 0; d < dim; ++d)
-          result.push_back(dealii::Point<dim>::unit_vector(d));
-      else if (const auto entry = prescribed_nodes.find(node);
-               entry != prescribed_nodes.end())
-        for (const Row &row : entry->second.rows)
-          result.push_back(row.direction);
-      return result;
-    };
-    const auto is_within = [](const auto &some, const auto &others) {
-      for (dealii::Tensor<1, dim> rest : some)
-        {
-          for (const dealii::Tensor<1, dim> &other : others)
-            rest -= (rest * other) * other;
-          if (rest.norm() > Tolerance::same_normal)
-            return false;
-        }
-      return true;
+    // Whether one node is held wherever the other one is.
+    const auto is_held_as = [this](const unsigned int node,
+                                   const unsigned int other) {
+      const std::vector<Row> own = at(node, {}).rows, all = at(other, {}).rows;
+      return std::all_of(all.begin(), all.end(), [&own](const Row &row) {
+        dealii::Tensor<1, dim> rest = row.direction;
+        for (const Row &held : own)
+          rest -= (rest * held.direction) * held.direction;
+        return rest.norm() <= Tolerance::same_normal;
+      });
     };
     ends_of_interfaces = pairs.ends();
     for (unsigned int k = 0; k < pairs.all().size(); ++k)
       {
-        auto       pair   = pairs.all()[k];
-        const auto first  = directions(pair.first),
-                   second = directions(pair.second);
-        // Of a clamped first node the second one is clamped, too.
-        const auto is_clamped = [this](const unsigned int node) {
-          return fixed.is_constrained(dim * node);
-        };
-        if (!is_within(first, second) ||
-            (is_clamped(pair.first) && !is_clamped(pair.second)))
+        auto pair = pairs.all()[k];
+        if (!is_held_as(pair.second, pair.first))
           {
-            if (!is_within(second, first))
+            if (!is_held_as(pair.first, pair.second))
               throw std::invalid_argument(
                 "supports hold both bodies along different directions where "
                 "they are glued to each other, at " +
-                point_text(prescribed_nodes.at(pair.first).position) +
+                point_text(nodes.at(pair.first).position) +
                 ": hold one of them as far as the other one there");
             pairs.exchange(pair);
             pair = pairs.all()[k];
           }
-        if (prescribed.size() == 0)
+        const auto first = nodes.find(pair.first);
+        if (first == nodes.end() || first->second.rows.empty())
           continue;
-        const auto support_of = [&](const unsigned int node) {
-          if (const auto entry = prescribed_nodes.find(node);
-              entry != prescribed_nodes.end())
-            return entry->second.rows[0].support;
-          for (const auto &[dof, support] : supported_dofs)
-            if (dof == dim * node)
-              return support;
-          return dealii::numbers::invalid_unsigned_int;
-        };
-        if (!first.empty() && !second.empty())
-          {
-            auto &both = glued_supports[pair.first];
-            both       = {{support_of(pair.first), support_of(pair.second)}};
-            if (pair.sign < 0.)
-              std::swap(both[0], both[1]);
-          }
-        const auto of_second           = prescribed_nodes.find(pair.second);
-        const dealii::Tensor<1, dim> u = of_second == prescribed_nodes.end() ?
-                                           dealii::Tensor<1, dim>() :
-                                           of_second->second.displacement();
-        if (const auto own = prescribed_nodes.find(pair.first);
-            own != prescribed_nodes.end())
-          for (Row &row : own->second.rows)
-            row.value = pair.sign * (row.value - row.direction * u);
+        const PrescribedNode<dim> &second = nodes.at(pair.second);
+        std::vector<Row>          &rows   = first->second.rows;
+        auto                      &both   = glued[pair.first];
+        both = {{rows[0].support, second.rows[0].support}};
+        if (pair.sign < 0.)
+          std::swap(both[0], both[1]);
+        for (Row &row : rows)
+          row.value =
+            pair.sign * (row.value - row.direction * second.displacement());
       }
-  }
-
-
-
-  template <int dim>
-  PrescribedNode<dim>
-  NodeSupports<dim>::prescribed_at(const unsigned int        index,
-                                   const dealii::Point<dim> &position) const
-  {
-    const auto entry = prescribed_nodes.find(index);
-    return entry == prescribed_nodes.end() ?
-             PrescribedNode<dim>{index, position, {}} :
-             entry->second;
-  }
-
-
-
-  template <int dim>
-  void
-  NodeSupports<dim>::constrain(const PrescribedNode<dim> &node)
-  {
-    const unsigned int first = dim * node.node;
-    if (node.rows.empty() || fixed.is_constrained(first) ||
-        nodes_with_frames.count(node.node) > 0)
-      return;
-
-    // Along the axes the unknowns stay Cartesian, and so they do if nothing is
-    // unknown.
-    const auto axis = [](const Row &row) {
-      for (unsigned int d = 0; d < dim; ++d)
-        if (std::abs(row.direction[d]) == 1.)
-          return d;
-      return static_cast<unsigned int>(dim);
-    };
-    const bool are_axes =
-      std::all_of(node.rows.begin(), node.rows.end(), [&](const Row &row) {
-        return axis(row) < dim;
-      });
-    if (node.rows.size() < dim && !are_axes)
-      {
-        add_frame(node, {}, false);
-        return;
-      }
-    for (const Row &row : node.rows)
-      held.push_back({node.position, row.direction, node.node});
-    if (node.rows.size() == dim)
-      {
-        const dealii::Tensor<1, dim> displacement = node.displacement();
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            unsigned int bearing = 0;
-            for (unsigned int k = 1; k < dim; ++k)
-              if (std::abs(node.rows[k].direction[d]) >
-                  std::abs(node.rows[bearing].direction[d]))
-                bearing = k;
-            constrain(first + d, displacement[d], node.rows[bearing].support);
-          }
-      }
-    else
-      for (const Row &row : node.rows)
-        {
-          const unsigned int d = axis(row);
-          constrain(first + d, row.direction[d] * row.value, row.support);
-        }
-  }
-
-
-
-  template <int dim>
-  void
-  NodeSupports<dim>::add_frame(
-    const PrescribedNode<dim>                 &node,
-    const std::vector<dealii::Tensor<1, dim>> &free_directions,
-    const bool                                 fixes_rest)
-  {
-    std::vector<dealii::Tensor<1, dim>> directions = free_directions;
-    for (const Row &row : node.rows)
-      directions.push_back(row.direction);
-    const dealii::Tensor<2, dim> to_frame = contact_frame(directions);
-    node_frames.push_back({node.node, dealii::invert(to_frame), to_frame});
-    nodes_with_frames.insert(node.node);
-
-    const unsigned int first = dim * node.node;
-    unsigned int       k = static_cast<unsigned int>(free_directions.size());
-    for (const Row &row : node.rows)
-      {
-        constrain(first + k++, row.value, row.support);
-        held.push_back({node.position, row.direction, node.node});
-      }
-    if (fixes_rest)
-      for (; k < dim; ++k)
-        {
-          constrain(first + k, 0., dealii::numbers::invalid_unsigned_int);
-          held.push_back({node.position, to_frame[k], node.node});
-        }
-  }
-
-
-
-  template <int dim>
-  std::vector<Support<dim>>
-  NodeSupports<dim>::finish()
-  {
-    for (const auto &[unused, node] : prescribed_nodes)
-      constrain(node);
-    prescribed_nodes.clear();
-    nodes_with_frames.clear();
-    if (prescribed.size() > 0 && prescribed.all_zero())
-      prescribed.reinit(0);
-    fixed.close();
-    return std::move(held);
   }
 
 

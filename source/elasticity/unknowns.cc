@@ -65,10 +65,6 @@ namespace Debond
           " is both clamped and a contact boundary.");
 
     dofs.distribute_dofs(fe);
-    const double diameter = diameter_of(triangulation);
-
-    // G of most scenes is zero, and then there is none.
-    gap.reinit(supports.gaps.empty() ? 0 : dofs.n_dofs());
     const auto faces = [&](const std::set<dealii::types::boundary_id> &ids) {
       return ids.empty() ? std::vector<BoundaryFace<dim>>() :
                            boundary_faces(dofs, ids, conditions.names);
@@ -86,8 +82,8 @@ namespace Debond
                         edge_coefficients(with_coefficients),
                         n_nodes);
     node_pairs = NodePairs<dim>(n_nodes, faces(conditions.high_sides), low);
-    node_supports =
-      NodeSupports<dim>(supports.displacements.empty() ? 0 : dofs.n_dofs());
+
+    NodeSupports<dim> node_supports;
     node_supports.clamp(faces(conditions.clamped), conditions);
     for (const PrescribedDisplacement<dim> &condition : supports.displacements)
       node_supports.prescribe(faces(condition.boundaries),
@@ -95,45 +91,53 @@ namespace Debond
                               conditions,
                               change_of_basis);
     node_supports.glue(node_pairs);
+    names_of_supports = node_supports.names();
     for (BoundaryFace<dim> &face : contact)
       for (unsigned int n = 0; n < face.n_nodes; ++n)
         if (const auto *pair = node_pairs.find(face.indices[n]))
           face.indices[n] = pair->first;
-    contact_space = make_contact_space(
-      contact, degree, conditions, supports, node_supports, gap);
-    std::vector<Support<dim>> held = node_supports.finish();
-    change_of_basis.set(BasisStep::jumps, node_pairs.jumps(), n_nodes);
-    change_of_basis.set(BasisStep::frames, node_supports.frames(), n_nodes);
-    if (gap.size() > 0 && gap.all_zero())
-      gap.reinit(0);
 
+    constrained   = ConstrainedDofs<dim>(dofs.n_dofs(), supports);
+    contact_space = make_contact_space(
+      contact, degree, conditions, supports, node_supports, constrained);
+    const std::vector<Support<dim>> held = constrained.finish(node_supports);
+    change_of_basis.set(BasisStep::jumps, node_pairs.jumps(), n_nodes);
+    change_of_basis.set(BasisStep::frames, constrained.frames(), n_nodes);
+    find_free_motions(held);
+  }
+
+
+
+  template <int dim>
+  void
+  ElasticUnknowns<dim>::find_free_motions(std::vector<Support<dim>> held)
+  {
+    const double diameter = diameter_of(dofs.get_triangulation());
     const std::vector<std::string> places  = find_bodies();
     const auto                     in_body = [this](Support<dim> &support) {
-      support.body           = body_of(support.node);
-      const auto *const pair = node_pairs.find_first(support.node);
-      if (pair != nullptr)
+      support.body = body_of(support.node);
+      if (const auto *pair = node_pairs.find_first(support.node))
         support.other = body_of(pair->second);
     };
     std::for_each(held.begin(), held.end(), in_body);
     free_motions = free_rigid_motions(held, diameter, places);
-    if (!free_motions.motions.empty())
+    if (free_motions.motions.empty())
+      return;
+    for (unsigned int i = 0; i < contact_space.normal_dofs().size(); ++i)
       {
-        for (unsigned int i = 0; i < contact_space.normal_dofs().size(); ++i)
-          {
-            const auto &node = contact_space.boundary().nodes[i];
-            held.push_back({node.position,
-                            node.normal,
-                            static_cast<unsigned int>(
-                              contact_space.normal_dofs()[i] / dim)});
-            in_body(held.back());
-          }
-        const std::vector<std::string> motions =
-          free_rigid_motions(held, diameter, places).names;
-        if (!motions.empty())
-          throw std::invalid_argument(
-            "Boundary conditions leave a rigid motion free: " +
-            join(motions, ", ") + ". Clamp a side.");
+        const auto &node = contact_space.boundary().nodes[i];
+        held.push_back(
+          {node.position,
+           node.normal,
+           static_cast<unsigned int>(contact_space.normal_dofs()[i] / dim)});
+        in_body(held.back());
       }
+    const std::vector<std::string> motions =
+      free_rigid_motions(held, diameter, places).names;
+    if (!motions.empty())
+      throw std::invalid_argument(
+        "Boundary conditions leave a rigid motion free: " +
+        join(motions, ", ") + ". Clamp a side.");
   }
 
 
@@ -262,9 +266,9 @@ namespace Debond
   {
     DofVector G(n_dofs());
     if (has_prescribed_displacements())
-      G.equ(factors.displacements, node_supports.displacements());
+      G.equ(factors.displacements, constrained.displacements());
     if (has_gap())
-      G += gap;
+      G += constrained.gaps();
     return G;
   }
 

@@ -12,6 +12,7 @@
 #include <debond/base/dof_vector.h>
 #include <debond/elasticity/boundary_conditions.h>
 #include <debond/elasticity/change_of_basis.h>
+#include <debond/elasticity/constrained_dofs.h>
 #include <debond/elasticity/contact_space.h>
 #include <debond/elasticity/load_factors.h>
 #include <debond/elasticity/node_pairs.h>
@@ -166,14 +167,14 @@ namespace Debond
     const dealii::AffineConstraints<double> &
     constraints() const
     {
-      return node_supports.constraints();
+      return constrained.constraints();
     }
 
     /// The pieces of the boundary that support the body, by name.
     const std::vector<std::string> &
     support_names() const
     {
-      return node_supports.names();
+      return names_of_supports;
     }
 
     /// The free rigid motions: what holds them, if anything does, are bonds
@@ -187,7 +188,7 @@ namespace Debond
     const std::vector<SupportedDof> &
     supported() const
     {
-      return node_supports.supported();
+      return constrained.supported();
     }
 
     /// Whether G is not zero.
@@ -200,14 +201,14 @@ namespace Debond
     bool
     has_prescribed_displacements() const
     {
-      return node_supports.displacements().size() > 0;
+      return constrained.displacements().size() > 0;
     }
 
     /// Whether a part of G does not grow with the load.
     bool
     has_gap() const
     {
-      return gap.size() > 0;
+      return constrained.gaps().size() > 0;
     }
 
     /// G, with @p factors times the prescribed displacements and the gap.
@@ -255,6 +256,11 @@ namespace Debond
     rigid_body_modes() const;
 
   private:
+    /// Finds what supports in these directions leave free. Throws as the
+    /// constructor does.
+    void
+    find_free_motions(std::vector<Support<dim>> held);
+
     const dealii::MappingFE<dim> mapping_p1;
     const dealii::FESystem<dim>  fe;
     dealii::DoFHandler<dim>      dofs;
@@ -267,12 +273,10 @@ namespace Debond
     ChangeOfBasis<dim>        change_of_basis;
     NodePairs<dim>            node_pairs;
     std::vector<unsigned int> bodies; ///< by node, or empty
-    NodeSupports<dim>         node_supports;
+    std::vector<std::string>  names_of_supports;
+    ConstrainedDofs<dim>      constrained; ///< with G
     ContactSpace<dim>         contact_space;
     FreeRigidMotions<dim>     free_motions;
-
-    // G is what supports prescribe and this, which is empty if it is zero.
-    DofVector gap;
   };
 } // namespace Debond
 

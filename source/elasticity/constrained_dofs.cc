@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <debond/elasticity/constrained_dofs.h>
+#include <debond/elasticity/contact_frame.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace Debond
+{
+  template <int dim>
+  void
+  ConstrainedDofs<dim>::constrain(const PrescribedNode<dim> &node)
+  {
+    const unsigned int first = dim * node.node;
+    if (node.rows.empty() || !done.insert(node.node).second)
+      return;
+
+    // Along the axes the unknowns stay Cartesian, and so they do if nothing is
+    // unknown.
+    const auto axis = [](const auto &row) {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (std::abs(row.direction[d]) == 1.)
+          return d;
+      return static_cast<unsigned int>(dim);
+    };
+    const bool are_axes =
+      std::all_of(node.rows.begin(), node.rows.end(), [&](const auto &row) {
+        return axis(row) < dim;
+      });
+    if (node.rows.size() < dim && !are_axes)
+      {
+        add_frame(node, {}, false);
+        return;
+      }
+    for (const auto &row : node.rows)
+      held.push_back({node.position, row.direction, node.node});
+    if (node.rows.size() == dim)
+      {
+        const dealii::Tensor<1, dim> displacement = node.displacement();
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            unsigned int bearing = 0;
+            for (unsigned int k = 1; k < dim; ++k)
+              if (std::abs(node.rows[k].direction[d]) >
+                  std::abs(node.rows[bearing].direction[d]))
+                bearing = k;
+            constrain(first + d, displacement[d], node.rows[bearing].support);
+          }
+      }
+    else
+      for (const auto &row : node.rows)
+        {
+          const unsigned int d = axis(row);
+          constrain(first + d, row.direction[d] * row.value, row.support);
+        }
+  }
+
+
+
+  template <int dim>
+  void
+  ConstrainedDofs<dim>::add_frame(
+    const PrescribedNode<dim>                 &node,
+    const std::vector<dealii::Tensor<1, dim>> &free_directions,
+    const bool                                 fixes_rest)
+  {
+    std::vector<dealii::Tensor<1, dim>> directions = free_directions;
+    for (const auto &row : node.rows)
+      directions.push_back(row.direction);
+    const dealii::Tensor<2, dim> to_frame = contact_frame(directions);
+    node_frames.push_back({node.node, dealii::invert(to_frame), to_frame});
+    done.insert(node.node);
+
+    const unsigned int first = dim * node.node;
+    unsigned int       k = static_cast<unsigned int>(free_directions.size());
+    for (const auto &row : node.rows)
+      {
+        constrain(first + k++, row.value, row.support);
+        held.push_back({node.position, row.direction, node.node});
+      }
+    if (fixes_rest)
+      for (; k < dim; ++k)
+        {
+          constrain(first + k, 0., dealii::numbers::invalid_unsigned_int);
+          held.push_back({node.position, to_frame[k], node.node});
+        }
+  }
+
+
+
+  template <int dim>
+  std::vector<Support<dim>>
+  ConstrainedDofs<dim>::finish(const NodeSupports<dim> &supports)
+  {
+    for (const auto &[unused, node] : supports.all())
+      constrain(node);
+    for (DofVector *part : {&prescribed, &gap})
+      if (part->size() > 0 && part->all_zero())
+        part->reinit(0);
+    fixed.close();
+    done.clear();
+    return std::move(held);
+  }
+
+
+
+  template <int dim>
+  void
+  ConstrainedDofs<dim>::constrain(const dealii::types::global_dof_index dof,
+                                  const double                          value,
+                                  const unsigned int                    support)
+  {
+    fixed.add_line(dof);
+    if (value != 0.)
+      prescribed(dof) = value;
+    if (support != dealii::numbers::invalid_unsigned_int)
+      supported_dofs.push_back({dof, support});
+  }
+
+
+
+  template class ConstrainedDofs<2>;
+  template class ConstrainedDofs<3>;
+} // namespace Debond
