@@ -23,8 +23,7 @@ namespace Debond
 {
   namespace
   {
-    /// What the estimate of the faces is multiplied by, see
-    /// doc/notes/accuracy.md.
+    /// The factor of the estimate of the faces, see doc/notes/accuracy.md.
     template <int dim>
     double
     calibration(const unsigned int degree)
@@ -49,7 +48,7 @@ namespace Debond
 
 
 
-    /// Of the gradients of the barycentric coordinates.
+    /// The sum of the squares of the barycentric coordinates' gradients.
     template <int dim>
     double
     sum_of_squares(const SimplexValues<dim> &of_cell)
@@ -77,8 +76,8 @@ namespace Debond
 
 
 
-    /// What J would fall by the product of all barycentric coordinates of a
-    /// cell, for a force on it that is constant.
+    /// The fall of J by the product of all barycentric coordinates of a cell,
+    /// for a force on it that is constant.
     template <int dim>
     double
     fall_inside(const SimplexValues<dim>              &of_cell,
@@ -93,9 +92,9 @@ namespace Debond
 
 
 
-    /// Over a face, of a linear function with these values at its vertices: of
-    /// degree 2 the mean square, of degree 1 the square of the mean, as no more
-    /// than means are known.
+    /// The mean square over a face of a linear function with these values at
+    /// its vertices; of degree 1 the square of the mean, as no more than means
+    /// are known.
     template <typename Value, std::size_t n>
     double
     mean_square(const std::array<Value, n> &values, const unsigned int degree)
@@ -194,14 +193,14 @@ namespace Debond
           }
       }
 
-      /// What J would fall, of each cell.
+      /// The parts of the cells in the fall of J.
       std::vector<double> parts;
 
-      /// That of an elastic body with these stresses, of own cells.
+      /// The energy of these stresses in own cells.
       double stress_energy = 0.;
 
     private:
-      /// What the next cells need of one that is done.
+      /// The numbers that the next cells need of one that is done.
       struct DoneCell
       {
         double lambda_and_2_mu;
@@ -215,7 +214,7 @@ namespace Debond
         dealii::Tensor<1, dim> force;
       };
 
-      /// What shears minus the pressure times the identity.
+      /// A stress, and its pressure.
       struct Stress
       {
         dealii::SymmetricTensor<2, dim> whole;
@@ -318,7 +317,7 @@ namespace Debond
         return heat;
       }
 
-      /// At a vertex of a cell that is done.
+      /// The stress at a vertex of a cell that is done.
       const Stress &
       stress_at(const unsigned int cell, const unsigned int vertex) const
       {
@@ -326,8 +325,8 @@ namespace Debond
                         std::min(vertex, n_stresses - 1)];
       }
 
-      /// Of each face of a cell: asking ReferenceCell for each of them takes
-      /// longer than all the rest.
+      /// The vertices of each face of a cell: asking ReferenceCell for each of
+      /// them takes longer than all the rest.
       static std::array<std::array<unsigned int, dim>, dim + 1>
       make_face_vertices()
       {
@@ -367,7 +366,7 @@ namespace Debond
         return (dim == 2 ? 1.93 : 1.83) * dealii::invert(mean);
       }
 
-      /// What yields to forces in the direction of the mean of r.
+      /// The yield to forces in the direction of the mean of r.
       static double
       along(const std::array<dealii::Tensor<1, dim>, dim> &r,
             const dealii::SymmetricTensor<2, dim>         &yield)
@@ -380,7 +379,7 @@ namespace Debond
                  dealii::trace(yield) / dim;
       }
 
-      /// What J would fall by r, given the mean square of its product with the
+      /// The fall of J by r, given the mean square of its product with the
       /// measure of the face.
       static double
       fall(const double square, const double stiffness)
@@ -536,7 +535,8 @@ namespace Debond
         throw std::logic_error("a face of an interface has no other side");
       }
 
-      /// With what bonds bear, as far as the foundation lets the body go.
+      /// r with the traction that bonds bear, as far as the foundation lets the
+      /// body go.
       dealii::Tensor<1, dim>
       with_foundation(const dealii::Tensor<1, dim>              &r,
                       const Face                                &side,
@@ -569,7 +569,7 @@ namespace Debond
                  r + (r_nu - r * normal) * normal;
       }
 
-      /// Without the directions that supports hold.
+      /// r without the directions that supports hold.
       dealii::Tensor<1, dim>
       free_part(dealii::Tensor<1, dim>           r,
                 const dealii::Tensor<1, dim>    &normal,
@@ -610,7 +610,7 @@ namespace Debond
       /// Contact faces on interfaces by place_on_line() of their middles.
       std::multimap<double, unsigned int> of_interfaces;
 
-      /// Of each cell that has any.
+      /// The first contact face of each cell that has any.
       std::unordered_map<dealii::types::coarse_cell_id, unsigned int>
         first_contact_face;
     };

@@ -104,8 +104,8 @@ namespace Debond
 
 
 
-    /// What the displacement and the force of a node are compared with, see
-    /// Verification::law_violation.
+    /// L_i and F_i of Verification::law_violation, with which the displacement
+    /// and the force of a node are compared.
     struct LawScale
     {
       double length;
@@ -114,8 +114,8 @@ namespace Debond
 
 
 
-    /// Of each node. @p resolved: the least force that is, of each; @p largest:
-    /// displacement of the body and force of a support.
+    /// The scales of each node. @p resolved: the least force that is, of each;
+    /// @p largest: displacement of the body and force of a support.
     template <int dim>
     std::vector<LawScale>
     law_scales(const AdhesionIntegral<dim>         &adhesion,
@@ -152,8 +152,8 @@ namespace Debond
 
 
 
-    /// Of node @p i, from its displacement and force. @p largest_s: of all
-    /// nodes.
+    /// Sets the state of node @p i from its displacement and force. @p
+    /// largest_s: of all nodes.
     template <int dim>
     void
     set_state(const unsigned int           i,
@@ -290,7 +290,7 @@ namespace Debond
 
 
 
-    /// What forces are compared with.
+    /// The scales that forces are compared with.
     struct ForceScales
     {
       /// The largest |A u - f| where nothing but equilibrium is asked for, and
@@ -372,15 +372,13 @@ namespace Debond
 
 
 
-    /// Of all nodes' vectors, by unknown, those of the contact nodes; none from
-    /// an empty vector. The unknowns of a node follow each other.
+    /// The vectors of the contact nodes among those of all nodes. The unknowns
+    /// of a node follow each other.
     template <int dim, typename Dofs>
     std::vector<dealii::Tensor<1, dim>>
     at_contact_nodes(const DofVector &vectors, const Dofs &normals)
     {
       std::vector<dealii::Tensor<1, dim>> result;
-      if (vectors.size() == 0)
-        return result;
       for (const auto normal : normals)
         {
           result.emplace_back();
@@ -527,7 +525,8 @@ namespace Debond
 
 
 
-    /// What there is at contact node @p i before its law is checked.
+    /// The displacement and the force of contact node @p i, before the law is
+    /// checked.
     template <int dim>
     ContactNodeState
     node_state(const unsigned int           i,

@@ -16,7 +16,7 @@ namespace Debond
 {
   namespace
   {
-    /// Of each face the number of a face that is the same for all that are
+    /// For each face the number of a face that is the same for all that are
     /// connected by pairs of faces whose normals differ by less than @p
     /// degrees.
     template <int dim>

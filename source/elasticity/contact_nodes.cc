@@ -22,23 +22,22 @@ namespace Debond
     {
       dealii::Point<dim> position;
 
-      /// Of its faces.
+      /// These are by its faces.
       std::vector<dealii::Tensor<1, dim>> normals;
       std::vector<double>                 measures;
       std::vector<double>                 gaps;
 
-      /// On one of its faces.
+      /// On one of its faces u_tau = 0 holds.
       bool is_tangential_fixed = false;
 
-      /// Of its faces, and for each group the node or the held vertex.
-      std::vector<unsigned int> groups;
-      std::vector<unsigned int> nodes;
-      std::vector<unsigned int> held;
+      std::vector<unsigned int> groups; ///< of its faces
+      std::vector<unsigned int> nodes;  ///< of each group, or no_node
+      std::vector<unsigned int> held;   ///< vertices of the groups without
     };
 
 
 
-    /// Of the foundation below a point of the boundary.
+    /// The gap to the foundation below a point of the boundary.
     template <int dim>
     double
     gap_value(const Supports<dim>             &supports,
@@ -62,7 +61,7 @@ namespace Debond
 
 
 
-    /// The same at a node of a face, of an edge its coefficient (bernstein()).
+    /// The gap at a node of a face, of an edge its coefficient.
     template <int dim>
     double
     gap_at(const Supports<dim>     &supports,
@@ -205,7 +204,8 @@ namespace Debond
             }
       }
 
-      /// Whether it is joined at a vertex to a face with another normal.
+      /// Returns whether a face is joined at a vertex to one with another
+      /// normal.
       bool
       is_curved(const unsigned int f) const
       {
@@ -424,10 +424,10 @@ namespace Debond
       const NodeSupports<dim>              &node_supports;
       ConstrainedDofs<dim>                 &constrained;
 
-      /// By node index.
+      /// The vertices by their node's number.
       std::map<unsigned int, ContactVertex<dim>> vertices;
 
-      /// Of each face among those of each of its vertices.
+      /// The place of each face among those of each of its vertices.
       std::vector<std::array<unsigned int, BoundaryFace<dim>::maximum>> places;
 
       std::vector<typename ContactBoundary<dim>::Node> nodes;

@@ -17,8 +17,8 @@ namespace Debond
 {
   namespace
   {
-    /// Of A, the rows of this rank: cells of other ranks around the own ones
-    /// make them complete.
+    /// Makes the pattern of A's rows of this rank: cells of other ranks around
+    /// the own ones make them complete.
     template <int dim>
     void
     make_pattern(const ElasticUnknowns<dim> &unknowns,
@@ -124,7 +124,8 @@ namespace Debond
 
 
 
-    /// In a row, of which the diagonal entry is the first one.
+    /// The number of columns before this one in a row, of which the diagonal
+    /// entry is the first one.
     unsigned int
     n_columns_below(const dealii::types::global_dof_index column,
                     const dealii::SparsityPattern        &sparsity,

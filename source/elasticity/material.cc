@@ -22,7 +22,7 @@ namespace Debond
 
 
 
-    /// From the material axes to those of the body, or back.
+    /// The rotation from the material axes to those of the body, or back.
     dealii::Tensor<2, 3>
     rotation(const double degrees)
     {
@@ -74,7 +74,7 @@ namespace Debond
 
 
 
-    /// What keeps energies from being positive; empty if nothing does.
+    /// The reason why energies are not positive; empty if they are.
     std::string
     fault(const Orthotropy &material)
     {

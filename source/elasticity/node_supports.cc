@@ -16,8 +16,8 @@ namespace Debond
 {
   namespace
   {
-    /// What the clamp of a face is called: the widest piece that is clamped as
-    /// a whole.
+    /// The name of the clamp of a face: the widest piece that is clamped as a
+    /// whole.
     std::string
     clamp_name(const BoundaryConditions        &conditions,
                const dealii::types::boundary_id id)

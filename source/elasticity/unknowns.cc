@@ -24,7 +24,7 @@ namespace Debond
 {
   namespace
   {
-    /// Of the box around the whole mesh.
+    /// The diameter of the box around the whole mesh.
     template <int dim>
     double
     diameter_of(const dealii::Triangulation<dim> &triangulation)

@@ -23,7 +23,7 @@ namespace Debond
 
 
 
-    /// With blocks of @p height x @p width entries.
+    /// The matrix with blocks of @p height x @p width entries.
     Prolongation
     in_blocks(const Epetra_CrsMatrix &P,
               const unsigned int      height,

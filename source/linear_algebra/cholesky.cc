@@ -16,7 +16,7 @@ namespace Debond
   {
     using LapackInteger = dealii::types::blas_int;
 
-    /// Not zero, as LAPACK wants it.
+    /// The number of rows, but not zero, as LAPACK wants it.
     LapackInteger
     leading_dimension(const Eigen::MatrixXd &A)
     {

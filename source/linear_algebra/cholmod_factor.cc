@@ -277,7 +277,7 @@ namespace Debond
 
 
 
-    /// What the own rows of A say. A row of a held unknown has only its
+    /// The graph by the own rows of A. A row of a held unknown has only its
     /// diagonal entry.
     NodeGraph
     own_graph(const MatrixOnRanks             &matrix,
@@ -341,7 +341,7 @@ namespace Debond
 
 
 
-    /// On the first rank behind what it has itself.
+    /// Appends the numbers of all others to those of the first rank.
     void
     append_from_others(const MPI_Comm ranks, std::vector<int> &numbers)
     {

@@ -21,11 +21,13 @@ namespace Debond
 {
   namespace
   {
-    /// MUMPS' workspace. It prints nothing: errors are thrown, on all ranks.
-    /// Of its buffers over what it estimates, in percent: by more than that it
-    /// is memory that is short.
+    /// The most, in percent, by which buffers are made larger than MUMPS
+    /// estimates: if that is not enough it is memory that is short.
     constexpr MUMPS_INT largest_increase = 1000;
 
+
+
+    /// MUMPS' workspace. It prints nothing: errors are thrown, on all ranks.
     class Mumps : public DMUMPS_STRUC_C
     {
     public:
@@ -91,7 +93,8 @@ namespace Debond
 
 
 
-    /// Whether this rank and those on the same machine can have as many bytes.
+    /// Returns whether this rank and those on the same machine can have as many
+    /// bytes.
     bool
     fits_into_memory(const double bytes, const MPI_Comm ranks)
     {

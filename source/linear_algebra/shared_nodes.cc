@@ -12,7 +12,7 @@ namespace Debond
 {
   namespace
   {
-    /// Behind the rows that @p to has.
+    /// Puts a row behind those that @p to has.
     template <typename To, typename From>
     void
     append_row(To &to, const From &from, const unsigned int row)

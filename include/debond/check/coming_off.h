@@ -19,7 +19,7 @@ namespace Debond
     /// is 1.
     RigidMotion<dim> motion;
 
-    /// Of the loads, for each unit of that displacement: a force.
+    /// The work of the loads for each unit of that displacement: a force.
     double work;
 
     /// The largest normal displacement of a contact node towards the

@@ -11,21 +11,21 @@
 
 namespace Debond
 {
-  /// How far J is above the one of the continuous problem near by, as the
-  /// stresses of the cells tell: an estimate, no bound.
+  /// An estimate of how far J is above the one of the continuous problem near
+  /// by, from the stresses of the cells. It is no bound.
   struct ErrorEstimate
   {
     double functional = 0.; ///< energy
 
-    /// What it is compared with: |J|, or where J is near zero the energy of the
-    /// stresses.
+    /// The energy that it is compared with: |J|, or where J is near zero the
+    /// energy of the stresses.
     double scale   = 0.;
     bool   is_of_J = true;
 
     /// The parts of the active cells, which add up to `functional`.
     std::vector<double> cells;
 
-    /// How many times they are what the residuals say, if that was measured.
+    /// The measured factor by which they are more than the residuals say.
     std::optional<double> factor;
 
     /// Zero if there is nothing to compare with.
@@ -38,8 +38,8 @@ namespace Debond
 
 
 
-  /// What an estimate is of: a problem and what it was made of, with its bonds
-  /// as they are.
+  /// The problem of an estimate and all that it was made of, with its bonds as
+  /// they are.
   template <int dim>
   struct EstimatedProblem
   {

@@ -15,9 +15,9 @@
 
 namespace Debond
 {
-  /// What the bonds and the foundation do at a contact node, by its number in
-  /// files. Branches of a law that have other names than these have the numbers
-  /// that follow.
+  /// The state of the bond and the foundation at a contact node, by its number
+  /// in files. Branches of a law that have other names than these have the
+  /// numbers that follow.
   enum class BondState : unsigned int
   {
     contact, ///< s = 0
@@ -47,14 +47,14 @@ namespace Debond
     /// positive where the foundation pushes, negative where bonds pull.
     double normal_force;
 
-    /// What the law allows for s of all nodes: the Clarke interval of the
-    /// adhesion, and unbounded above (infinity) where s = 0.
+    /// The forces that the law allows for s of all nodes: the Clarke interval
+    /// of the adhesion, and unbounded above (infinity) where s = 0.
     Interval allowed_force;
 
     /// Distance to the law's graph, see Verification::law_violation.
     double violation;
 
-    /// Of the bond, without what it has left for good: its stiffness at 0 and
+    /// The stiffness of the bond at 0, without what it has left for good, and
     /// the displacement below which it is on its last branch, positive.
     double bond_stiffness;
     double bond_threshold;
@@ -64,8 +64,8 @@ namespace Debond
 
     BondState state;
 
-    /// That of the branch of the law that holds, whatever contact and kink (at
-    /// a kink: of the one on the side of 0).
+    /// The state by the branch of the law that holds, whatever contact and kink
+    /// (at a kink: the branch on the side of 0).
     BondState branch;
   };
 
@@ -75,7 +75,7 @@ namespace Debond
   template <int dim>
   struct Verification
   {
-    /// In the order of ContactBoundary::nodes.
+    /// The states in the order of ContactBoundary::nodes.
     std::vector<ContactNodeState> nodes;
 
     std::vector<std::string> state_names; ///< by BondState
@@ -123,27 +123,27 @@ namespace Debond
     dealii::Tensor<1, dim> applied_force;
     dealii::Tensor<1, dim> clamped_reaction; ///< of all supports
 
-    /// Of each of ElasticUnknowns::support_names() on the body.
+    /// The force of each of ElasticUnknowns::support_names() on the body.
     std::map<std::string, dealii::Tensor<1, dim>> reactions;
 
-    /// Of the foundation on the body, with the tangential part; of bodies that
-    /// are glued to each other on those on the high sides.
+    /// The force of the foundation on the body, with the tangential part; of
+    /// bodies that are glued to each other that on those on the high sides.
     dealii::Tensor<1, dim> contact_reaction;
 
     /// The tangential part of contact_reaction, zero if tangential
     /// displacements are free.
     dealii::Tensor<1, dim> tangential_reaction;
 
-    /// Of each contact node, in Cartesian components, the displacement (of an
-    /// edge its coefficient) and the tangential force of the foundation on the
-    /// body; of several ranks the first one has them.
+    /// The displacement of each contact node (of an edge its coefficient) and
+    /// the tangential force of the foundation on the body there, in Cartesian
+    /// components.
     std::vector<dealii::Tensor<1, dim>> displacements, tangential_forces;
 
     /// | applied + clamped + contact | over the sum of all nodal forces' sizes,
     /// or that many times the rounding of one.
     double force_imbalance;
 
-    /// What rounding of the displacements makes of A u - f, at most, relative
+    /// The most that rounding of the displacements makes of A u - f, relative
     /// to the largest nodal force, applied or of the supports and the
     /// foundation; zero without loads.
     double force_rounding;
@@ -154,8 +154,8 @@ namespace Debond
     double
     error() const;
 
-    /// What is wrong with a result whose error() is above the tolerance. @p
-    /// is_iterative: of a method that a smaller tolerance takes further.
+    /// A message for a result whose error() is above the tolerance. @p
+    /// is_iterative: a smaller tolerance takes the method further.
     std::string
     failure(const double tolerance, const bool is_iterative = false) const;
 
@@ -173,7 +173,7 @@ namespace Debond
   /// contact and kink for ContactNodeState::state (and for nothing else). So
   /// does a gap under pressure within the node's violation and 1e-3 L_i.
   ///
-  /// To be called by all ranks that share the problem; all have the result.
+  /// All ranks that share the problem have to call it; all have the result.
   template <int dim>
   Verification<dim>
   verify(const ElasticProblem<dim>   &problem,

@@ -17,7 +17,7 @@
 
 namespace Debond
 {
-  /// What is prescribed where.
+  /// The boundaries where something is prescribed, by their ids.
   struct BoundaryConditions
   {
     std::set<dealii::types::boundary_id> clamped; ///< Gamma_D, u = 0
@@ -27,7 +27,7 @@ namespace Debond
     /// sigma_tau = 0 there.
     bool tangential_displacement_fixed = true;
 
-    /// For messages and reactions.
+    /// The names that messages and reactions use.
     BoundaryNames names = {};
 
     /// The contact boundaries that are sides of interfaces between bodies.
@@ -37,7 +37,8 @@ namespace Debond
     /// The contact boundaries for which the other one of the two holds.
     std::set<dealii::types::boundary_id> tangential_exceptions = {};
 
-    /// Whether it is fixed on this contact boundary.
+    /// Returns whether the tangential displacement is fixed on this contact
+    /// boundary.
     bool
     fixes_tangential(const dealii::types::boundary_id id) const
     {
@@ -48,7 +49,8 @@ namespace Debond
 
 
 
-  /// What is prescribed on a piece of the boundary beside clamps.
+  /// A displacement that is prescribed on a piece of the boundary; clamps are
+  /// none.
   template <int dim>
   struct PrescribedDisplacement
   {
@@ -79,8 +81,8 @@ namespace Debond
   {
     std::vector<PrescribedDisplacement<dim>> displacements = {};
 
-    /// Of the contact boundaries that have one. Where they meet the least
-    /// holds.
+    /// The gaps of the contact boundaries that have one. Where they meet the
+    /// least holds.
     std::map<dealii::types::boundary_id, InitialGap<dim>> gaps = {};
   };
 

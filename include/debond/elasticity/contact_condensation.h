@@ -15,7 +15,7 @@
 
 namespace Debond
 {
-  /// What J is more than 1/2 <A w, w> - <load, w> and the change of @p
+  /// The part of J beside 1/2 <A w, w> - <load, w> and the change of @p
   /// adhesion: the energy of w = 0, of what is prescribed. It is zero if
   /// nothing is. @p adhesion is that at these factors.
   template <int dim>
@@ -67,29 +67,38 @@ namespace Debond
 
 
 
+  /// The Cartesian displacements at all nodes under a rigid motion, which is
+  /// given for each body. All ranks have to call it.
+  template <int dim>
+  DofVector
+  displacement_of(const ElasticUnknowns<dim>          &unknowns,
+                  const std::vector<RigidMotion<dim>> &of_bodies)
+  {
+    const std::vector<dealii::Point<dim>> positions = unknowns.node_positions();
+    DofVector                             u(unknowns.n_dofs());
+    for (unsigned int node = 0; node < positions.size(); ++node)
+      {
+        const dealii::Tensor<1, dim> way =
+          of_bodies[unknowns.body_of(node)](positions[node]);
+        for (unsigned int d = 0; d < dim; ++d)
+          u(dim * node + d) = way[d];
+      }
+    return u;
+  }
+
+
+
   /// The normal displacements of the contact nodes under the rigid motions that
   /// only bonds and foundation hold, a column for each: S times them is zero.
   template <int dim>
   Eigen::MatrixXd
   free_motions_of_contact(const ElasticUnknowns<dim> &unknowns)
   {
-    const auto     &nodes   = unknowns.contact().boundary().nodes;
-    const auto     &normals = unknowns.contact().normal_dofs();
     const auto     &motions = unknowns.held_by_contact().motions;
-    Eigen::MatrixXd result(nodes.size(), motions.size());
+    Eigen::MatrixXd result(unknowns.contact().size(), motions.size());
     for (unsigned int k = 0; k < motions.size(); ++k)
-      for (unsigned int i = 0; i < nodes.size(); ++i)
-        {
-          const auto node = static_cast<unsigned int>(normals[i] / dim);
-          const auto way  = [&](const unsigned int of) {
-            return motions[k][unknowns.body_of(of)](nodes[i].position) *
-                   nodes[i].normal;
-          };
-          const auto *const pair = unknowns.pairs().find(node);
-          result(i, k)           = pair == nullptr ?
-                                     way(node) :
-                                     pair->sign * (way(pair->first) - way(pair->second));
-        }
+      result.col(k) = unknowns.contact().trace(
+        unknowns.basis().to_unknowns(displacement_of(unknowns, motions[k])));
     return result;
   }
 
@@ -113,10 +122,10 @@ namespace Debond
 
   struct WorkOfLoads
   {
-    /// Of the nodal forces along each of the motions.
+    /// The work of the nodal forces along each of the motions.
     Eigen::VectorXd along;
 
-    /// If no two of the terms had different signs.
+    /// The work if no two of its terms had different signs.
     Eigen::VectorXd largest;
   };
 
@@ -131,19 +140,18 @@ namespace Debond
     const DofVector    forces = problem.fields().applied_nodal_forces(factors);
     const Eigen::Index n      = static_cast<Eigen::Index>(motions.size());
     WorkOfLoads        work{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
-    const std::vector<dealii::Point<dim>> positions =
-      problem.unknowns().node_positions();
-    for (unsigned int i = 0; i < forces.size(); i += dim)
+    for (Eigen::Index k = 0; k < n; ++k)
       {
-        dealii::Tensor<1, dim> force;
-        for (unsigned int d = 0; d < dim; ++d)
-          force[d] = forces(i + d);
-        for (Eigen::Index k = 0; k < n; ++k)
+        const DofVector u = displacement_of(problem.unknowns(), motions[k]);
+        work.along[k]     = forces * u;
+        for (unsigned int i = 0; i < u.size(); i += dim)
           {
-            const dealii::Tensor<1, dim> way =
-              motions[k][problem.unknowns().body_of(i / dim)](
-                positions[i / dim]);
-            work.along[k] += force * way;
+            dealii::Tensor<1, dim> force, way;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                force[d] = forces(i + d);
+                way[d]   = u(i + d);
+              }
             work.largest[k] += force.norm() * way.norm();
           }
       }

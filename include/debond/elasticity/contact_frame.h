@@ -23,14 +23,14 @@ namespace Debond
     VertexNormals(const std::vector<dealii::Tensor<1, dim>> &face_normals,
                   const std::vector<double>                 &face_measures);
 
-    /// Of each face the number of its group. Of a group with a face more than
-    /// 84 degrees off the mean, as at the tip of a needle, each face is one of
-    /// its own: nothing has the mean as its normal.
+    /// The number of the group of each face. In place of a group with a face
+    /// more than 84 degrees off the mean, as at the tip of a needle, each face
+    /// is a group of its own: nothing has the mean as its normal.
     std::vector<unsigned int> groups;
 
-    /// Of each group, the mean weighted by the faces' measures. A component
-    /// that is zero but for rounding is zero, so that sides along the axes have
-    /// exact normals.
+    /// The normal of each group, the mean weighted by the faces' measures. A
+    /// component that is zero but for rounding is zero, so that sides along the
+    /// axes have exact normals.
     std::vector<dealii::Tensor<1, dim>> normals;
 
     /// Integral of the vertex' basis function over the faces of each group.

@@ -23,7 +23,6 @@ namespace Debond
   class ContactSpace
   {
   public:
-    /// Without nodes.
     ContactSpace() = default;
 
     /// @p normals: the degrees of freedom of the normal displacements, in the
@@ -63,7 +62,7 @@ namespace Debond
       return {{dofs.begin(), dofs.end()}, std::vector<double>(size(), 0.)};
     }
 
-    /// Whether u satisfies them.
+    /// Returns whether u satisfies them.
     bool
     is_admissible(const DofVector &u) const;
 

@@ -55,14 +55,14 @@ namespace Debond
       return elastic_unknowns;
     }
 
-    /// What load_vector() says of loads that jump, at the last assemble().
+    /// The notes of load_vector() on loads that jump, at the last assemble().
     const std::vector<std::string> &
     load_notes() const
     {
       return notes;
     }
 
-    /// Of the last assemble().
+    /// The fields of the last assemble().
     const ElasticFields<dim> &
     fields() const;
 
@@ -81,7 +81,7 @@ namespace Debond
       add_over_ranks(dst, elastic_unknowns.communicator());
     }
 
-    /// Of A.
+    /// The diagonal of A.
     DofVector
     diagonal() const;
 

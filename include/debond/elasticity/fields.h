@@ -94,7 +94,7 @@ namespace Debond
     temperature_change(const Cell               &cell,
                        const dealii::Point<dim> &unit_point) const;
 
-    /// Whether a change of temperature is among the loads.
+    /// Returns whether a change of temperature is among the loads.
     bool
     is_heated() const
     {
@@ -125,7 +125,7 @@ namespace Debond
     load_work(const DofVector &u, const LoadFactors factors = 1.) const;
 
   private:
-    /// With a load given in the unknowns' frames.
+    /// 1/2 <A u, u> - <load, u> with a load on the unknowns.
     double
     functional(const DofVector  &u,
                const LoadFactors factors,
@@ -142,8 +142,8 @@ namespace Debond
 
 
 
-  /// Of the points of strain_rule() of degree 2, one next to each vertex, all
-  /// barycentric coordinates but the one of that vertex.
+  /// All barycentric coordinates but one of a point of strain_rule() of degree
+  /// 2: each of the points is next to a vertex, which has the other one.
   template <int dim, typename Number>
   Number
   near_vertex()
@@ -199,14 +199,14 @@ namespace Debond
       return fields.elasticity_tensor(cell);
     }
 
-    /// In the cell, of each component.
+    /// The shape functions in the cell, of each component.
     const SimplexValues<dim> &
     values() const
     {
       return shape;
     }
 
-    /// Of the cell.
+    /// The degrees of freedom of the cell.
     const std::vector<dealii::types::global_dof_index> &
     dofs() const
     {
@@ -224,11 +224,11 @@ namespace Debond
     dealii::SymmetricTensor<2, dim>
     elastic_stress(const unsigned int q) const;
 
-    /// In the units of E.
+    /// The stress with that of the temperature, in the units of E.
     dealii::SymmetricTensor<2, dim>
     stress(const unsigned int q) const;
 
-    /// The same with what the hypothesis of plane bodies implies.
+    /// The same with the stress out of the plane that the hypothesis implies.
     dealii::SymmetricTensor<2, 3>
     solid_stress(const unsigned int q) const;
 

@@ -73,7 +73,7 @@ namespace Debond
     double
     shear_modulus() const;
 
-    /// The least and the largest one; E twice of an isotropic material.
+    /// The least and the largest modulus; E twice of an isotropic material.
     std::array<double, 2>
     extreme_moduli() const;
 
@@ -121,7 +121,7 @@ namespace Debond
     double
     energy_density(const dealii::SymmetricTensor<2, 3> &stress) const;
 
-    /// That stress in the material axes.
+    /// A stress of the solid in the material axes.
     dealii::SymmetricTensor<2, 3>
     along_axes(const dealii::SymmetricTensor<2, 3> &stress) const;
 
@@ -130,7 +130,7 @@ namespace Debond
     dealii::SymmetricTensor<4, 3>
     compliance_along_axes() const;
 
-    /// That a temperature change of one makes of the free solid.
+    /// The strain that a temperature change of one makes of the free solid.
     dealii::SymmetricTensor<2, 3>
     thermal_strain() const;
   };

@@ -19,8 +19,8 @@ namespace Debond
     dealii::Tensor<1, dim> direction;
     unsigned int           node = 0; ///< that has it
 
-    /// Of several bodies that which has it, and the one to which the
-    /// displacement is relative, if there is one.
+    /// The body that has it, and the one to which the displacement is relative,
+    /// if there is one.
     unsigned int body  = 0;
     unsigned int other = dealii::numbers::invalid_unsigned_int;
   };

@@ -12,7 +12,7 @@
 
 namespace Debond
 {
-  /// What dealii::FEValues is for a scalar element, on simplices with straight
+  /// This is dealii::FEValues for a scalar element on simplices with straight
   /// sides: all follows from the gradients of the barycentric coordinates,
   /// which takes much less time than a mapping that may be curved.
   template <int dim>
@@ -38,7 +38,7 @@ namespace Debond
         0U, rule.size());
     }
 
-    /// Of the element.
+    /// The number of nodes of the element.
     unsigned int
     n_nodes() const
     {
@@ -69,14 +69,15 @@ namespace Debond
       return origin + rule.point(q) * edges;
     }
 
-    /// Of the cell.
+    /// The area or volume of the cell.
     double
     measure() const
     {
       return jacobian / (dim == 2 ? 2. : 6.);
     }
 
-    /// Of the barycentric coordinate that is one at a vertex of the cell.
+    /// The gradient of the barycentric coordinate that is one at a vertex of
+    /// the cell.
     const dealii::Tensor<1, dim> &
     barycentric_gradient(const unsigned int vertex) const
     {

@@ -62,7 +62,7 @@ namespace Debond
     /// if supports contradict each other or the foundation, are not finite
     /// somewhere, or if a roller is not flat.
     ///
-    /// To be called by all ranks that share the mesh. All know all of what
+    /// All ranks that share the mesh have to call it. All know all of what
     /// supports and contact make of the unknowns.
     ElasticUnknowns(const dealii::Triangulation<dim> &triangulation,
                     const BoundaryConditions         &conditions,
@@ -83,14 +83,14 @@ namespace Debond
       return mapping_p1;
     }
 
-    /// Of the ranks that share the mesh.
+    /// The ranks that share the mesh.
     MPI_Comm
     communicator() const
     {
       return dofs.get_communicator();
     }
 
-    /// Of the displacement's polynomials.
+    /// The degree of the displacement's polynomials.
     unsigned int
     degree() const
     {
@@ -103,7 +103,7 @@ namespace Debond
       return contact_space;
     }
 
-    /// What the unknowns are of Cartesian components at nodes.
+    /// The change between Cartesian components at nodes and the unknowns.
     const ChangeOfBasis<dim> &
     basis() const
     {
@@ -117,7 +117,7 @@ namespace Debond
       return node_pairs;
     }
 
-    /// Without nodes in common.
+    /// The number of bodies that have no nodes in common.
     unsigned int
     n_bodies() const
     {
@@ -133,13 +133,13 @@ namespace Debond
       return bodies.empty() ? 0 : bodies[node];
     }
 
-    /// Where the nodes are, each of which has dim successive degrees of
-    /// freedom. To be called by all ranks.
+    /// The positions of the nodes, each of which has dim successive degrees of
+    /// freedom. All ranks have to call it.
     std::vector<dealii::Point<dim>>
     node_positions() const;
 
-    /// For each degree of freedom the number that it has on one rank, for
-    /// files. To be called by all ranks.
+    /// The numbers for files: for each degree of freedom that which it has on
+    /// one rank. All ranks have to call it.
     std::vector<dealii::types::global_dof_index>
     serial_order() const;
 
@@ -149,14 +149,15 @@ namespace Debond
       return dofs.n_dofs();
     }
 
-    /// Unknowns of the discrete problem.
+    /// The number of unknowns of the discrete problem.
     unsigned int
     n_free_dofs() const
     {
       return n_dofs() - constraints().n_constraints();
     }
 
-    /// Whether a degree of freedom is prescribed (by a support or tangential).
+    /// Returns whether a degree of freedom is prescribed (by a support or
+    /// tangential).
     bool
     is_constrained(const dealii::types::global_dof_index dof) const
     {
@@ -191,7 +192,7 @@ namespace Debond
       return constrained.supported();
     }
 
-    /// Whether G is not zero.
+    /// Returns whether G is not zero.
     bool
     has_lifting() const
     {
@@ -204,7 +205,7 @@ namespace Debond
       return constrained.displacements().size() > 0;
     }
 
-    /// Whether a part of G does not grow with the load.
+    /// Returns whether a part of G does not grow with the load.
     bool
     has_gap() const
     {
@@ -242,8 +243,8 @@ namespace Debond
       return basis().forces_to_nodal(forces, BasisStep::jumps);
     }
 
-    /// The same of forces between bodies, that on the high side alone: it is in
-    /// the place of the jump.
+    /// The same for forces between bodies: those on the high side alone, in the
+    /// place of the jump.
     DofVector
     contact_forces(const DofVector &forces) const
     {

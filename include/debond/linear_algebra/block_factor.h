@@ -24,8 +24,8 @@ namespace Debond
     /// S is to be set, and finish() to be called.
     BlockFactor(const MatrixOnRanks &matrix, const Elimination &elimination);
 
-    /// From the lower triangle of S on the first rank makes all of it, on all
-    /// ranks, and L_ss.
+    /// Makes all of S on all ranks from its lower triangle on the first one,
+    /// and L_ss.
     void
     finish(const MatrixOnRanks &matrix);
 

@@ -12,8 +12,8 @@
 
 namespace Debond
 {
-  /// Which blocks of height x width entries the rows of a sparse matrix have:
-  /// those of row i in the columns columns[k], starts[i] <= k < starts[i + 1].
+  /// The places of the blocks of height x width entries in a sparse matrix: row
+  /// i has them in the columns columns[k], starts[i] <= k < starts[i + 1].
   struct BlockPattern
   {
     unsigned int              height = 0, width = 0;
@@ -32,7 +32,7 @@ namespace Debond
       return std::size_t(height) * width;
     }
 
-    /// After the blocks of another row.
+    /// Is to be called after the blocks of each row.
     void
     end_row()
     {
@@ -42,7 +42,7 @@ namespace Debond
 
 
 
-  /// With the entries, block by block, and in these row by row.
+  /// A BlockPattern with the entries, block by block, and in these row by row.
   template <typename Number>
   struct BlockRows : BlockPattern
   {

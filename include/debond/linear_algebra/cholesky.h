@@ -30,12 +30,12 @@ namespace Debond
       return n;
     }
 
-    /// Of a whole matrix, whose lower triangle is read. Returns whether it is
-    /// positive definite; if not the factor is empty.
+    /// Factorises a whole matrix, whose lower triangle is read. Returns whether
+    /// it is positive definite; if not the factor is empty.
     bool
     compute(const Eigen::MatrixXd &K);
 
-    /// At least 1 / (|K| |K^{-1}|) of the factor in the 2-norm, at most 1.
+    /// A number that is at least 1 / (|K| |K^{-1}|) in the 2-norm, at most 1.
     double
     condition_bound() const
     {
@@ -96,7 +96,7 @@ namespace Debond
     /// Reads the lower triangle.
     explicit DenseCholesky(Eigen::MatrixXd A);
 
-    /// If not there is no factor.
+    /// Returns whether there is a factor.
     bool
     is_positive_definite() const
     {

@@ -27,17 +27,17 @@ namespace Debond
 
 
 
-  /// What the factorisation of a Condensation takes.
+  /// The work and the memory of the factorisation of a Condensation.
   struct FactorisationCost
   {
     double operations; ///< floating point
     double entries;    ///< of the factor, 8 bytes each
   };
 
-  /// By the symbolic factorisation of the graph of nodes, each of which has @p
-  /// n_components successive rows of A, on the same rank. To be called by all
-  /// ranks; the first one does it, with the whole graph, and all get its
-  /// result. Throws std::bad_alloc, on all ranks.
+  /// The cost by the symbolic factorisation of the graph of nodes, each of
+  /// which has @p n_components successive rows of A, on the same rank. All
+  /// ranks call it; the first one does it, with the whole graph, and all get
+  /// its result. Throws std::bad_alloc, on all ranks.
   FactorisationCost
   factorisation_cost(const MatrixOnRanks             &matrix,
                      const std::vector<unsigned int> &kept,

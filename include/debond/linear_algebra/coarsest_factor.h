@@ -13,9 +13,9 @@ namespace Debond
   class CoarsestFactor
   {
   public:
-    /// With all own rows, by numbers of the whole. If it @p may_be_singular its
-    /// diagonal is made larger where it is factorised: modes of an aggregate
-    /// with few free unknowns depend on each other.
+    /// Takes all own rows, by numbers of the whole. If the matrix
+    /// @p may_be_singular its diagonal is made larger where it is factorised:
+    /// modes of an aggregate with few free unknowns depend on each other.
     CoarsestFactor(const NumberedRows &rows,
                    const bool          may_be_singular,
                    const MPI_Comm      ranks);

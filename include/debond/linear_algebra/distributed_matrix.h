@@ -26,7 +26,7 @@ namespace Debond
     void
     vmult(DistributedVector &dst, const DistributedVector &src) const;
 
-    /// The same of the values that at_columns() returns.
+    /// The same with the values of src that at_columns() returns.
     void
     multiply(DistributedVector &dst, const std::vector<double> &values) const;
 
@@ -42,7 +42,7 @@ namespace Debond
              DistributedVector               &dst) const;
 
   private:
-    /// Of a row with the values.
+    /// The product of a row with the values.
     double
     product(const unsigned int row, const std::vector<double> &values) const;
 

@@ -9,10 +9,11 @@
 
 namespace Debond
 {
-  /// What the given rows M of a matrix add to P'MP, in ascending order of rows
-  /// and columns. Row r of @p pattern is that of the node rows[r], and @p
-  /// blocks gives its blocks, until its next call. Rows of P are those of all
-  /// nodes and columns that M has; its columns are below @p n_columns.
+  /// The part of P'MP that comes from the given rows M of a matrix, in
+  /// ascending order of rows and columns. Row r of @p pattern is that of the
+  /// node rows[r], and @p blocks gives its blocks, until its next call. Rows of
+  /// P are those of all nodes and columns that M has; its columns are below @p
+  /// n_columns.
   NumberedRows
   galerkin_product(const std::vector<unsigned int>                   &rows,
                    const BlockPattern                                &pattern,

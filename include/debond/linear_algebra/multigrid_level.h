@@ -21,7 +21,7 @@ namespace Debond
     void
     vmult(SinglePrecisionVector &dst, const SinglePrecisionVector &src) const;
 
-    /// Of all ranks.
+    /// The number of rows of all ranks.
     unsigned int
     m() const
     {
@@ -79,8 +79,8 @@ namespace Debond
     void
     set_change(const NumberedRows &change);
 
-    /// For the matrix as it is now. The largest eigenvalue of D^{-1} matrix is
-    /// estimated if @p estimate, else it is what it was.
+    /// Makes the smoother for the matrix as it is now. The largest eigenvalue
+    /// of D^{-1} matrix is estimated if @p estimate, else it is what it was.
     void
     make_smoother(const bool estimate);
 
@@ -89,7 +89,7 @@ namespace Debond
     prolongate(SinglePrecisionVector       &fine,
                const SinglePrecisionVector &coarse) const;
 
-    /// With its transpose.
+    /// @p coarse is the product of its transpose with @p fine.
     void
     restrict_to_coarser(SinglePrecisionVector       &coarse,
                         const SinglePrecisionVector &fine) const;
@@ -104,7 +104,7 @@ namespace Debond
     void
     reinit();
 
-    /// Of an own node.
+    /// Sets the entries of an own node.
     void
     invert_diagonal(const unsigned int row);
 
@@ -113,7 +113,7 @@ namespace Debond
 
     double largest_eigenvalue = 0.; ///< not known yet
 
-    /// Of the last change, with their entries without it.
+    /// The rows of the last change, with their entries without it.
     std::vector<unsigned int> changed_rows;
     std::vector<float>        unchanged;
   };

@@ -15,7 +15,7 @@ namespace Debond
   class Stagnation
   {
   public:
-    /// Of the residual after one more step, not negative.
+    /// Takes the residual after one more step, which is not negative.
     bool
     is_reached(const double residual)
     {
